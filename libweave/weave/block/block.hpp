@@ -1,0 +1,102 @@
+#pragma once
+
+#include <cstddef>
+#include <cstdint>
+#include <memory>
+#include <span>
+#include <unordered_map>
+#include <vector>
+
+#include <weave/block/card_image.hpp>
+#include <weave/block/stack.hpp>
+#include <weave/core/result.hpp>
+
+namespace weave {
+
+/// A weave block {r, c, h, t, p, A} (paper, section 4.1): a tilable piece of 3D weave as an array of stacks.
+///
+/// Row i holds t[i] picks and column j holds p[j] ends. Equal stacks are kept once: a cell is the number of its stack in
+/// a table. A full-size shoe has 400,000 cells but some hundred different stacks, so a block costs four bytes a cell
+/// and operations work on the table. A Block always obeys the yarn index constraints: make() is the only way in.
+class Block {
+  public:
+    /// Checks every constraint of the paper's section 4.1. `cells` has t.size() * p.size() entries, row by row, each an index into
+    /// `stacks`. `height` is raised to the tallest stack where it is smaller.
+    /// Errors name the first bad cell as `stacks[row][column]`.
+    static Result<Block> make(std::vector<std::uint32_t> t, std::vector<std::uint32_t> p, std::vector<Stack> stacks,
+                              std::vector<std::uint32_t> cells, std::size_t height = 0);
+
+    [[nodiscard]] std::size_t rows() const { return m_t.size(); }
+    [[nodiscard]] std::size_t columns() const { return m_p.size(); }
+    [[nodiscard]] std::size_t height() const { return m_height; }
+    [[nodiscard]] std::size_t picks() const { return m_first_pick.back(); }
+    [[nodiscard]] std::size_t ends() const { return m_first_end.back(); }
+    /// Picks of each row.
+    [[nodiscard]] const std::vector<std::uint32_t>& t() const { return m_t; }
+    /// Ends of each column.
+    [[nodiscard]] const std::vector<std::uint32_t>& p() const { return m_p; }
+
+    /// Number of the first pick of a row, from 0; also defined for rows() as the total.
+    [[nodiscard]] std::size_t first_pick(std::size_t row) const { return m_first_pick[row]; }
+    [[nodiscard]] std::size_t first_end(std::size_t column) const { return m_first_end[column]; }
+    [[nodiscard]] std::size_t row_of_pick(std::size_t pick) const;
+    [[nodiscard]] std::size_t column_of_end(std::size_t end) const;
+
+    [[nodiscard]] const Stack& stack(std::size_t row, std::size_t column) const {
+        return m_stacks[m_cells[row * columns() + column]];
+    }
+    /// The table of different stacks, and for each cell, row by row, its entry.
+    [[nodiscard]] const std::vector<Stack>& stacks() const { return m_stacks; }
+    [[nodiscard]] std::span<const std::uint32_t> cells() const { return m_cells; }
+    [[nodiscard]] std::span<const std::uint32_t> cells(std::size_t row) const {
+        return std::span(m_cells).subspan(row * columns(), columns());
+    }
+
+    /// One pixel of the card image, without making all of it.
+    [[nodiscard]] bool weft_over(std::size_t pick, std::size_t end) const;
+    /// Pixel I[x][y] is true exactly where pick x stands above end y in the stack that holds both.
+    [[nodiscard]] CardImage card_image() const;
+
+    /// Same t, p, height and, cell by cell, same stacks.
+    friend bool operator==(const Block& a, const Block& b);
+
+  private:
+    Block() = default;
+
+    std::vector<std::uint32_t> m_t, m_p;
+    std::vector<std::size_t> m_first_pick{0}, m_first_end{0};
+    std::size_t m_height = 0;
+    std::vector<Stack> m_stacks;
+    std::vector<std::uint32_t> m_cells;
+};
+
+using BlockPtr = std::shared_ptr<const Block>;
+
+/// Gives equal stacks the same number, in the order in which they first come.
+class StackTable {
+  public:
+    std::uint32_t number_of(Stack stack);
+    /// The table so far; the object must not be used afterwards.
+    [[nodiscard]] std::vector<Stack> take() && { return std::move(m_stacks); }
+
+  private:
+    std::vector<Stack> m_stacks;
+    std::unordered_map<Stack, std::uint32_t, StackHash> m_numbers;
+};
+
+/// A block from a function that gives the stack of each cell.
+template <class StackOfCell>
+Result<Block> make_block(std::vector<std::uint32_t> t, std::vector<std::uint32_t> p, StackOfCell stack_of_cell,
+                         std::size_t height = 0) {
+    StackTable table;
+    std::vector<std::uint32_t> cells;
+    cells.reserve(t.size() * p.size());
+    for (std::size_t row = 0; row < t.size(); ++row) {
+        for (std::size_t column = 0; column < p.size(); ++column) {
+            cells.push_back(table.number_of(stack_of_cell(row, column)));
+        }
+    }
+    return Block::make(std::move(t), std::move(p), std::move(table).take(), std::move(cells), height);
+}
+
+}  // namespace weave

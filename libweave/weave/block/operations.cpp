@@ -1,0 +1,266 @@
+#include <weave/block/operations.hpp>
+
+#include <algorithm>
+#include <map>
+
+namespace weave {
+
+namespace {
+
+using Counts = std::vector<std::uint32_t>;
+
+Counts repeated(const Counts& counts, std::size_t times, std::size_t factor) {
+    Counts result;
+    result.reserve(counts.size() * times);
+    for (std::size_t k = 0; k < times; ++k) {
+        for (const std::uint32_t count : counts) result.push_back(static_cast<std::uint32_t>(count * factor));
+    }
+    return result;
+}
+
+/// `upper` on top of `lower`, which is filled up to `lower_height` with empty slots; upper's yarns count on from lower's.
+Stack piled(const Stack& lower, std::size_t lower_height, const Stack& upper) {
+    std::vector<Slot> slots(lower.slots().begin(), lower.slots().end());
+    slots.resize(lower_height);
+    for (const Slot slot : upper.slots()) {
+        const std::size_t below = slot.is_weft() ? lower.wefts() : lower.warps();
+        slots.push_back(slot.is_empty() ? slot : slot.renumbered(slot.index() + below));
+    }
+    return Stack(std::move(slots));
+}
+
+Stack piled_times(const Stack& stack, std::size_t height, std::size_t times) {
+    Stack pile = stack;
+    for (std::size_t k = 1; k < times; ++k) pile = piled(pile, k * height, stack);
+    return pile;
+}
+
+std::string differs(const char* line, std::size_t index, const char* yarns, std::uint32_t one, std::uint32_t other) {
+    return std::string(line) + " " + std::to_string(index) + " has " + std::to_string(one) + " " + yarns +
+           " in one block and " + std::to_string(other) + " in the other";
+}
+
+Status check_same(const Counts& one, const Counts& other, const char* line, const char* yarns) {
+    if (one.size() != other.size()) {
+        return invalid("the blocks have " + std::to_string(one.size()) + " and " + std::to_string(other.size()) + " " +
+                       line + "s, which must be equal on the faces that meet");
+    }
+    for (std::size_t i = 0; i < one.size(); ++i) {
+        if (one[i] != other[i]) return invalid("cannot attach: " + differs(line, i, yarns, one[i], other[i]));
+    }
+    return {};
+}
+
+/// The tables of several blocks as one, and for each block where its stacks went.
+struct MergedTables {
+    StackTable table;
+    std::vector<std::vector<std::uint32_t>> moved;
+
+    void add(const Block& block) {
+        std::vector<std::uint32_t>& numbers = moved.emplace_back();
+        numbers.reserve(block.stacks().size());
+        for (const Stack& stack : block.stacks()) numbers.push_back(table.number_of(stack));
+    }
+};
+
+Result<Block> attach_x(const Block& first, const Block& second) {
+    WEAVE_CHECK_OK(check_same(first.p(), second.p(), "column", "ends"));
+    MergedTables merged;
+    std::vector<std::uint32_t> cells;
+    cells.reserve(first.cells().size() + second.cells().size());
+    for (const Block* block : {&first, &second}) {
+        merged.add(*block);
+        for (const std::uint32_t cell : block->cells()) cells.push_back(merged.moved.back()[cell]);
+    }
+    Counts t = first.t();
+    t.insert(t.end(), second.t().begin(), second.t().end());
+    return Block::make(std::move(t), first.p(), std::move(merged.table).take(), std::move(cells),
+                       std::max(first.height(), second.height()));
+}
+
+Result<Block> attach_y(const Block& first, const Block& second) {
+    WEAVE_CHECK_OK(check_same(first.t(), second.t(), "row", "picks"));
+    MergedTables merged;
+    merged.add(first);
+    merged.add(second);
+    std::vector<std::uint32_t> cells;
+    cells.reserve(first.cells().size() + second.cells().size());
+    for (std::size_t row = 0; row < first.rows(); ++row) {
+        for (const std::uint32_t cell : first.cells(row)) cells.push_back(merged.moved[0][cell]);
+        for (const std::uint32_t cell : second.cells(row)) cells.push_back(merged.moved[1][cell]);
+    }
+    Counts p = first.p();
+    p.insert(p.end(), second.p().begin(), second.p().end());
+    return Block::make(first.t(), std::move(p), std::move(merged.table).take(), std::move(cells),
+                       std::max(first.height(), second.height()));
+}
+
+Result<Block> attach_z(const Block& lower, const Block& upper) {
+    if (lower.rows() != upper.rows() || lower.columns() != upper.columns()) {
+        return invalid("one block has " + std::to_string(lower.rows()) + " rows and " +
+                       std::to_string(lower.columns()) + " columns, the other " + std::to_string(upper.rows()) +
+                       " and " + std::to_string(upper.columns()) + "; on top of each other they must be equal");
+    }
+    StackTable table;
+    std::map<std::pair<std::uint32_t, std::uint32_t>, std::uint32_t> known;
+    std::vector<std::uint32_t> cells(lower.cells().size());
+    for (std::size_t cell = 0; cell < cells.size(); ++cell) {
+        const auto pair = std::pair(lower.cells()[cell], upper.cells()[cell]);
+        auto entry = known.find(pair);
+        if (entry == known.end()) {
+            const Stack pile = piled(lower.stacks()[pair.first], lower.height(), upper.stacks()[pair.second]);
+            entry = known.emplace(pair, table.number_of(pile)).first;
+        }
+        cells[cell] = entry->second;
+    }
+    Counts t = lower.t(), p = lower.p();
+    for (std::size_t i = 0; i < t.size(); ++i) t[i] += upper.t()[i];
+    for (std::size_t j = 0; j < p.size(); ++j) p[j] += upper.p()[j];
+    return Block::make(std::move(t), std::move(p), std::move(table).take(), std::move(cells),
+                       lower.height() + upper.height());
+}
+
+Status check_stencil(std::span<const BlockPtr> blocks, const StencilMap& map) {
+    if (map.rows == 0 || map.columns == 0) return bad_input("a stencil needs at least one row and one column");
+    if (blocks.empty()) return bad_input("a stencil needs at least one block");
+    assert(map.blocks.size() == map.rows * map.columns);
+    for (std::size_t cell = 0; cell < map.blocks.size(); ++cell) {
+        if (map.blocks[cell] >= blocks.size()) {
+            return bad_input("names block " + std::to_string(map.blocks[cell]) + ", but there are only " +
+                                 std::to_string(blocks.size()) + ", counted from 0",
+                             "stencil[" + std::to_string(cell / map.columns) + "][" +
+                                 std::to_string(cell % map.columns) + "]");
+        }
+    }
+    return {};
+}
+
+/// The picks (or ends) of each line of the stencil, on which all blocks must agree.
+Result<Counts> common_counts(std::span<const BlockPtr> blocks, std::size_t lines, const Counts& (Block::*counts)() const,
+                             const char* line, const char* yarns) {
+    const auto count_at = [&](const BlockPtr& block, std::size_t i) {
+        const Counts& own = ((*block).*counts)();
+        return own[i % own.size()];
+    };
+    Counts common(lines);
+    for (std::size_t i = 0; i < lines; ++i) {
+        common[i] = count_at(blocks[0], i);
+        for (std::size_t k = 1; k < blocks.size(); ++k) {
+            const std::uint32_t other = count_at(blocks[k], i);
+            if (other == common[i]) continue;
+            return invalid("blocks 0 and " + std::to_string(k) + " do not fit together: " +
+                           differs(line, i, yarns, common[i], other));
+        }
+    }
+    return common;
+}
+
+Result<Block> renumbered(const Block& block, System system, std::size_t line, std::span<const std::size_t> order) {
+    const bool row = system == System::weft;
+    const std::size_t lines = row ? block.rows() : block.columns();
+    const std::string name = row ? "row " : "column ";
+    if (line >= lines) return invalid("there is no " + name + std::to_string(line) + "; the last one is " + std::to_string(lines - 1));
+    const std::size_t count = row ? block.t()[line] : block.p()[line];
+    std::vector<std::size_t> new_number(count, count);
+    bool fits = order.size() == count;
+    for (std::size_t k = 0; fits && k < count; ++k) {
+        fits = order[k] < count && new_number[order[k]] == count;
+        if (fits) new_number[order[k]] = k;
+    }
+    if (!fits) {
+        return invalid("the new order of " + name + std::to_string(line) + " must name each of its " +
+                       std::to_string(count) + (row ? " picks" : " ends") + " once, from 0 on");
+    }
+    StackTable table;
+    for (const Stack& stack : block.stacks()) static_cast<void>(table.number_of(stack));
+    std::map<std::uint32_t, std::uint32_t> known;
+    std::vector<std::uint32_t> cells(block.cells().begin(), block.cells().end());
+    const std::size_t first = row ? line * block.columns() : line, step = row ? 1 : block.columns();
+    const std::size_t length = row ? block.columns() : block.rows();
+    for (std::size_t k = 0; k < length; ++k) {
+        std::uint32_t& cell = cells[first + k * step];
+        const auto [entry, is_new] = known.try_emplace(cell, 0);
+        if (is_new) {
+            std::vector<Slot> slots(block.stacks()[cell].slots().begin(), block.stacks()[cell].slots().end());
+            for (Slot& slot : slots) {
+                if (row ? slot.is_weft() : slot.is_warp()) slot = slot.renumbered(new_number[slot.index()]);
+            }
+            entry->second = table.number_of(Stack(std::move(slots)));
+        }
+        cell = entry->second;
+    }
+    return Block::make(block.t(), block.p(), std::move(table).take(), std::move(cells), block.height());
+}
+
+}  // namespace
+
+Result<Block> tile(const Block& block, std::size_t x, std::size_t y, std::size_t z) {
+    if (x == 0 || y == 0 || z == 0) return invalid("a block is tiled at least once in each direction");
+    constexpr std::size_t most = std::size_t{1} << 31;
+    if (x > most || y > most || z > most) return invalid("a block is tiled at most 2^31 times in a direction");
+    const auto too_long = [&](std::size_t yarns, std::size_t times) { return yarns > most_crossings / times / z; };
+    if (too_long(block.picks(), x) || too_long(block.ends(), y)) return check_card_size(most_crossings, 2).error();
+    WEAVE_CHECK_OK(check_card_size(block.picks() * x * z, block.ends() * y * z));
+    StackTable table;
+    std::vector<std::uint32_t> moved;
+    for (const Stack& stack : block.stacks()) moved.push_back(table.number_of(piled_times(stack, block.height(), z)));
+    std::vector<std::uint32_t> cells;
+    cells.reserve(block.cells().size() * x * y);
+    for (std::size_t row = 0; row < block.rows() * x; ++row) {
+        for (std::size_t k = 0; k < y; ++k) {
+            for (const std::uint32_t cell : block.cells(row % block.rows())) cells.push_back(moved[cell]);
+        }
+    }
+    return Block::make(repeated(block.t(), x, z), repeated(block.p(), y, z), std::move(table).take(), std::move(cells),
+                       block.height() * z);
+}
+
+const std::vector<std::string>& face_names() {
+    static const std::vector<std::string> names{"+x", "-x", "+y", "-y", "+z", "-z"};
+    return names;
+}
+
+Result<Block> attach(const Block& block, const Block& other, Face face) {
+    switch (face) {
+        case Face::plus_x: return attach_x(block, other);
+        case Face::minus_x: return attach_x(other, block);
+        case Face::plus_y: return attach_y(block, other);
+        case Face::minus_y: return attach_y(other, block);
+        case Face::plus_z: return attach_z(block, other);
+        case Face::minus_z: return attach_z(other, block);
+    }
+    return invalid("a block has six faces");
+}
+
+Result<Block> stencil(std::span<const BlockPtr> blocks, const StencilMap& map) {
+    WEAVE_CHECK_OK(check_stencil(blocks, map));
+    WEAVE_TRY(Counts t, common_counts(blocks, map.rows, &Block::t, "row", "picks"));
+    WEAVE_TRY(Counts p, common_counts(blocks, map.columns, &Block::p, "column", "ends"));
+    MergedTables merged;
+    std::size_t height = 0;
+    for (const BlockPtr& block : blocks) {
+        merged.add(*block);
+        height = std::max(height, block->height());
+    }
+    std::vector<std::uint32_t> cells;
+    cells.reserve(map.blocks.size());
+    for (std::size_t row = 0; row < map.rows; ++row) {
+        const auto sources = map.row(row);
+        for (std::size_t column = 0; column < map.columns; ++column) {
+            const Block& source = *blocks[sources[column]];
+            const std::uint32_t cell = source.cells(row % source.rows())[column % source.columns()];
+            cells.push_back(merged.moved[sources[column]][cell]);
+        }
+    }
+    return Block::make(std::move(t), std::move(p), std::move(merged.table).take(), std::move(cells), height);
+}
+
+Result<Block> renumber_row(const Block& block, std::size_t row, std::span<const std::size_t> order) {
+    return renumbered(block, System::weft, row, order);
+}
+
+Result<Block> renumber_column(const Block& block, std::size_t column, std::span<const std::size_t> order) {
+    return renumbered(block, System::warp, column, order);
+}
+
+}  // namespace weave

@@ -1,0 +1,200 @@
+#include <weave/core/json.hpp>
+
+#include <algorithm>
+#include <charconv>
+#include <cmath>
+#include <set>
+#include <vector>
+
+namespace weave {
+
+namespace {
+
+constexpr int deepest_level = 64;
+constexpr std::size_t most_members = 4096;  // ordered objects search linearly: a bound keeps hostile files cheap
+
+/// Looks over the parser's shoulder and stops it at what it would accept: repeated names, and objects without end.
+class Watcher {
+  public:
+    bool operator()(nlohmann::detail::parse_event_t event, const Json& value) {
+        using Event = nlohmann::detail::parse_event_t;
+        if (event == Event::object_start) m_names.emplace_back();
+        if (event == Event::object_end) m_names.pop_back();
+        if (event == Event::key) {
+            const auto& name = value.get_ref<const std::string&>();
+            if (!m_names.back().insert(name).second) throw bad_input("repeats the member '" + name + "'");
+            if (m_names.back().size() > most_members) {
+                throw bad_input("has an object with more than " + std::to_string(most_members) + " members");
+            }
+        }
+        return true;
+    }
+
+  private:
+    std::vector<std::set<std::string>> m_names;
+};
+
+/// The parser recurses nowhere, but whoever walks the result does: so depth is bounded before parsing starts.
+bool nests_too_deep(std::string_view text) {
+    int depth = 0;
+    bool in_string = false;
+    for (std::size_t i = 0; i < text.size(); ++i) {
+        const char c = text[i];
+        if (in_string) {
+            if (c == '\\') ++i;
+            else if (c == '"') in_string = false;
+        } else if (c == '"') {
+            in_string = true;
+        } else if (c == '[' || c == '{') {
+            if (++depth > deepest_level) return true;
+        } else if (c == ']' || c == '}') {
+            --depth;
+        }
+    }
+    return false;
+}
+
+/// nlohmann's message without its own error number, so that it starts with the place: "line 3, column 7: ...".
+std::string parser_message(std::string message) {
+    const auto place = message.find(" at line ");
+    if (place != std::string::npos) return message.substr(place + 4);
+    const auto bracket = message.find("] ");
+    return bracket == std::string::npos ? message : message.substr(bracket + 2);
+}
+
+std::u16string utf16(std::string_view utf8) {
+    std::u16string units;
+    for (std::size_t i = 0; i < utf8.size();) {
+        const auto lead = static_cast<unsigned char>(utf8[i]);
+        const int length = lead < 0x80 ? 1 : lead < 0xe0 ? 2 : lead < 0xf0 ? 3 : 4;
+        char32_t point = length == 1 ? lead : lead & (0x7f >> length);
+        for (int k = 1; k < length && i + static_cast<std::size_t>(k) < utf8.size(); ++k) {
+            point = point << 6 | (static_cast<unsigned char>(utf8[i + static_cast<std::size_t>(k)]) & 0x3f);
+        }
+        i += static_cast<std::size_t>(length);
+        if (point < 0x10000) {
+            units.push_back(static_cast<char16_t>(point));
+        } else {
+            units.push_back(static_cast<char16_t>(0xd7c0 + (point >> 10)));
+            units.push_back(static_cast<char16_t>(0xdc00 + (point & 0x3ff)));
+        }
+    }
+    return units;
+}
+
+void append_string(std::string& out, std::string_view text) {
+    constexpr char digits[] = "0123456789abcdef";
+    out.push_back('"');
+    for (const char c : text) {
+        const auto byte = static_cast<unsigned char>(c);
+        switch (c) {
+            case '"': out += "\\\""; break;
+            case '\\': out += "\\\\"; break;
+            case '\b': out += "\\b"; break;
+            case '\f': out += "\\f"; break;
+            case '\n': out += "\\n"; break;
+            case '\r': out += "\\r"; break;
+            case '\t': out += "\\t"; break;
+            default:
+                if (byte < 0x20) {
+                    out += "\\u00";
+                    out.push_back(digits[byte >> 4]);
+                    out.push_back(digits[byte & 15]);
+                } else {
+                    out.push_back(c);
+                }
+        }
+    }
+    out.push_back('"');
+}
+
+void append(std::string& out, const Json& value);
+
+void append_object(std::string& out, const Json& object) {
+    std::vector<std::pair<std::u16string, Json::const_iterator>> members;
+    for (auto it = object.begin(); it != object.end(); ++it) members.emplace_back(utf16(it.key()), it);
+    std::sort(members.begin(), members.end(), [](const auto& a, const auto& b) { return a.first < b.first; });
+    out.push_back('{');
+    for (const auto& [key, member] : members) {
+        if (out.back() != '{') out.push_back(',');
+        append_string(out, member.key());
+        out.push_back(':');
+        append(out, member.value());
+    }
+    out.push_back('}');
+}
+
+void append(std::string& out, const Json& value) {
+    switch (value.type()) {
+        case Json::value_t::object: return append_object(out, value);
+        case Json::value_t::array:
+            out.push_back('[');
+            for (std::size_t i = 0; i < value.size(); ++i) {
+                if (i > 0) out.push_back(',');
+                append(out, value[i]);
+            }
+            out.push_back(']');
+            return;
+        case Json::value_t::string: return append_string(out, value.get_ref<const std::string&>());
+        case Json::value_t::boolean: out += value.get<bool>() ? "true" : "false"; return;
+        case Json::value_t::number_integer:
+        case Json::value_t::number_unsigned:
+        case Json::value_t::number_float: out += ecmascript_number(value.get<double>()); return;
+        default: out += "null";
+    }
+}
+
+}  // namespace
+
+Result<Json> parse_json(std::string_view text) {
+    if (nests_too_deep(text)) {
+        return bad_input("nests deeper than " + std::to_string(deepest_level) + " levels");
+    }
+    Watcher watcher;
+    try {
+        return Json::parse(text, [&watcher](int, auto event, const Json& value) { return watcher(event, value); });
+    } catch (const nlohmann::json::exception& trouble) {
+        return bad_input("is not JSON: " + parser_message(trouble.what()));
+    } catch (Error& stopped) {
+        return std::move(stopped);
+    }
+}
+
+std::string ecmascript_number(double value) {
+    assert(std::isfinite(value));
+    if (value == 0) return "0";
+    char buffer[40];
+    const auto end = std::to_chars(buffer, buffer + sizeof buffer, std::abs(value), std::chars_format::scientific).ptr;
+    const std::string_view shortest(buffer, static_cast<std::size_t>(end - buffer));
+    const auto e = shortest.find('e');
+    std::string digits(shortest.substr(0, 1));
+    if (e > 1) digits += shortest.substr(2, e - 2);
+    int exponent = 0;
+    std::string_view exponent_text = shortest.substr(e + 1);
+    if (exponent_text.front() == '+') exponent_text.remove_prefix(1);
+    std::from_chars(exponent_text.data(), exponent_text.data() + exponent_text.size(), exponent);
+    const int count = static_cast<int>(digits.size());
+    const int point = exponent + 1;  // the value is 0.DIGITS * 10^point
+    std::string text = value < 0 ? "-" : "";
+    if (count <= point && point <= 21) {
+        text += digits + std::string(static_cast<std::size_t>(point - count), '0');
+    } else if (0 < point && point <= 21) {
+        text += digits.substr(0, static_cast<std::size_t>(point)) + "." + digits.substr(static_cast<std::size_t>(point));
+    } else if (-6 < point && point <= 0) {
+        text += "0." + std::string(static_cast<std::size_t>(-point), '0') + digits;
+    } else {
+        text += digits.substr(0, 1);
+        if (count > 1) text += "." + digits.substr(1);
+        text += exponent < 0 ? "e-" : "e+";
+        text += std::to_string(std::abs(exponent));
+    }
+    return text;
+}
+
+std::string canonical_json(const Json& value) {
+    std::string out;
+    append(out, value);
+    return out;
+}
+
+}  // namespace weave

@@ -1,0 +1,59 @@
+#pragma once
+
+#include <string>
+#include <variant>
+
+#include <weave/design/design.hpp>
+
+namespace weave {
+
+/// Edits are data: they can be kept, sent and undone. Each names the least that it changes.
+struct PutBlock {
+    std::string name;
+    NodePtr node;
+};
+/// Refused while another block is made from it, or it is the root.
+struct RemoveBlock {
+    std::string name;
+};
+/// Every reference follows.
+struct RenameBlock {
+    std::string from, to;
+};
+struct SetRoot {
+    std::string name;
+};
+/// Adds a flip to a block, or changes the one that it has at this crossing.
+struct PutFlip {
+    std::string block;
+    Flip flip;
+};
+struct RemoveFlip {
+    std::string block;
+    std::size_t pick = 0, end = 0;
+};
+struct SetTitle {
+    std::string title, notes;
+};
+struct SetWarp {
+    WarpPlan warp;
+};
+struct SetWeft {
+    WeftPlan weft;
+};
+struct SetScene {
+    Scene scene;
+};
+
+using Edit = std::variant<PutBlock, RemoveBlock, RenameBlock, SetRoot, PutFlip, RemoveFlip, SetTitle, SetWarp, SetWeft,
+                          SetScene>;
+
+/// Makes an edit and gives the edit that undoes it exactly. On an error (unknown block, a cycle that would arise, a
+/// block still in use) the design is unchanged.
+Result<Edit> apply(Design& design, const Edit& edit);
+
+/// An edit as one JSON object and back, for journals and messages.
+Json to_json(const Edit& edit);
+Result<Edit> edit_from_json(const Json& value);
+
+}  // namespace weave

@@ -1,0 +1,52 @@
+#pragma once
+
+#include <cstddef>
+#include <map>
+#include <string>
+#include <vector>
+
+#include <weave/design/design.hpp>
+
+namespace weave {
+
+/// A flip that no longer applies, with the reason.
+struct LostFlip {
+    std::string block;
+    Flip flip;
+    std::string reason;
+};
+
+/// The cloth of a design.
+struct Evaluation {
+    BlockPtr block;
+    std::vector<LostFlip> lost_flips;  ///< of the root and of all that it is made from
+};
+
+/// Turns designs into blocks, remembering every node's block. A node is computed again only when it, or a block that it is
+/// made from, is another than last time; so after an edit only what depends on it is recomputed.
+class Evaluator {
+  public:
+    /// The cloth. Errors carry the place, such as `blocks.toe`.
+    Result<Evaluation> evaluate(const Design& design);
+    /// One named block of the design.
+    Result<Evaluation> evaluate(const Design& design, const std::string& block);
+
+    /// How many nodes were computed, not remembered, since the evaluator was made.
+    [[nodiscard]] std::size_t computed() const { return m_computed; }
+
+  private:
+    struct Known {
+        NodePtr node;
+        std::vector<BlockPtr> children;
+        BlockPtr block;
+        std::vector<LostFlip> lost_flips;
+    };
+    Result<const Known*> known(const Design& design, const std::string& name, std::vector<std::string>& path);
+    std::map<std::string, Known> m_known;
+    std::size_t m_computed = 0;
+};
+
+/// Evaluates once, without remembering.
+Result<Evaluation> evaluate(const Design& design);
+
+}  // namespace weave
