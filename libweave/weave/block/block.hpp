@@ -76,6 +76,7 @@ using BlockPtr = std::shared_ptr<const Block>;
 class StackTable {
   public:
     std::uint32_t number_of(Stack stack);
+    [[nodiscard]] const Stack& at(std::uint32_t number) const { return m_stacks[number]; }
     /// The table so far; the object must not be used afterwards.
     [[nodiscard]] std::vector<Stack> take() && { return std::move(m_stacks); }
 

@@ -1,6 +1,7 @@
 #pragma once
 
 #include <cstddef>
+#include <span>
 #include <string>
 #include <vector>
 
@@ -20,6 +21,26 @@ struct FlippedStack {
 /// pixel of the card image can change alone. Empty slots stay where they are. Both numbers count within the stack,
 /// which must hold them.
 FlippedStack flip(const Stack& stack, std::size_t weft, std::size_t warp);
+
+/// What one crossing is to be; pick and end from 0.
+struct Flip {
+    std::size_t pick = 0, end = 0;
+    bool weft_over = false;
+    friend bool operator==(const Flip&, const Flip&) = default;
+};
+
+/// A flip that could not be made, with the reason as a person reads it (picks and ends from 1).
+struct RefusedFlip {
+    Flip flip;
+    std::string reason;
+};
+
+/// A block after flips, made one after the other; each is made, needed no change, or is listed as refused.
+struct FlippedBlock {
+    Block block;
+    std::vector<RefusedFlip> refused;
+};
+FlippedBlock apply_flips(const Block& block, std::span<const Flip> flips);
 
 /// The block with the pixel of `pick` and `end` (from 0) inverted. Errors: a pick or end that the block does not have;
 /// a flip that is not valid, with the yarns in the way named as people count them, from 1.

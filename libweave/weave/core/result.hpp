@@ -23,9 +23,15 @@ struct Error {
     std::string message;  ///< a sentence without a full stop, in weavers' words
     std::string where;    ///< file and place, such as `shoe.weave: blocks.toe.stacks[3][4]`; may be empty
 
-    /// The same error seen from further out: `outer` goes in front of the place.
-    [[nodiscard]] Error in(const std::string& outer) && {
-        where = where.empty() ? outer : outer + (where.front() == '[' ? "" : ": ") + where;
+    /// The same error seen from a file: its name goes in front of the place, `shoe.weave: blocks.toe`.
+    [[nodiscard]] Error in(const std::string& file) && {
+        where = where.empty() ? file : file + ": " + where;
+        return std::move(*this);
+    }
+
+    /// The same error seen from further out in a document: `blocks.toe` and `stacks[3][4]` make `blocks.toe.stacks[3][4]`.
+    [[nodiscard]] Error under(const std::string& path) && {
+        where = where.empty() || where.front() == '[' ? path + where : path + "." + where;
         return std::move(*this);
     }
 

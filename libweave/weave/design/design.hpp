@@ -9,6 +9,7 @@
 #include <vector>
 
 #include <weave/block/block.hpp>
+#include <weave/block/flip.hpp>
 #include <weave/block/operations.hpp>
 #include <weave/block/preset.hpp>
 #include <weave/block/slice.hpp>
@@ -65,17 +66,10 @@ struct RenumberOperation {
 using NodeSource = std::variant<StacksLeaf, CardLeaf, PresetLeaf, SliceLeaf, TileOperation, AttachOperation,
                                 StencilOperation, RenumberOperation>;
 
-/// An edit of one crossing that a node keeps: it is applied again whenever what the node is made from changes.
-struct Flip {
-    std::size_t pick = 0, end = 0;  ///< from 0
-    bool weft_over = false;         ///< what the pixel is to be
-    friend bool operator==(const Flip&, const Flip&) = default;
-};
-
 /// One named block of a design: what it is made from, and the flips on top. Nodes never change, edits replace them.
 struct Node {
     NodeSource source;
-    std::vector<Flip> flips;
+    std::vector<Flip> flips;  ///< applied again whenever what the node is made from changes
 };
 using NodePtr = std::shared_ptr<const Node>;
 

@@ -41,7 +41,7 @@ class Evaluator {
         BlockPtr block;
         std::vector<LostFlip> lost_flips;
     };
-    Result<const Known*> known(const Design& design, const std::string& name, std::vector<std::string>& path);
+    Status make_known(const std::string& name, const NodePtr& node);
     std::map<std::string, Known> m_known;
     std::size_t m_computed = 0;
 };

@@ -9,6 +9,9 @@
 
 namespace weave {
 
+/// No yarn has a larger number, from 0.
+inline constexpr std::int64_t most_yarn_number = (std::int64_t{1} << 28) - 1;
+
 /// How the rim of the simulated piece behaves in one direction.
 enum class Boundary : std::uint8_t { periodic, frozen, free };
 
