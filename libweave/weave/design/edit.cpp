@@ -1,10 +1,11 @@
 #include <weave/design/edit.hpp>
 
-#include <algorithm>
-
-#include <weave/design/document.hpp>
 #include <weave/design/node_json.hpp>
 #include <weave/design/plan_json.hpp>
+#include <weave/design/tree.hpp>
+
+#include <algorithm>
+#include <utility>
 
 namespace weave {
 
@@ -47,22 +48,6 @@ NodePtr with_flips(const Node& node, std::vector<Flip> flips) {
     return std::make_shared<const Node>(Node{node.source, std::move(flips)});
 }
 
-NodePtr renamed_children(const NodePtr& node, const std::string& from, const std::string& to) {
-    const auto children = children_of(*node);
-    if (std::find(children.begin(), children.end(), from) == children.end()) return node;
-    Node copy = *node;
-    const auto rename = [&](std::string& name) {
-        if (name == from) name = to;
-    };
-    if (auto* tile = std::get_if<TileOperation>(&copy.source)) rename(tile->of);
-    if (auto* renumber = std::get_if<RenumberOperation>(&copy.source)) rename(renumber->of);
-    if (auto* attach = std::get_if<AttachOperation>(&copy.source)) rename(attach->of), rename(attach->other);
-    if (auto* stencil = std::get_if<StencilOperation>(&copy.source)) {
-        for (std::string& name : stencil->of) rename(name);
-    }
-    return std::make_shared<const Node>(std::move(copy));
-}
-
 // Each of these makes one kind of edit and gives its inverse.
 
 Result<Edit> make(Design& design, const PutBlock& edit) {
@@ -96,7 +81,7 @@ Result<Edit> make(Design& design, const RenameBlock& edit) {
     auto moved = design.blocks.extract(edit.from);
     moved.key() = edit.to;
     design.blocks.insert(std::move(moved));
-    for (auto& [name, node] : design.blocks) node = renamed_children(node, edit.from, edit.to);
+    for (auto& [name, node] : design.blocks) node = with_renamed_children(node, {{edit.from, edit.to}});
     if (design.root == edit.from) design.root = edit.to;
     return Edit(RenameBlock{edit.to, edit.from});
 }

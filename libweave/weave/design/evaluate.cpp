@@ -1,8 +1,7 @@
 #include <weave/design/evaluate.hpp>
 
-#include <utility>
-
 #include <weave/block/from_card.hpp>
+#include <weave/design/tree.hpp>
 
 namespace weave {
 
@@ -37,26 +36,6 @@ Result<BlockPtr> block_of(const Node& node, const std::vector<BlockPtr>& childre
     FlippedBlock flipped = apply_flips(block, node.flips);
     refused = std::move(flipped.refused);
     return std::make_shared<const Block>(std::move(flipped.block));
-}
-
-/// The blocks that `root` is made from, each after all that it is made from itself.
-std::vector<std::string> bottom_up(const Design& design, const std::string& root) {
-    std::vector<std::string> order;
-    std::map<std::string, bool> seen;
-    std::vector<std::pair<std::string, bool>> path{{root, false}};
-    while (!path.empty()) {
-        auto [name, left] = std::move(path.back());
-        path.pop_back();
-        if (left) {
-            order.push_back(std::move(name));
-        } else if (!std::exchange(seen[name], true)) {
-            path.emplace_back(name, true);
-            for (std::string& child : children_of(*design.blocks.at(name))) {
-                if (!seen[child]) path.emplace_back(std::move(child), false);
-            }
-        }
-    }
-    return order;
 }
 
 }  // namespace
