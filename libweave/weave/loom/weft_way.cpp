@@ -91,6 +91,9 @@ class Loops {
             return std::pair(a.from_pick, a.feeder) < std::pair(b.from_pick, b.feeder);
         });
         for (const Strand& strand : m_strands) m_way.spans.push_back(span(strand));
+        std::sort(m_way.spans.begin(), m_way.spans.end(), [](const PickSpan& a, const PickSpan& b) {
+            return std::pair(a.pick, a.feeder) < std::pair(b.pick, b.feeder);
+        });
         return std::move(m_way);
     }
 
