@@ -1,11 +1,11 @@
 #pragma once
 
+#include <weave/design/design.hpp>
+
 #include <cstddef>
 #include <map>
 #include <string>
 #include <vector>
-
-#include <weave/design/design.hpp>
 
 namespace weave {
 
@@ -22,8 +22,9 @@ struct Evaluation {
     std::vector<LostFlip> lost_flips;  ///< of the root and of all that it is made from
 };
 
-/// Turns designs into blocks, remembering every node's block. A node is computed again only when it, or a block that it is
-/// made from, is another than last time; so after an edit only what depends on it is recomputed.
+/// Turns designs into blocks, remembering every node's block. A node is computed again only when it, or a
+/// block that it is made from, is another than last time; so after an edit only what depends on it is
+/// recomputed.
 class Evaluator {
   public:
     /// The cloth. Errors carry the place, such as `blocks.toe`.
@@ -41,7 +42,7 @@ class Evaluator {
         BlockPtr block;
         std::vector<LostFlip> lost_flips;
     };
-    Result<const Known*> known(const Design& design, const std::string& name, std::vector<std::string>& path);
+    Status make_known(const std::string& name, const NodePtr& node);
     std::map<std::string, Known> m_known;
     std::size_t m_computed = 0;
 };
