@@ -24,7 +24,8 @@ Status check_card_size(std::uint64_t picks, std::uint64_t ends) {
     if (picks == 0 || ends == 0) return bad_input("a card image needs at least one pick and one end");
     if (picks > most_crossings / ends) {
         return bad_input("a card image of " + std::to_string(picks) + " picks and " + std::to_string(ends) +
-                         " ends is larger than the limit of " + std::to_string(most_crossings) + " crossings");
+                         " ends is larger than the limit of " + std::to_string(most_crossings) +
+                         " crossings");
     }
     return {};
 }

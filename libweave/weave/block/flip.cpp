@@ -69,11 +69,12 @@ FlippedBlock apply_flips(const Block& block, std::span<const Flip> flips) {
 
     std::vector<RefusedFlip> refused;
     for (const Flip& wish : flips) {
-        const std::string pair = "pick " + std::to_string(wish.pick + 1) + " and end " + std::to_string(wish.end + 1);
+        const std::string pair =
+            "pick " + std::to_string(wish.pick + 1) + " and end " + std::to_string(wish.end + 1);
         if (wish.pick >= block.picks() || wish.end >= block.ends()) {
             refused.push_back({wish, "there is no crossing of " + pair + ": the block has " +
-                                         std::to_string(block.picks()) + " picks and " + std::to_string(block.ends()) +
-                                         " ends"});
+                                         std::to_string(block.picks()) + " picks and " +
+                                         std::to_string(block.ends()) + " ends"});
             continue;
         }
         const std::size_t row = block.row_of_pick(wish.pick), column = block.column_of_end(wish.end);

@@ -12,17 +12,27 @@ struct Overload : Cases... {
     using Cases::operator()...;
 };
 
-bool same(const StacksLeaf& a, const StacksLeaf& b) { return *a.block == *b.block; }
-bool same(const CardLeaf& a, const CardLeaf& b) { return *a.card == *b.card && a.t == b.t && a.p == b.p; }
-bool same(const PresetLeaf& a, const PresetLeaf& b) { return a.preset == b.preset; }
-bool same(const SliceLeaf& a, const SliceLeaf& b) { return a.slice == b.slice; }
+bool same(const StacksLeaf& a, const StacksLeaf& b) {
+    return *a.block == *b.block;
+}
+bool same(const CardLeaf& a, const CardLeaf& b) {
+    return *a.card == *b.card && a.t == b.t && a.p == b.p;
+}
+bool same(const PresetLeaf& a, const PresetLeaf& b) {
+    return a.preset == b.preset;
+}
+bool same(const SliceLeaf& a, const SliceLeaf& b) {
+    return a.slice == b.slice;
+}
 bool same(const TileOperation& a, const TileOperation& b) {
     return a.of == b.of && a.x == b.x && a.y == b.y && a.z == b.z;
 }
 bool same(const AttachOperation& a, const AttachOperation& b) {
     return a.of == b.of && a.other == b.other && a.face == b.face;
 }
-bool same(const StencilOperation& a, const StencilOperation& b) { return a.of == b.of && *a.map == *b.map; }
+bool same(const StencilOperation& a, const StencilOperation& b) {
+    return a.of == b.of && *a.map == *b.map;
+}
 bool same(const RenumberOperation& a, const RenumberOperation& b) {
     return a.of == b.of && a.system == b.system && a.line == b.line && a.order == b.order;
 }
@@ -53,13 +63,16 @@ Status check_tree(const Design& design) {
             }
             const std::string child = step.children[step.next++];
             if (!design.blocks.contains(child)) {
-                return bad_input("is made from '" + child + "', which is not a block of this design", "blocks." + step.name);
+                return bad_input("is made from '" + child + "', which is not a block of this design",
+                                 "blocks." + step.name);
             }
             if (marks[child] == Mark::open) {
                 std::string chain;
-                const auto first = std::find_if(path.begin(), path.end(), [&](const Step& s) { return s.name == child; });
+                const auto first =
+                    std::find_if(path.begin(), path.end(), [&](const Step& s) { return s.name == child; });
                 for (auto at = first; at != path.end(); ++at) chain += at->name + " > ";
-                return bad_input("the blocks are made from each other in a circle: " + chain + child, "blocks." + child);
+                return bad_input("the blocks are made from each other in a circle: " + chain + child,
+                                 "blocks." + child);
             }
             if (marks[child] == Mark::fresh) enter(child);
         }
@@ -70,10 +83,14 @@ Status check_tree(const Design& design) {
 Status check_yarn(const YarnType& yarn, const std::string& where) {
     const auto within = [](double value, double low, double high) { return value >= low && value <= high; };
     if (!within(yarn.radius_mm, 1e-4, 100)) return bad_input("needs a radius from 0.0001 to 100 mm", where);
-    if (!within(yarn.linear_density_tex, 1e-3, 1e7)) return bad_input("needs a linear density from 0.001 to 1e7 tex", where);
-    if (!within(yarn.stretch_stiffness_N, 1e-9, 1e12)) return bad_input("needs a stretch stiffness from 1e-9 to 1e12 N", where);
-    if (!within(yarn.bending_stiffness_N_mm2, 0, 1e12)) return bad_input("needs a bending stiffness from 0 to 1e12 N mm2", where);
-    if (!within(yarn.contact_stiffness_N_mm2, 1e-9, 1e12)) return bad_input("needs a contact stiffness from 1e-9 to 1e12 N/mm2", where);
+    if (!within(yarn.linear_density_tex, 1e-3, 1e7))
+        return bad_input("needs a linear density from 0.001 to 1e7 tex", where);
+    if (!within(yarn.stretch_stiffness_N, 1e-9, 1e12))
+        return bad_input("needs a stretch stiffness from 1e-9 to 1e12 N", where);
+    if (!within(yarn.bending_stiffness_N_mm2, 0, 1e12))
+        return bad_input("needs a bending stiffness from 0 to 1e12 N mm2", where);
+    if (!within(yarn.contact_stiffness_N_mm2, 1e-9, 1e12))
+        return bad_input("needs a contact stiffness from 1e-9 to 1e12 N/mm2", where);
     return {};
 }
 
@@ -106,13 +123,15 @@ Status check_warp(const WarpPlan& warp) {
     if (!(warp.density_ends_per_cm >= 0.01 && warp.density_ends_per_cm <= 1e4)) {
         return bad_input("must be from 0.01 to 10000", "warp.density_ends_per_cm");
     }
-    if (warp.ends_per_dent == 0 || warp.ends_per_dent > 1000) return bad_input("must be from 1 to 1000", "warp.ends_per_dent");
+    if (warp.ends_per_dent == 0 || warp.ends_per_dent > 1000)
+        return bad_input("must be from 1 to 1000", "warp.ends_per_dent");
     return {};
 }
 
 Status check_weft(const WeftPlan& weft) {
     WEAVE_CHECK_OK(check_yarns(weft.yarns, "weft.yarns"));
-    if (weft.feeders.empty() || weft.feeders.size() > 64) return bad_input("needs 1 to 64 feeders", "weft.feeders");
+    if (weft.feeders.empty() || weft.feeders.size() > 64)
+        return bad_input("needs 1 to 64 feeders", "weft.feeders");
     for (std::size_t k = 0; k < weft.feeders.size(); ++k) {
         if (weft.feeders[k].yarn >= weft.yarns.size()) {
             return bad_input("names yarn " + std::to_string(weft.feeders[k].yarn) + ", but there are only " +
@@ -120,10 +139,12 @@ Status check_weft(const WeftPlan& weft) {
                              "weft.feeders[" + std::to_string(k) + "]");
         }
     }
-    if (weft.feeder_order.empty()) return bad_input("is empty, but needs at least one pick", "weft.feeder_order");
+    if (weft.feeder_order.empty())
+        return bad_input("is empty, but needs at least one pick", "weft.feeder_order");
     for (const FeederSet& set : weft.feeder_order) {
         if (set.size() > 2) return bad_input("gives a pick more than two feeders", "weft.feeder_order");
-        if (set.size() == 2 && set[0] == set[1]) return bad_input("gives a pick the same feeder twice", "weft.feeder_order");
+        if (set.size() == 2 && set[0] == set[1])
+            return bad_input("gives a pick the same feeder twice", "weft.feeder_order");
         for (const std::uint32_t feeder : set) {
             if (feeder >= weft.feeders.size()) {
                 return bad_input("names feeder " + std::to_string(feeder) + ", but there are only " +
@@ -143,7 +164,9 @@ Status check_weft(const WeftPlan& weft) {
 std::vector<std::string> children_of(const Node& node) {
     using Names = std::vector<std::string>;
     return std::visit(Overload{[](const TileOperation& tile) { return Names{tile.of}; },
-                               [](const AttachOperation& attach) { return Names{attach.of, attach.other}; },
+                               [](const AttachOperation& attach) {
+                                   return Names{attach.of, attach.other};
+                               },
                                [](const StencilOperation& stencil) { return stencil.of; },
                                [](const RenumberOperation& renumber) { return Names{renumber.of}; },
                                [](const auto&) { return Names{}; }},
@@ -152,26 +175,31 @@ std::vector<std::string> children_of(const Node& node) {
 
 bool operator==(const Node& a, const Node& b) {
     if (a.flips != b.flips || a.source.index() != b.source.index()) return false;
-    return std::visit([&](const auto& source) { return same(source, std::get<std::decay_t<decltype(source)>>(b.source)); },
-                      a.source);
+    return std::visit(
+        [&](const auto& source) { return same(source, std::get<std::decay_t<decltype(source)>>(b.source)); },
+        a.source);
 }
 
 bool operator==(const Design& a, const Design& b) {
     const auto same_blocks = [](const auto& one, const auto& other) {
         return one.first == other.first && *one.second == *other.second;
     };
-    return a.title == b.title && a.notes == b.notes && a.root == b.root && a.warp == b.warp && a.weft == b.weft &&
-           a.scene == b.scene && a.view == b.view &&
+    return a.title == b.title && a.notes == b.notes && a.root == b.root && a.warp == b.warp &&
+           a.weft == b.weft && a.scene == b.scene && a.view == b.view &&
            std::equal(a.blocks.begin(), a.blocks.end(), b.blocks.begin(), b.blocks.end(), same_blocks);
 }
 
 Status check_block_name(const std::string& name) {
-    const auto plain = [](char c) { return (c >= '0' && c <= '9') || (c >= 'a' && c <= 'z') || (c >= 'A' && c <= 'Z'); };
+    const auto plain = [](char c) {
+        return (c >= '0' && c <= '9') || (c >= 'a' && c <= 'z') || (c >= 'A' && c <= 'Z');
+    };
     const bool fine = !name.empty() && name.size() <= 64 && plain(name[0]) &&
                       std::all_of(name.begin(), name.end(),
                                   [&](char c) { return plain(c) || c == '-' || c == '_' || c == '.'; });
     if (fine) return {};
-    return bad_input("'" + name.substr(0, 80) + "' is not a block name: 1 to 64 letters, digits, '-', '_' or '.', starting with a letter or digit");
+    return bad_input(
+        "'" + name.substr(0, 80) +
+        "' is not a block name: 1 to 64 letters, digits, '-', '_' or '.', starting with a letter or digit");
 }
 
 Status check(const Design& design) {

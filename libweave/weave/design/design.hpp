@@ -1,13 +1,5 @@
 #pragma once
 
-#include <cstddef>
-#include <cstdint>
-#include <map>
-#include <memory>
-#include <string>
-#include <variant>
-#include <vector>
-
 #include <weave/block/block.hpp>
 #include <weave/block/flip.hpp>
 #include <weave/block/operations.hpp>
@@ -16,6 +8,14 @@
 #include <weave/core/json.hpp>
 #include <weave/design/scene.hpp>
 #include <weave/design/yarns.hpp>
+
+#include <cstddef>
+#include <cstdint>
+#include <map>
+#include <memory>
+#include <string>
+#include <variant>
+#include <vector>
 
 namespace weave {
 
@@ -66,7 +66,8 @@ struct RenumberOperation {
 using NodeSource = std::variant<StacksLeaf, CardLeaf, PresetLeaf, SliceLeaf, TileOperation, AttachOperation,
                                 StencilOperation, RenumberOperation>;
 
-/// One named block of a design: what it is made from, and the flips on top. Nodes never change, edits replace them.
+/// One named block of a design: what it is made from, and the flips on top. Nodes never change, edits replace
+/// them.
 struct Node {
     NodeSource source;
     std::vector<Flip> flips;  ///< applied again whenever what the node is made from changes
@@ -79,16 +80,17 @@ std::vector<std::string> children_of(const Node& node);
 /// Equal in meaning: the same source and flips.
 bool operator==(const Node& a, const Node& b);
 
-/// A whole design: named blocks that form a directed graph without cycles, one of them the cloth, and how it is woven.
+/// A whole design: named blocks that form a directed graph without cycles, one of them the cloth, and how it
+/// is woven.
 struct Design {
     std::string title;
     std::string notes;
-    std::string root;                      ///< the block that is the cloth
+    std::string root;  ///< the block that is the cloth
     std::map<std::string, NodePtr> blocks;
     WarpPlan warp = default_warp();
     WeftPlan weft = default_weft();
     Scene scene;
-    Json view = Json::object();            ///< whatever a program with windows wants to find again; never hashed
+    Json view = Json::object();  ///< whatever a program with windows wants to find again; never hashed
 
     friend bool operator==(const Design& a, const Design& b);
 };
@@ -96,8 +98,8 @@ struct Design {
 /// Block names: 1 to 64 letters, digits, '-', '_' or '.', the first a letter or digit.
 Status check_block_name(const std::string& name);
 
-/// Everything that can be said without evaluating: a root that exists, children that exist, no cycle (named as a chain of
-/// blocks), indices of yarns, feeders and beams in range, numbers finite and in their ranges.
+/// Everything that can be said without evaluating: a root that exists, children that exist, no cycle (named
+/// as a chain of blocks), indices of yarns, feeders and beams in range, numbers finite and in their ranges.
 Status check(const Design& design);
 
 }  // namespace weave

@@ -1,7 +1,6 @@
-#include <weave/design/document.hpp>
-
 #include <weave/core/file.hpp>
 #include <weave/core/sha256.hpp>
+#include <weave/design/document.hpp>
 #include <weave/design/node_json.hpp>
 #include <weave/design/plan_json.hpp>
 
@@ -13,9 +12,14 @@ namespace {
 Json design_json(const Design& design) {
     Json blocks = Json::object();
     for (const auto& [name, node] : design.blocks) blocks[name] = to_json(*node);
-    return {{"format", "weave"},       {"version", document_version},  {"title", design.title},
-            {"notes", design.notes},   {"root", design.root},          {"blocks", std::move(blocks)},
-            {"warp", to_json(design.warp)}, {"weft", to_json(design.weft)}};
+    return {{"format", "weave"},
+            {"version", document_version},
+            {"title", design.title},
+            {"notes", design.notes},
+            {"root", design.root},
+            {"blocks", std::move(blocks)},
+            {"warp", to_json(design.warp)},
+            {"weft", to_json(design.weft)}};
 }
 
 Status check_version(const Json& document) {
@@ -23,7 +27,8 @@ Status check_version(const Json& document) {
         return bad_input("is not a .weave document: it does not start with \"format\": \"weave\"");
     }
     const Json version = document.value("version", Json());
-    if (!version.is_number_integer() || version < 1) return bad_input("must be a whole number from 1 on", "version");
+    if (!version.is_number_integer() || version < 1)
+        return bad_input("must be a whole number from 1 on", "version");
     if (version > document_version) {
         return bad_input("is " + version.dump() + ", newer than this program, which reads versions up to " +
                              std::to_string(document_version),
@@ -79,8 +84,12 @@ Status save_design(const Design& design, const std::filesystem::path& path) {
     return write_file(path, write_document(design));
 }
 
-std::string design_sha256(const Design& design) { return sha256_hex(canonical_json(design_json(design))); }
+std::string design_sha256(const Design& design) {
+    return sha256_hex(canonical_json(design_json(design)));
+}
 
-std::string scene_sha256(const Design& design) { return sha256_hex(canonical_json(to_json(design.scene))); }
+std::string scene_sha256(const Design& design) {
+    return sha256_hex(canonical_json(to_json(design.scene)));
+}
 
 }  // namespace weave

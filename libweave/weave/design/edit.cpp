@@ -1,5 +1,4 @@
 #include <weave/design/edit.hpp>
-
 #include <weave/design/node_json.hpp>
 #include <weave/design/plan_json.hpp>
 #include <weave/design/tree.hpp>
@@ -12,8 +11,9 @@ namespace weave {
 namespace {
 
 /// Names of edits in JSON, in the order of the variant.
-const std::vector<std::string> edit_names{"put-block", "remove-block", "rename-block", "set-root", "put-flip",
-                                          "remove-flip", "set-title", "set-warp", "set-weft", "set-scene"};
+const std::vector<std::string> edit_names{"put-block", "remove-block", "rename-block", "set-root",
+                                          "put-flip",  "remove-flip",  "set-title",    "set-warp",
+                                          "set-weft",  "set-scene"};
 
 Error unknown_block(const std::string& name) {
     return invalid("'" + name.substr(0, 80) + "' is not a block of this design");
@@ -55,9 +55,11 @@ Result<Edit> make(Design& design, const PutBlock& edit) {
     for (const std::string& child : children_of(*edit.node)) {
         if (!design.blocks.contains(child)) return unknown_block(child);
     }
-    if (leads_to(design, *edit.node, edit.name)) return invalid("'" + edit.name + "' would be made from itself");
+    if (leads_to(design, *edit.node, edit.name))
+        return invalid("'" + edit.name + "' would be made from itself");
     const auto old = design.blocks.find(edit.name);
-    Edit undo = old == design.blocks.end() ? Edit(RemoveBlock{edit.name}) : Edit(PutBlock{edit.name, old->second});
+    Edit undo =
+        old == design.blocks.end() ? Edit(RemoveBlock{edit.name}) : Edit(PutBlock{edit.name, old->second});
     design.blocks[edit.name] = edit.node;
     return undo;
 }
@@ -65,7 +67,8 @@ Result<Edit> make(Design& design, const PutBlock& edit) {
 Result<Edit> make(Design& design, const RemoveBlock& edit) {
     const auto old = design.blocks.find(edit.name);
     if (old == design.blocks.end()) return unknown_block(edit.name);
-    if (design.root == edit.name) return invalid("'" + edit.name + "' is the cloth itself; choose another root first");
+    if (design.root == edit.name)
+        return invalid("'" + edit.name + "' is the cloth itself; choose another root first");
     const std::string users = users_of(design, edit.name);
     if (!users.empty()) return invalid("'" + edit.name + "' is still used by " + users);
     Edit undo = PutBlock{edit.name, old->second};
@@ -96,7 +99,9 @@ Result<Edit> make(Design& design, const PutFlip& edit) {
     const auto found = design.blocks.find(edit.block);
     if (found == design.blocks.end()) return unknown_block(edit.block);
     std::vector<Flip> flips = found->second->flips;
-    const auto same_place = [&](const Flip& flip) { return flip.pick == edit.flip.pick && flip.end == edit.flip.end; };
+    const auto same_place = [&](const Flip& flip) {
+        return flip.pick == edit.flip.pick && flip.end == edit.flip.end;
+    };
     std::erase_if(flips, same_place);
     flips.push_back(edit.flip);
     Edit undo = PutBlock{edit.block, found->second};
@@ -108,9 +113,10 @@ Result<Edit> make(Design& design, const RemoveFlip& edit) {
     const auto found = design.blocks.find(edit.block);
     if (found == design.blocks.end()) return unknown_block(edit.block);
     std::vector<Flip> flips = found->second->flips;
-    if (std::erase_if(flips, [&](const Flip& flip) { return flip.pick == edit.pick && flip.end == edit.end; }) == 0) {
-        return invalid("'" + edit.block + "' has no flip at pick " + std::to_string(edit.pick + 1) + " and end " +
-                       std::to_string(edit.end + 1));
+    if (std::erase_if(
+            flips, [&](const Flip& flip) { return flip.pick == edit.pick && flip.end == edit.end; }) == 0) {
+        return invalid("'" + edit.block + "' has no flip at pick " + std::to_string(edit.pick + 1) +
+                       " and end " + std::to_string(edit.end + 1));
     }
     Edit undo = PutBlock{edit.block, found->second};
     found->second = with_flips(*found->second, std::move(flips));
@@ -151,16 +157,36 @@ Result<Edit> make(Design& design, const SetScene& edit) {
 
 // The members of each edit in JSON, and back.
 
-Json write(const PutBlock& edit) { return {{"name", edit.name}, {"node", to_json(*edit.node)}}; }
-Json write(const RemoveBlock& edit) { return {{"name", edit.name}}; }
-Json write(const RenameBlock& edit) { return {{"from", edit.from}, {"to", edit.to}}; }
-Json write(const SetRoot& edit) { return {{"name", edit.name}}; }
-Json write(const PutFlip& edit) { return {{"block", edit.block}, {"flip", to_json(edit.flip)}}; }
-Json write(const RemoveFlip& edit) { return {{"block", edit.block}, {"pick", edit.pick}, {"end", edit.end}}; }
-Json write(const SetTitle& edit) { return {{"title", edit.title}, {"notes", edit.notes}}; }
-Json write(const SetWarp& edit) { return {{"warp", to_json(edit.warp)}}; }
-Json write(const SetWeft& edit) { return {{"weft", to_json(edit.weft)}}; }
-Json write(const SetScene& edit) { return {{"scene", to_json(edit.scene)}}; }
+Json write(const PutBlock& edit) {
+    return {{"name", edit.name}, {"node", to_json(*edit.node)}};
+}
+Json write(const RemoveBlock& edit) {
+    return {{"name", edit.name}};
+}
+Json write(const RenameBlock& edit) {
+    return {{"from", edit.from}, {"to", edit.to}};
+}
+Json write(const SetRoot& edit) {
+    return {{"name", edit.name}};
+}
+Json write(const PutFlip& edit) {
+    return {{"block", edit.block}, {"flip", to_json(edit.flip)}};
+}
+Json write(const RemoveFlip& edit) {
+    return {{"block", edit.block}, {"pick", edit.pick}, {"end", edit.end}};
+}
+Json write(const SetTitle& edit) {
+    return {{"title", edit.title}, {"notes", edit.notes}};
+}
+Json write(const SetWarp& edit) {
+    return {{"warp", to_json(edit.warp)}};
+}
+Json write(const SetWeft& edit) {
+    return {{"weft", to_json(edit.weft)}};
+}
+Json write(const SetScene& edit) {
+    return {{"scene", to_json(edit.scene)}};
+}
 
 Result<Edit> read_put_block(JsonReader& reader) {
     PutBlock edit{reader.text("name"), nullptr};
@@ -171,21 +197,32 @@ Result<Edit> read_put_block(JsonReader& reader) {
 }
 
 Result<Edit> read_edit(std::size_t kind, JsonReader& reader) {
-    const auto number = [&](const char* key) { return static_cast<std::size_t>(reader.integer(key, 0, most_yarn_number)); };
+    const auto number = [&](const char* key) {
+        return static_cast<std::size_t>(reader.integer(key, 0, most_yarn_number));
+    };
     switch (kind) {
-        case 0: return read_put_block(reader);
-        case 1: return Edit(RemoveBlock{reader.text("name")});
-        case 2: return Edit(RenameBlock{reader.text("from"), reader.text("to")});
-        case 3: return Edit(SetRoot{reader.text("name")});
+        case 0:
+            return read_put_block(reader);
+        case 1:
+            return Edit(RemoveBlock{reader.text("name")});
+        case 2:
+            return Edit(RenameBlock{reader.text("from"), reader.text("to")});
+        case 3:
+            return Edit(SetRoot{reader.text("name")});
         case 4: {
             JsonReader flip = reader.object("flip");
             return Edit(PutFlip{reader.text("block"), flip_from_json(flip)});
         }
-        case 5: return Edit(RemoveFlip{reader.text("block"), number("pick"), number("end")});
-        case 6: return Edit(SetTitle{reader.text("title"), reader.text("notes")});
-        case 7: return Edit(SetWarp{warp_from_json(reader.object("warp"))});
-        case 8: return Edit(SetWeft{weft_from_json(reader.object("weft"))});
-        default: return Edit(SetScene{scene_from_json(reader.object("scene"))});
+        case 5:
+            return Edit(RemoveFlip{reader.text("block"), number("pick"), number("end")});
+        case 6:
+            return Edit(SetTitle{reader.text("title"), reader.text("notes")});
+        case 7:
+            return Edit(SetWarp{warp_from_json(reader.object("warp"))});
+        case 8:
+            return Edit(SetWeft{weft_from_json(reader.object("weft"))});
+        default:
+            return Edit(SetScene{scene_from_json(reader.object("scene"))});
     }
 }
 

@@ -1,18 +1,23 @@
-#include <weave/design/evaluate.hpp>
-
 #include <weave/block/from_card.hpp>
+#include <weave/design/evaluate.hpp>
 #include <weave/design/tree.hpp>
 
 namespace weave {
 
 namespace {
 
-Result<Block> make(const StacksLeaf& leaf, const std::vector<BlockPtr>&) { return *leaf.block; }
+Result<Block> make(const StacksLeaf& leaf, const std::vector<BlockPtr>&) {
+    return *leaf.block;
+}
 Result<Block> make(const CardLeaf& leaf, const std::vector<BlockPtr>&) {
     return block_from_card(*leaf.card, leaf.t, leaf.p);
 }
-Result<Block> make(const PresetLeaf& leaf, const std::vector<BlockPtr>&) { return make_preset(leaf.preset); }
-Result<Block> make(const SliceLeaf& leaf, const std::vector<BlockPtr>&) { return to_block(leaf.slice); }
+Result<Block> make(const PresetLeaf& leaf, const std::vector<BlockPtr>&) {
+    return make_preset(leaf.preset);
+}
+Result<Block> make(const SliceLeaf& leaf, const std::vector<BlockPtr>&) {
+    return to_block(leaf.slice);
+}
 Result<Block> make(const TileOperation& operation, const std::vector<BlockPtr>& children) {
     return tile(*children[0], operation.x, operation.y, operation.z);
 }
@@ -28,10 +33,12 @@ Result<Block> make(const RenumberOperation& operation, const std::vector<BlockPt
 }
 
 /// What a node is made into. A leaf of stacks without flips is its block already: no copy.
-Result<BlockPtr> block_of(const Node& node, const std::vector<BlockPtr>& children, std::vector<RefusedFlip>& refused) {
+Result<BlockPtr> block_of(const Node& node, const std::vector<BlockPtr>& children,
+                          std::vector<RefusedFlip>& refused) {
     const auto* leaf = std::get_if<StacksLeaf>(&node.source);
     if (leaf != nullptr && node.flips.empty()) return leaf->block;
-    WEAVE_TRY(Block block, std::visit([&](const auto& source) { return make(source, children); }, node.source));
+    WEAVE_TRY(Block block,
+              std::visit([&](const auto& source) { return make(source, children); }, node.source));
     if (node.flips.empty()) return std::make_shared<const Block>(std::move(block));
     FlippedBlock flipped = apply_flips(block, node.flips);
     refused = std::move(flipped.refused);
@@ -40,16 +47,20 @@ Result<BlockPtr> block_of(const Node& node, const std::vector<BlockPtr>& childre
 
 }  // namespace
 
-Result<Evaluation> Evaluator::evaluate(const Design& design) { return evaluate(design, design.root); }
+Result<Evaluation> Evaluator::evaluate(const Design& design) {
+    return evaluate(design, design.root);
+}
 
 Result<Evaluation> Evaluator::evaluate(const Design& design, const std::string& block) {
     WEAVE_CHECK_OK(check(design));
-    if (!design.blocks.contains(block)) return bad_input("'" + block.substr(0, 80) + "' is not a block of this design");
+    if (!design.blocks.contains(block))
+        return bad_input("'" + block.substr(0, 80) + "' is not a block of this design");
     Evaluation evaluation;
     for (const std::string& name : bottom_up(design, block)) {
         WEAVE_CHECK_OK(make_known(name, design.blocks.at(name)));
         const Known& known = m_known.at(name);
-        evaluation.lost_flips.insert(evaluation.lost_flips.end(), known.lost_flips.begin(), known.lost_flips.end());
+        evaluation.lost_flips.insert(evaluation.lost_flips.end(), known.lost_flips.begin(),
+                                     known.lost_flips.end());
         evaluation.block = known.block;
     }
     std::erase_if(m_known, [&](const auto& known) { return !design.blocks.contains(known.first); });
@@ -71,6 +82,8 @@ Status Evaluator::make_known(const std::string& name, const NodePtr& node) {
     return {};
 }
 
-Result<Evaluation> evaluate(const Design& design) { return Evaluator().evaluate(design); }
+Result<Evaluation> evaluate(const Design& design) {
+    return Evaluator().evaluate(design);
+}
 
 }  // namespace weave

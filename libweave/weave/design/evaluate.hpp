@@ -1,11 +1,11 @@
 #pragma once
 
+#include <weave/design/design.hpp>
+
 #include <cstddef>
 #include <map>
 #include <string>
 #include <vector>
-
-#include <weave/design/design.hpp>
 
 namespace weave {
 
@@ -22,8 +22,9 @@ struct Evaluation {
     std::vector<LostFlip> lost_flips;  ///< of the root and of all that it is made from
 };
 
-/// Turns designs into blocks, remembering every node's block. A node is computed again only when it, or a block that it is
-/// made from, is another than last time; so after an edit only what depends on it is recomputed.
+/// Turns designs into blocks, remembering every node's block. A node is computed again only when it, or a
+/// block that it is made from, is another than last time; so after an edit only what depends on it is
+/// recomputed.
 class Evaluator {
   public:
     /// The cloth. Errors carry the place, such as `blocks.toe`.

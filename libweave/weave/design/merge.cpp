@@ -1,27 +1,29 @@
 #include <weave/design/merge.hpp>
-
 #include <weave/design/tree.hpp>
 
 namespace weave {
 
 namespace {
 
+/// `wish`, `wish-2`, `wish-3` …, never longer than a block name may be.
+std::string numbered(const std::string& wish, std::size_t k) {
+    return k < 2 ? wish : wish.substr(0, 48) + "-" + std::to_string(k);
+}
+
 /// The name under which `node` goes into the design: that of an equal block, or a free one.
 std::string place_for(const Design& design, const std::string& wish, const Node& node) {
-    std::string name = wish;
-    for (std::size_t k = 2; design.blocks.contains(name); ++k) {
-        if (*design.blocks.at(name) == node) return name;
-        name = wish + "-" + std::to_string(k);
+    for (std::size_t k = 1;; ++k) {
+        const auto there = design.blocks.find(numbered(wish, k));
+        if (there == design.blocks.end() || *there->second == node) return numbered(wish, k);
     }
-    return name;
 }
 
 }  // namespace
 
 std::string free_name(const Design& design, const std::string& wish) {
-    std::string name = wish;
-    for (std::size_t k = 2; design.blocks.contains(name); ++k) name = wish + "-" + std::to_string(k);
-    return name;
+    std::size_t k = 1;
+    while (design.blocks.contains(numbered(wish, k))) ++k;
+    return numbered(wish, k);
 }
 
 std::string bring_in(Design& into, const Design& from) {
@@ -35,6 +37,8 @@ std::string bring_in(Design& into, const Design& from) {
     return names.at(from.root);
 }
 
-bool same_yarns(const Design& a, const Design& b) { return a.warp == b.warp && a.weft == b.weft; }
+bool same_yarns(const Design& a, const Design& b) {
+    return a.warp == b.warp && a.weft == b.weft;
+}
 
 }  // namespace weave

@@ -1,14 +1,14 @@
 #include <weave/design/node_json.hpp>
+#include <weave/design/plan_json.hpp>
 
 #include <algorithm>
-
-#include <weave/design/plan_json.hpp>
 
 namespace weave {
 
 namespace {
 
-const std::vector<std::string> kinds{"stacks", "card", "preset", "slice", "tile", "attach", "stencil", "renumber"};
+const std::vector<std::string> kinds{"stacks", "card",   "preset",  "slice",
+                                     "tile",   "attach", "stencil", "renumber"};
 const std::vector<std::string> system_names{"warp", "weft"};
 const std::vector<std::string> side_names{"under", "over"};
 constexpr std::int64_t most_times = std::int64_t{1} << 30;
@@ -44,8 +44,10 @@ Result<std::vector<std::uint32_t>> count_yarns(const Json& rows, System system) 
     const std::size_t lines = system == System::weft ? rows.size() : rows[0].size();
     std::vector<std::uint32_t> counts;
     for (std::size_t k = 0; k < lines; ++k) {
-        WEAVE_TRY(const std::string text, system == System::weft ? stack_text(rows, k, 0) : stack_text(rows, 0, k));
-        counts.push_back(static_cast<std::uint32_t>(std::count(text.begin(), text.end(), system == System::weft ? 'T' : 'P')));
+        WEAVE_TRY(const std::string text,
+                  system == System::weft ? stack_text(rows, k, 0) : stack_text(rows, 0, k));
+        counts.push_back(static_cast<std::uint32_t>(
+            std::count(text.begin(), text.end(), system == System::weft ? 'T' : 'P')));
     }
     return counts;
 }
@@ -54,9 +56,11 @@ Result<NodeSource> read_stacks(JsonReader& reader) {
     const Json& rows = reader.raw("stacks");
     const auto height = static_cast<std::size_t>(reader.integer("height", 0, 1 << 28, 0));
     WEAVE_CHECK_OK(reader.status());
-    if (!rows.is_array() || rows.empty()) return bad_input("must be a list of rows, each a list of stacks", "stacks");
+    if (!rows.is_array() || rows.empty())
+        return bad_input("must be a list of rows, each a list of stacks", "stacks");
     for (std::size_t i = 0; i < rows.size(); ++i) {
-        if (!rows[i].is_array() || rows[i].empty()) return in_list(bad_input("must be a list of stacks"), "stacks", i);
+        if (!rows[i].is_array() || rows[i].empty())
+            return in_list(bad_input("must be a list of stacks"), "stacks", i);
         if (rows[i].size() != rows[0].size()) {
             return in_list(bad_input("has " + std::to_string(rows[i].size()) + " stacks, but row 0 has " +
                                      std::to_string(rows[0].size())),
@@ -77,7 +81,8 @@ Result<NodeSource> read_stacks(JsonReader& reader) {
             cells.push_back(table.number_of(std::move(stack).value()));
         }
     }
-    WEAVE_TRY(Block block, Block::make(std::move(t), std::move(p), std::move(table).take(), std::move(cells), height));
+    WEAVE_TRY(Block block,
+              Block::make(std::move(t), std::move(p), std::move(table).take(), std::move(cells), height));
     return NodeSource(StacksLeaf{std::make_shared<const Block>(std::move(block))});
 }
 
@@ -118,8 +123,9 @@ Status read_card_row(CardImage& card, std::size_t pick, const Json& text) {
     const std::size_t padding = row.size() * 8 - card.ends();
     fine = fine && (row.back() & ((1 << padding) - 1)) == 0;
     if (fine) return {};
-    return bad_input("must be " + std::to_string(row.size() * 2) + " lower-case hexadecimal digits that stand for " +
-                     std::to_string(card.ends()) + " ends, the padding 0");
+    return bad_input("must be " + std::to_string(row.size() * 2) +
+                     " lower-case hexadecimal digits that stand for " + std::to_string(card.ends()) +
+                     " ends, the padding 0");
 }
 
 std::vector<std::uint32_t> counts_member(JsonReader& reader, const std::string& key) {
@@ -144,7 +150,8 @@ Result<NodeSource> read_card(JsonReader& reader) {
     }
     CardImage card(rows.size(), ends);
     for (std::size_t pick = 0; pick < rows.size(); ++pick) {
-        if (Status fine = read_card_row(card, pick, rows[pick]); !fine) return in_list(std::move(fine).error(), "card", pick);
+        if (Status fine = read_card_row(card, pick, rows[pick]); !fine)
+            return in_list(std::move(fine).error(), "card", pick);
     }
     leaf.card = std::make_shared<const CardImage>(std::move(card));
     return NodeSource(std::move(leaf));
@@ -171,16 +178,19 @@ Result<NodeSource> read_preset(JsonReader& reader) {
 Json write(const SliceLeaf& leaf) {
     Json positions = Json::array();
     for (const auto& position : leaf.slice.positions) positions.push_back(to_text(position));
-    return {{"dots", system_names[static_cast<std::size_t>(leaf.slice.dots)]}, {"positions", std::move(positions)}};
+    return {{"dots", system_names[static_cast<std::size_t>(leaf.slice.dots)]},
+            {"positions", std::move(positions)}};
 }
 
 Result<NodeSource> read_slice(JsonReader& reader) {
     Slice slice{static_cast<System>(reader.choice("dots", system_names)), {}};
     const Json& positions = reader.raw("positions");
     WEAVE_CHECK_OK(reader.status());
-    if (!positions.is_array()) return bad_input("must be a list of texts such as 'T0 P0 (T1) P1'", "positions");
+    if (!positions.is_array())
+        return bad_input("must be a list of texts such as 'T0 P0 (T1) P1'", "positions");
     for (std::size_t k = 0; k < positions.size(); ++k) {
-        if (!positions[k].is_string()) return in_list(bad_input("must be a text such as 'T0 P0 (T1) P1'"), "positions", k);
+        if (!positions[k].is_string())
+            return in_list(bad_input("must be a text such as 'T0 P0 (T1) P1'"), "positions", k);
         auto position = parse_slice_position(positions[k].get_ref<const std::string&>(), slice.dots);
         if (!position) return in_list(std::move(position).error(), "positions", k);
         slice.positions.push_back(std::move(position).value());
@@ -205,11 +215,14 @@ Result<NodeSource> read_tile(JsonReader& reader) {
 }
 
 Json write(const AttachOperation& attach) {
-    return {{"of", attach.of}, {"other", attach.other}, {"face", face_names()[static_cast<std::size_t>(attach.face)]}};
+    return {{"of", attach.of},
+            {"other", attach.other},
+            {"face", face_names()[static_cast<std::size_t>(attach.face)]}};
 }
 
 Result<NodeSource> read_attach(JsonReader& reader) {
-    AttachOperation attach{reader.text("of"), reader.text("other"), static_cast<Face>(reader.choice("face", face_names()))};
+    AttachOperation attach{reader.text("of"), reader.text("other"),
+                           static_cast<Face>(reader.choice("face", face_names()))};
     WEAVE_CHECK_OK(reader.status());
     return NodeSource(std::move(attach));
 }
@@ -227,17 +240,20 @@ Result<NodeSource> read_stencil(JsonReader& reader) {
     const Json& of = reader.raw("of");
     const Json& rows = reader.raw("map");
     StencilOperation stencil;
-    if (!of.is_array() || of.empty() || of.size() > 65535) return bad_input("must be a list of 1 to 65535 block names", "of");
+    if (!of.is_array() || of.empty() || of.size() > 65535)
+        return bad_input("must be a list of 1 to 65535 block names", "of");
     for (std::size_t k = 0; k < of.size(); ++k) {
         if (!of[k].is_string()) return in_list(bad_input("must be a block name"), "of", k);
         stencil.of.push_back(of[k].get<std::string>());
     }
-    if (!rows.is_array() || rows.empty()) return bad_input("must be a list of rows such as '0*12 1*3', bottom row first", "map");
+    if (!rows.is_array() || rows.empty())
+        return bad_input("must be a list of rows such as '0*12 1*3', bottom row first", "map");
     StencilMap map;
     map.rows = rows.size();
     for (std::size_t i = 0; i < rows.size(); ++i) {
         if (!rows[i].is_string()) return in_list(bad_input("must be a text such as '0*12 1*3'"), "map", i);
-        auto row = parse_sequence(rows[i].get_ref<const std::string&>(), static_cast<std::uint32_t>(of.size()));
+        auto row =
+            parse_sequence(rows[i].get_ref<const std::string&>(), static_cast<std::uint32_t>(of.size()));
         if (!row) return in_list(std::move(row).error(), "map", i);
         if (i == 0) map.columns = row->once.size();
         if (row->once.size() != map.columns) {
@@ -245,7 +261,8 @@ Result<NodeSource> read_stencil(JsonReader& reader) {
                                      std::to_string(map.columns)),
                            "map", i);
         }
-        if (Status fits = check_card_size(map.rows, map.columns); !fits) return std::move(fits).error().in("map");
+        if (Status fits = check_card_size(map.rows, map.columns); !fits)
+            return std::move(fits).error().in("map");
         map.blocks.insert(map.blocks.end(), row->once.begin(), row->once.end());
     }
     stencil.map = std::make_shared<const StencilMap>(std::move(map));
@@ -263,7 +280,8 @@ Result<NodeSource> read_renumber(JsonReader& reader) {
     renumber.of = reader.text("of");
     if (reader.has("row") == reader.has("column")) reader.fail("needs either a row or a column");
     renumber.system = reader.has("row") ? System::weft : System::warp;
-    renumber.line = static_cast<std::size_t>(reader.integer(reader.has("row") ? "row" : "column", 0, most_yarn_number));
+    renumber.line =
+        static_cast<std::size_t>(reader.integer(reader.has("row") ? "row" : "column", 0, most_yarn_number));
     for (const std::int64_t number : reader.integers("order", 0, most_yarn_number)) {
         renumber.order.push_back(static_cast<std::size_t>(number));
     }
@@ -273,14 +291,22 @@ Result<NodeSource> read_renumber(JsonReader& reader) {
 
 Result<NodeSource> read_source(std::size_t kind, JsonReader& reader) {
     switch (kind) {
-        case 0: return read_stacks(reader);
-        case 1: return read_card(reader);
-        case 2: return read_preset(reader);
-        case 3: return read_slice(reader);
-        case 4: return read_tile(reader);
-        case 5: return read_attach(reader);
-        case 6: return read_stencil(reader);
-        default: return read_renumber(reader);
+        case 0:
+            return read_stacks(reader);
+        case 1:
+            return read_card(reader);
+        case 2:
+            return read_preset(reader);
+        case 3:
+            return read_slice(reader);
+        case 4:
+            return read_tile(reader);
+        case 5:
+            return read_attach(reader);
+        case 6:
+            return read_stencil(reader);
+        default:
+            return read_renumber(reader);
     }
 }
 

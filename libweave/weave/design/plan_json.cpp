@@ -21,7 +21,8 @@ const std::string& name_of(const std::vector<std::string>& names, Enum value) {
 }
 
 template <class Enum>
-Enum enum_member(JsonReader& reader, const std::string& key, const std::vector<std::string>& names, Enum fallback) {
+Enum enum_member(JsonReader& reader, const std::string& key, const std::vector<std::string>& names,
+                 Enum fallback) {
     return static_cast<Enum>(reader.choice(key, names, static_cast<std::size_t>(fallback)));
 }
 
@@ -51,7 +52,8 @@ std::vector<YarnType> yarns_member(JsonReader& reader, const std::vector<YarnTyp
         yarn.colour = item.colour("colour", standard.colour);
         yarn.radius_mm = item.number("radius_mm", {1e-4, 100}, standard.radius_mm);
         yarn.linear_density_tex = item.number("linear_density_tex", {1e-3, 1e7}, standard.linear_density_tex);
-        yarn.stretch_stiffness_N = item.number("stretch_stiffness_N", {1e-9, 1e12}, standard.stretch_stiffness_N);
+        yarn.stretch_stiffness_N =
+            item.number("stretch_stiffness_N", {1e-9, 1e12}, standard.stretch_stiffness_N);
         yarn.bending_stiffness_N_mm2 =
             item.number("bending_stiffness_N_mm2", {0, 1e12}, standard.bending_stiffness_N_mm2);
         yarn.contact_stiffness_N_mm2 =
@@ -108,11 +110,14 @@ std::vector<FeederSet> feeder_order_member(JsonReader& reader) {
         FeederSet set;
         bool fine = parse_feeders(word.substr(0, star), set);
         if (fine && star < word.size()) {
-            const auto [end, code] = std::from_chars(word.data() + star + 1, word.data() + word.size(), count);
+            const auto [end, code] =
+                std::from_chars(word.data() + star + 1, word.data() + word.size(), count);
             fine = code == std::errc{} && end == word.data() + word.size() && count > 0;
         }
         if (!fine) {
-            reader.fail("'" + std::string(word.substr(0, 40)) + "' is not a pick's feeders such as 0, 0+1, - or 0*12", "feeder_order");
+            reader.fail(
+                "'" + std::string(word.substr(0, 40)) + "' is not a pick's feeders such as 0, 0+1, - or 0*12",
+                "feeder_order");
             return {{0}};
         }
         if (count > longest - order.size()) {
@@ -150,8 +155,9 @@ void read_fields(JsonReader& reader, Scene& scene) {
     for (JsonReader& item : reader.objects("fields", true)) {
         ForceField& field = scene.fields.emplace_back();
         const Json& centre = item.raw("centre_mm");
-        const bool three = centre.is_array() && centre.size() == 3 &&
-                           std::all_of(centre.begin(), centre.end(), [](const Json& x) { return x.is_number(); });
+        const bool three =
+            centre.is_array() && centre.size() == 3 &&
+            std::all_of(centre.begin(), centre.end(), [](const Json& x) { return x.is_number(); });
         if (three) {
             field.centre_mm = centre.get<std::array<double, 3>>();
         } else {
@@ -165,7 +171,8 @@ void read_fields(JsonReader& reader, Scene& scene) {
 
 }  // namespace
 
-Sequence sequence_member(JsonReader& reader, const std::string& key, std::size_t below, const Sequence& fallback) {
+Sequence sequence_member(JsonReader& reader, const std::string& key, std::size_t below,
+                         const Sequence& fallback) {
     if (!reader.has(key)) return fallback;
     const Result<Sequence> sequence =
         parse_sequence(reader.text(key, {}, std::size_t{1} << 24), static_cast<std::uint32_t>(below));
@@ -202,14 +209,17 @@ WarpPlan warp_from_json(JsonReader reader) {
     const Json& colours = reader.raw("colours");
     if (!colours.is_null() && !colours.is_array()) reader.fail("must be a list of colours", "colours");
     for (std::size_t k = 0; colours.is_array() && k < colours.size(); ++k) {
-        const Result<Colour> colour = parse_colour(colours[k].is_string() ? colours[k].get<std::string>() : "");
+        const Result<Colour> colour =
+            parse_colour(colours[k].is_string() ? colours[k].get<std::string>() : "");
         if (!colour) reader.fail(colour.error().message, "colours[" + std::to_string(k) + "]");
         warp.colours.push_back(colour ? *colour : Colour{});
     }
     warp.order = sequence_member(reader, "order", warp.yarns.size(), standard.order);
     warp.beam_order = sequence_member(reader, "beam_order", warp.beams.size(), standard.beam_order);
-    warp.colour_order = sequence_member(reader, "colour_order", warp.colours.size() + 1, standard.colour_order);
-    warp.density_ends_per_cm = reader.number("density_ends_per_cm", {0.01, 1e4}, standard.density_ends_per_cm);
+    warp.colour_order =
+        sequence_member(reader, "colour_order", warp.colours.size() + 1, standard.colour_order);
+    warp.density_ends_per_cm =
+        reader.number("density_ends_per_cm", {0.01, 1e4}, standard.density_ends_per_cm);
     warp.ends_per_dent =
         static_cast<std::uint32_t>(reader.integer("ends_per_dent", 1, 1000, standard.ends_per_dent));
     reader.no_others();
@@ -218,11 +228,15 @@ WarpPlan warp_from_json(JsonReader reader) {
 
 Json to_json(const WeftPlan& weft) {
     Json feeders = Json::array();
-    for (const Feeder& feeder : weft.feeders) feeders.push_back({{"name", feeder.name}, {"yarn", feeder.yarn}});
-    Json json{{"yarns", to_json(weft.yarns)}, {"feeders", feeders}, {"feeder_order", feeder_text(weft.feeder_order)}};
+    for (const Feeder& feeder : weft.feeders)
+        feeders.push_back({{"name", feeder.name}, {"yarn", feeder.yarn}});
+    Json json{{"yarns", to_json(weft.yarns)},
+              {"feeders", feeders},
+              {"feeder_order", feeder_text(weft.feeder_order)}};
     if (!weft.directions.empty()) {
         Sequence directions{{}};
-        for (const Direction direction : weft.directions) directions.once.push_back(static_cast<std::uint32_t>(direction));
+        for (const Direction direction : weft.directions)
+            directions.once.push_back(static_cast<std::uint32_t>(direction));
         json["directions"] = to_text(directions);
     }
     if (!weft.take_up.empty()) {
@@ -254,7 +268,8 @@ WeftPlan weft_from_json(JsonReader reader) {
     for (const std::uint32_t advances : sequence_member(reader, "take_up", 2, Sequence{{}}).once) {
         weft.take_up.push_back(advances == 1);
     }
-    weft.density_picks_per_cm = reader.number("density_picks_per_cm", {0.01, 1e4}, standard.density_picks_per_cm);
+    weft.density_picks_per_cm =
+        reader.number("density_picks_per_cm", {0.01, 1e4}, standard.density_picks_per_cm);
     reader.no_others();
     return weft;
 }
@@ -288,7 +303,9 @@ Json to_json(const Scene& scene) {
 Scene scene_from_json(JsonReader reader) {
     Scene scene;
     if (reader.integer("version", 1, INT64_MAX, scene_version) > scene_version) {
-        reader.fail("is newer than this program, which knows scenes up to version " + std::to_string(scene_version), "version");
+        reader.fail(
+            "is newer than this program, which knows scenes up to version " + std::to_string(scene_version),
+            "version");
     }
     scene.dx_mm = optional_number(reader, "dx_mm", {1e-6, 1e6});
     scene.dy_mm = optional_number(reader, "dy_mm", {1e-6, 1e6});

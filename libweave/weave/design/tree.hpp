@@ -1,10 +1,10 @@
 #pragma once
 
+#include <weave/design/design.hpp>
+
 #include <map>
 #include <string>
 #include <vector>
-
-#include <weave/design/design.hpp>
 
 namespace weave {
 

@@ -32,7 +32,9 @@ Result<Sequence> parse_sequence(std::string_view text, std::uint32_t below) {
             rest.remove_prefix(1);
             fine = fine && take_number(rest, count) && rest.empty() && count > 0;
         }
-        if (!fine) return bad_input("'" + std::string(word.substr(0, 40)) + "' is neither a number nor a run such as 0*12");
+        if (!fine)
+            return bad_input("'" + std::string(word.substr(0, 40)) +
+                             "' is neither a number nor a run such as 0*12");
         if (number >= below) {
             return bad_input("names number " + std::to_string(number) + ", but there are only " +
                              std::to_string(below) + ", counted from 0");
