@@ -22,16 +22,17 @@ std::string count_of(std::size_t number, const char* noun) {
     return std::to_string(number) + " " + noun + (number == 1 ? "" : "s");
 }
 
-Status check_cell(const Stack& stack, std::size_t picks, std::size_t ends, std::size_t row, std::size_t column) {
+Status check_cell(const Stack& stack, std::size_t picks, std::size_t ends, std::size_t row,
+                  std::size_t column) {
     const std::string where = cell_name(row, column);
     if (stack.wefts() != picks) {
-        return bad_input("holds " + count_of(stack.wefts(), "pick") + ", but row " + std::to_string(row) + " has " +
-                             std::to_string(picks),
+        return bad_input("holds " + count_of(stack.wefts(), "pick") + ", but row " + std::to_string(row) +
+                             " has " + std::to_string(picks),
                          where);
     }
     if (stack.warps() != ends) {
-        return bad_input("holds " + count_of(stack.warps(), "end") + ", but column " + std::to_string(column) +
-                             " has " + std::to_string(ends),
+        return bad_input("holds " + count_of(stack.warps(), "end") + ", but column " +
+                             std::to_string(column) + " has " + std::to_string(ends),
                          where);
     }
     if (Status fine = stack.check(); !fine) return std::move(fine).error().in(where);
@@ -43,14 +44,16 @@ std::vector<std::vector<std::uint8_t>> pixels_of(const Stack& stack) {
     std::vector<std::uint8_t> warps_below((stack.warps() + 7) / 8);
     std::vector<std::vector<std::uint8_t>> rows(stack.wefts());
     for (const Slot slot : stack.slots()) {
-        if (slot.is_warp()) warps_below[slot.index() / 8] |= static_cast<std::uint8_t>(0x80 >> slot.index() % 8);
+        if (slot.is_warp())
+            warps_below[slot.index() / 8] |= static_cast<std::uint8_t>(0x80 >> slot.index() % 8);
         if (slot.is_weft()) rows[slot.index()] = warps_below;
     }
     return rows;
 }
 
 /// ORs `bits` (`count` of them, padding 0) into a row of the card at bit `at`.
-void put_bits(std::span<std::uint8_t> row, std::size_t at, const std::vector<std::uint8_t>& bits, std::size_t count) {
+void put_bits(std::span<std::uint8_t> row, std::size_t at, const std::vector<std::uint8_t>& bits,
+              std::size_t count) {
     const std::size_t shift = at % 8;
     std::size_t byte = at / 8;
     for (std::size_t done = 0; done < count; done += 8, ++byte) {
@@ -62,13 +65,14 @@ void put_bits(std::span<std::uint8_t> row, std::size_t at, const std::vector<std
 
 }  // namespace
 
-Result<Block> Block::make(std::vector<std::uint32_t> t, std::vector<std::uint32_t> p, std::vector<Stack> stacks,
-                          std::vector<std::uint32_t> cells, std::size_t height) {
+Result<Block> Block::make(std::vector<std::uint32_t> t, std::vector<std::uint32_t> p,
+                          std::vector<Stack> stacks, std::vector<std::uint32_t> cells, std::size_t height) {
     assert(cells.size() == t.size() * p.size());
     Block block;
     block.m_first_pick = running_sums(t);
     block.m_first_end = running_sums(p);
-    if (block.picks() == 0 || block.ends() == 0) return bad_input("a block needs at least one pick and one end");
+    if (block.picks() == 0 || block.ends() == 0)
+        return bad_input("a block needs at least one pick and one end");
     WEAVE_CHECK_OK(check_card_size(block.picks(), block.ends()));
     std::vector<bool> checked(stacks.size());
     for (std::size_t row = 0, cell = 0; row < t.size(); ++row) {

@@ -1,5 +1,9 @@
 #pragma once
 
+#include <weave/block/card_image.hpp>
+#include <weave/block/stack.hpp>
+#include <weave/core/result.hpp>
+
 #include <cstddef>
 #include <cstdint>
 #include <memory>
@@ -7,24 +11,22 @@
 #include <unordered_map>
 #include <vector>
 
-#include <weave/block/card_image.hpp>
-#include <weave/block/stack.hpp>
-#include <weave/core/result.hpp>
-
 namespace weave {
 
 /// A weave block {r, c, h, t, p, A} (paper, section 4.1): a tilable piece of 3D weave as an array of stacks.
 ///
-/// Row i holds t[i] picks and column j holds p[j] ends. Equal stacks are kept once: a cell is the number of its stack in
-/// a table. A full-size shoe has 400,000 cells but some hundred different stacks, so a block costs four bytes a cell
-/// and operations work on the table. A Block always obeys the yarn index constraints: make() is the only way in.
+/// Row i holds t[i] picks and column j holds p[j] ends. Equal stacks are kept once: a cell is the number of
+/// its stack in a table. A full-size shoe has 400,000 cells but some hundred different stacks, so a block
+/// costs four bytes a cell and operations work on the table. A Block always obeys the yarn index constraints:
+/// make() is the only way in.
 class Block {
   public:
-    /// Checks every constraint of the paper's section 4.1. `cells` has t.size() * p.size() entries, row by row, each an index into
-    /// `stacks`. `height` is raised to the tallest stack where it is smaller.
-    /// Errors name the first bad cell as `stacks[row][column]`.
-    static Result<Block> make(std::vector<std::uint32_t> t, std::vector<std::uint32_t> p, std::vector<Stack> stacks,
-                              std::vector<std::uint32_t> cells, std::size_t height = 0);
+    /// Checks every constraint of the paper's section 4.1. `cells` has t.size() * p.size() entries, row by
+    /// row, each an index into `stacks`. `height` is raised to the tallest stack where it is smaller. Errors
+    /// name the first bad cell as `stacks[row][column]`.
+    static Result<Block> make(std::vector<std::uint32_t> t, std::vector<std::uint32_t> p,
+                              std::vector<Stack> stacks, std::vector<std::uint32_t> cells,
+                              std::size_t height = 0);
 
     [[nodiscard]] std::size_t rows() const { return m_t.size(); }
     [[nodiscard]] std::size_t columns() const { return m_p.size(); }
@@ -76,6 +78,7 @@ using BlockPtr = std::shared_ptr<const Block>;
 class StackTable {
   public:
     std::uint32_t number_of(Stack stack);
+    [[nodiscard]] const Stack& at(std::uint32_t number) const { return m_stacks[number]; }
     /// The table so far; the object must not be used afterwards.
     [[nodiscard]] std::vector<Stack> take() && { return std::move(m_stacks); }
 
@@ -86,8 +89,8 @@ class StackTable {
 
 /// A block from a function that gives the stack of each cell.
 template <class StackOfCell>
-Result<Block> make_block(std::vector<std::uint32_t> t, std::vector<std::uint32_t> p, StackOfCell stack_of_cell,
-                         std::size_t height = 0) {
+Result<Block> make_block(std::vector<std::uint32_t> t, std::vector<std::uint32_t> p,
+                         StackOfCell stack_of_cell, std::size_t height = 0) {
     StackTable table;
     std::vector<std::uint32_t> cells;
     cells.reserve(t.size() * p.size());

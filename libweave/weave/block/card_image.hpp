@@ -1,12 +1,12 @@
 #pragma once
 
+#include <weave/core/result.hpp>
+
 #include <cstddef>
 #include <cstdint>
 #include <span>
 #include <string>
 #include <vector>
-
-#include <weave/core/result.hpp>
 
 namespace weave {
 
@@ -14,9 +14,9 @@ namespace weave {
 inline constexpr std::uint64_t most_crossings = std::uint64_t{1} << 30;
 
 /// The card image I of a weave (paper, section 4.1): one row per pick, one column per end.
-/// A pixel is true (1, white) where the weft lies over the warp, false (0, black) where the end is lifted over the weft.
-/// Bits are packed as they are hashed: rows from the first pick on, most significant bit first, each row padded to
-/// whole bytes with 0.
+/// A pixel is true (1, white) where the weft lies over the warp, false (0, black) where the end is lifted
+/// over the weft. Bits are packed as they are hashed: rows from the first pick on, most significant bit
+/// first, each row padded to whole bytes with 0.
 class CardImage {
   public:
     CardImage() = default;

@@ -16,6 +16,15 @@ std::string named(const std::vector<Slot>& yarns, std::size_t first_pick, std::s
     return text;
 }
 
+/// Whether the weft stands above the warp; both in the stack.
+bool lies_over(const Stack& stack, std::size_t weft, std::size_t warp) {
+    for (const Slot slot : stack.slots()) {
+        if (slot.is_warp() && slot.index() == warp) return true;
+        if (slot.is_weft() && slot.index() == weft) return false;
+    }
+    return false;
+}
+
 }  // namespace
 
 FlippedStack flip(const Stack& stack, std::size_t weft, std::size_t warp) {
@@ -50,25 +59,49 @@ FlippedStack flip(const Stack& stack, std::size_t weft, std::size_t warp) {
     return {true, Stack(std::move(slots)), {}};
 }
 
+FlippedBlock apply_flips(const Block& block, std::span<const Flip> flips) {
+    StackTable table;
+    std::vector<std::uint32_t> moved;
+    for (const Stack& stack : block.stacks()) moved.push_back(table.number_of(stack));
+    std::vector<std::uint32_t> cells;
+    cells.reserve(block.cells().size());
+    for (const std::uint32_t cell : block.cells()) cells.push_back(moved[cell]);
+
+    std::vector<RefusedFlip> refused;
+    for (const Flip& wish : flips) {
+        const std::string pair =
+            "pick " + std::to_string(wish.pick + 1) + " and end " + std::to_string(wish.end + 1);
+        if (wish.pick >= block.picks() || wish.end >= block.ends()) {
+            refused.push_back({wish, "there is no crossing of " + pair + ": the block has " +
+                                         std::to_string(block.picks()) + " picks and " +
+                                         std::to_string(block.ends()) + " ends"});
+            continue;
+        }
+        const std::size_t row = block.row_of_pick(wish.pick), column = block.column_of_end(wish.end);
+        const std::size_t first_pick = block.first_pick(row), first_end = block.first_end(column);
+        std::uint32_t& cell = cells[row * block.columns() + column];
+        const Stack stack = table.at(cell);
+        if (lies_over(stack, wish.pick - first_pick, wish.end - first_end) == wish.weft_over) continue;
+        FlippedStack flipped = flip(stack, wish.pick - first_pick, wish.end - first_end);
+        if (flipped.valid) {
+            cell = table.number_of(std::move(flipped.stack));
+        } else {
+            refused.push_back({wish, pair + " cannot be flipped alone: in the way stand " +
+                                         named(flipped.in_the_way, first_pick, first_end)});
+        }
+    }
+    Result<Block> made =
+        Block::make(block.t(), block.p(), std::move(table).take(), std::move(cells), block.height());
+    assert(made);  // a flip only exchanges yarns within their stack
+    return {std::move(made).value(), std::move(refused)};
+}
+
 Result<Block> flip(const Block& block, std::size_t pick, std::size_t end) {
-    const std::string pair = "pick " + std::to_string(pick + 1) + " and end " + std::to_string(end + 1);
-    if (pick >= block.picks() || end >= block.ends()) {
-        return invalid("there is no crossing of " + pair + ": the block has " + std::to_string(block.picks()) +
-                       " picks and " + std::to_string(block.ends()) + " ends");
-    }
-    const std::size_t row = block.row_of_pick(pick), column = block.column_of_end(end);
-    const std::size_t first_pick = block.first_pick(row), first_end = block.first_end(column);
-    const FlippedStack flipped = flip(block.stack(row, column), pick - first_pick, end - first_end);
-    if (!flipped.valid) {
-        return invalid(pair + " cannot be flipped alone: in the way stand " +
-                       named(flipped.in_the_way, first_pick, first_end));
-    }
-    std::vector<Stack> stacks = block.stacks();
-    std::vector<std::uint32_t> cells(block.cells().begin(), block.cells().end());
-    const auto known = std::find(stacks.begin(), stacks.end(), flipped.stack);
-    cells[row * block.columns() + column] = static_cast<std::uint32_t>(known - stacks.begin());
-    if (known == stacks.end()) stacks.push_back(flipped.stack);
-    return Block::make(block.t(), block.p(), std::move(stacks), std::move(cells), block.height());
+    const bool inside = pick < block.picks() && end < block.ends();
+    const Flip wish{pick, end, inside && !block.weft_over(pick, end)};
+    FlippedBlock flipped = apply_flips(block, std::span(&wish, 1));
+    if (!flipped.refused.empty()) return invalid(flipped.refused.front().reason);
+    return std::move(flipped.block);
 }
 
 }  // namespace weave

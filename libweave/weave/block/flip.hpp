@@ -1,28 +1,49 @@
 #pragma once
 
+#include <weave/block/block.hpp>
+
 #include <cstddef>
+#include <span>
 #include <string>
 #include <vector>
 
-#include <weave/block/block.hpp>
-
 namespace weave {
 
-/// What a flip came to. When it is not valid the stack is as it was and `in_the_way` names the yarns between the two
-/// that would have to change sides as well.
+/// What a flip came to. When it is not valid the stack is as it was and `in_the_way` names the yarns between
+/// the two that would have to change sides as well.
 struct FlippedStack {
     bool valid = false;
     Stack stack;
     std::vector<Slot> in_the_way;  ///< from the bottom up
 };
 
-/// Exchanges weft and warp of one stack (paper, Algorithm 1, with empty slots passed through): valid exactly when one
-/// pixel of the card image can change alone. Empty slots stay where they are. Both numbers count within the stack,
-/// which must hold them.
+/// Exchanges weft and warp of one stack (paper, Algorithm 1, with empty slots passed through): valid exactly
+/// when one pixel of the card image can change alone. Empty slots stay where they are. Both numbers count
+/// within the stack, which must hold them.
 FlippedStack flip(const Stack& stack, std::size_t weft, std::size_t warp);
 
-/// The block with the pixel of `pick` and `end` (from 0) inverted. Errors: a pick or end that the block does not have;
-/// a flip that is not valid, with the yarns in the way named as people count them, from 1.
+/// What one crossing is to be; pick and end from 0.
+struct Flip {
+    std::size_t pick = 0, end = 0;
+    bool weft_over = false;
+    friend bool operator==(const Flip&, const Flip&) = default;
+};
+
+/// A flip that could not be made, with the reason as a person reads it (picks and ends from 1).
+struct RefusedFlip {
+    Flip flip;
+    std::string reason;
+};
+
+/// A block after flips, made one after the other; each is made, needed no change, or is listed as refused.
+struct FlippedBlock {
+    Block block;
+    std::vector<RefusedFlip> refused;
+};
+FlippedBlock apply_flips(const Block& block, std::span<const Flip> flips);
+
+/// The block with the pixel of `pick` and `end` (from 0) inverted. Errors: a pick or end that the block does
+/// not have; a flip that is not valid, with the yarns in the way named as people count them, from 1.
 Result<Block> flip(const Block& block, std::size_t pick, std::size_t end);
 
 }  // namespace weave

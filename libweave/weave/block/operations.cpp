@@ -18,7 +18,8 @@ Counts repeated(const Counts& counts, std::size_t times, std::size_t factor) {
     return result;
 }
 
-/// `upper` on top of `lower`, which is filled up to `lower_height` with empty slots; upper's yarns count on from lower's.
+/// `upper` on top of `lower`, which is filled up to `lower_height` with empty slots; upper's yarns count on
+/// from lower's.
 Stack piled(const Stack& lower, std::size_t lower_height, const Stack& upper) {
     std::vector<Slot> slots(lower.slots().begin(), lower.slots().end());
     slots.resize(lower_height);
@@ -35,15 +36,17 @@ Stack piled_times(const Stack& stack, std::size_t height, std::size_t times) {
     return pile;
 }
 
-std::string differs(const char* line, std::size_t index, const char* yarns, std::uint32_t one, std::uint32_t other) {
+std::string differs(const char* line, std::size_t index, const char* yarns, std::uint32_t one,
+                    std::uint32_t other) {
     return std::string(line) + " " + std::to_string(index) + " has " + std::to_string(one) + " " + yarns +
            " in one block and " + std::to_string(other) + " in the other";
 }
 
 Status check_same(const Counts& one, const Counts& other, const char* line, const char* yarns) {
     if (one.size() != other.size()) {
-        return invalid("the blocks have " + std::to_string(one.size()) + " and " + std::to_string(other.size()) + " " +
-                       line + "s, which must be equal on the faces that meet");
+        return invalid("the blocks have " + std::to_string(one.size()) + " and " +
+                       std::to_string(other.size()) + " " + line +
+                       "s, which must be equal on the faces that meet");
     }
     for (std::size_t i = 0; i < one.size(); ++i) {
         if (one[i] != other[i]) return invalid("cannot attach: " + differs(line, i, yarns, one[i], other[i]));
@@ -98,8 +101,9 @@ Result<Block> attach_y(const Block& first, const Block& second) {
 Result<Block> attach_z(const Block& lower, const Block& upper) {
     if (lower.rows() != upper.rows() || lower.columns() != upper.columns()) {
         return invalid("one block has " + std::to_string(lower.rows()) + " rows and " +
-                       std::to_string(lower.columns()) + " columns, the other " + std::to_string(upper.rows()) +
-                       " and " + std::to_string(upper.columns()) + "; on top of each other they must be equal");
+                       std::to_string(lower.columns()) + " columns, the other " +
+                       std::to_string(upper.rows()) + " and " + std::to_string(upper.columns()) +
+                       "; on top of each other they must be equal");
     }
     StackTable table;
     std::map<std::pair<std::uint32_t, std::uint32_t>, std::uint32_t> known;
@@ -121,7 +125,8 @@ Result<Block> attach_z(const Block& lower, const Block& upper) {
 }
 
 Status check_stencil(std::span<const BlockPtr> blocks, const StencilMap& map) {
-    if (map.rows == 0 || map.columns == 0) return bad_input("a stencil needs at least one row and one column");
+    if (map.rows == 0 || map.columns == 0)
+        return bad_input("a stencil needs at least one row and one column");
     if (blocks.empty()) return bad_input("a stencil needs at least one block");
     assert(map.blocks.size() == map.rows * map.columns);
     for (std::size_t cell = 0; cell < map.blocks.size(); ++cell) {
@@ -136,8 +141,8 @@ Status check_stencil(std::span<const BlockPtr> blocks, const StencilMap& map) {
 }
 
 /// The picks (or ends) of each line of the stencil, on which all blocks must agree.
-Result<Counts> common_counts(std::span<const BlockPtr> blocks, std::size_t lines, const Counts& (Block::*counts)() const,
-                             const char* line, const char* yarns) {
+Result<Counts> common_counts(std::span<const BlockPtr> blocks, std::size_t lines,
+                             const Counts& (Block::*counts)() const, const char* line, const char* yarns) {
     const auto count_at = [&](const BlockPtr& block, std::size_t i) {
         const Counts& own = ((*block).*counts)();
         return own[i % own.size()];
@@ -148,18 +153,21 @@ Result<Counts> common_counts(std::span<const BlockPtr> blocks, std::size_t lines
         for (std::size_t k = 1; k < blocks.size(); ++k) {
             const std::uint32_t other = count_at(blocks[k], i);
             if (other == common[i]) continue;
-            return invalid("blocks 0 and " + std::to_string(k) + " do not fit together: " +
-                           differs(line, i, yarns, common[i], other));
+            return invalid("blocks 0 and " + std::to_string(k) +
+                           " do not fit together: " + differs(line, i, yarns, common[i], other));
         }
     }
     return common;
 }
 
-Result<Block> renumbered(const Block& block, System system, std::size_t line, std::span<const std::size_t> order) {
+Result<Block> renumbered(const Block& block, System system, std::size_t line,
+                         std::span<const std::size_t> order) {
     const bool row = system == System::weft;
     const std::size_t lines = row ? block.rows() : block.columns();
     const std::string name = row ? "row " : "column ";
-    if (line >= lines) return invalid("there is no " + name + std::to_string(line) + "; the last one is " + std::to_string(lines - 1));
+    if (line >= lines)
+        return invalid("there is no " + name + std::to_string(line) + "; the last one is " +
+                       std::to_string(lines - 1));
     const std::size_t count = row ? block.t()[line] : block.p()[line];
     std::vector<std::size_t> new_number(count, count);
     bool fits = order.size() == count;
@@ -197,13 +205,18 @@ Result<Block> renumbered(const Block& block, System system, std::size_t line, st
 Result<Block> tile(const Block& block, std::size_t x, std::size_t y, std::size_t z) {
     if (x == 0 || y == 0 || z == 0) return invalid("a block is tiled at least once in each direction");
     constexpr std::size_t most = std::size_t{1} << 31;
-    if (x > most || y > most || z > most) return invalid("a block is tiled at most 2^31 times in a direction");
-    const auto too_long = [&](std::size_t yarns, std::size_t times) { return yarns > most_crossings / times / z; };
-    if (too_long(block.picks(), x) || too_long(block.ends(), y)) return check_card_size(most_crossings, 2).error();
+    if (x > most || y > most || z > most)
+        return invalid("a block is tiled at most 2^31 times in a direction");
+    const auto too_long = [&](std::size_t yarns, std::size_t times) {
+        return yarns > most_crossings / times / z;
+    };
+    if (too_long(block.picks(), x) || too_long(block.ends(), y))
+        return check_card_size(most_crossings, 2).error();
     WEAVE_CHECK_OK(check_card_size(block.picks() * x * z, block.ends() * y * z));
     StackTable table;
     std::vector<std::uint32_t> moved;
-    for (const Stack& stack : block.stacks()) moved.push_back(table.number_of(piled_times(stack, block.height(), z)));
+    for (const Stack& stack : block.stacks())
+        moved.push_back(table.number_of(piled_times(stack, block.height(), z)));
     std::vector<std::uint32_t> cells;
     cells.reserve(block.cells().size() * x * y);
     for (std::size_t row = 0; row < block.rows() * x; ++row) {
@@ -211,8 +224,8 @@ Result<Block> tile(const Block& block, std::size_t x, std::size_t y, std::size_t
             for (const std::uint32_t cell : block.cells(row % block.rows())) cells.push_back(moved[cell]);
         }
     }
-    return Block::make(repeated(block.t(), x, z), repeated(block.p(), y, z), std::move(table).take(), std::move(cells),
-                       block.height() * z);
+    return Block::make(repeated(block.t(), x, z), repeated(block.p(), y, z), std::move(table).take(),
+                       std::move(cells), block.height() * z);
 }
 
 const std::vector<std::string>& face_names() {
@@ -222,12 +235,18 @@ const std::vector<std::string>& face_names() {
 
 Result<Block> attach(const Block& block, const Block& other, Face face) {
     switch (face) {
-        case Face::plus_x: return attach_x(block, other);
-        case Face::minus_x: return attach_x(other, block);
-        case Face::plus_y: return attach_y(block, other);
-        case Face::minus_y: return attach_y(other, block);
-        case Face::plus_z: return attach_z(block, other);
-        case Face::minus_z: return attach_z(other, block);
+        case Face::plus_x:
+            return attach_x(block, other);
+        case Face::minus_x:
+            return attach_x(other, block);
+        case Face::plus_y:
+            return attach_y(block, other);
+        case Face::minus_y:
+            return attach_y(other, block);
+        case Face::plus_z:
+            return attach_z(block, other);
+        case Face::minus_z:
+            return attach_z(other, block);
     }
     return invalid("a block has six faces");
 }

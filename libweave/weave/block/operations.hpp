@@ -1,17 +1,18 @@
 #pragma once
 
+#include <weave/block/block.hpp>
+
 #include <cstddef>
 #include <cstdint>
 #include <span>
 #include <string>
 #include <vector>
 
-#include <weave/block/block.hpp>
-
 namespace weave {
 
-/// Repeats a block x times along the rows, y times along the columns and z times in height (paper, Algorithm 5 without
-/// its misprinted factor). Within each source stack the yarns keep their order. Counts must be at least 1.
+/// Repeats a block x times along the rows, y times along the columns and z times in height (paper, Algorithm
+/// 5 without its misprinted factor). Within each source stack the yarns keep their order. Counts must be at
+/// least 1.
 Result<Block> tile(const Block& block, std::size_t x, std::size_t y, std::size_t z);
 
 /// A face of a block. +x lies after the last row, +y after the last column, +z on top.
@@ -20,12 +21,12 @@ enum class Face : std::uint8_t { plus_x, minus_x, plus_y, minus_y, plus_z, minus
 /// `+x`, `-x` and so on, by value of Face.
 const std::vector<std::string>& face_names();
 
-/// Joins `other` to that face of `block` (paper, Algorithms 2 and 3). In x both need the same p, in y the same t, in z
-/// the same numbers of rows and columns; an error names the first row or column that differs.
+/// Joins `other` to that face of `block` (paper, Algorithms 2 and 3). In x both need the same p, in y the
+/// same t, in z the same numbers of rows and columns; an error names the first row or column that differs.
 Result<Block> attach(const Block& block, const Block& other, Face face);
 
-/// Which block each stack is taken from: one entry per stack of the result. Row 0 is the bottom row of the picture,
-/// column 0 its left.
+/// Which block each stack is taken from: one entry per stack of the result. Row 0 is the bottom row of the
+/// picture, column 0 its left.
 struct StencilMap {
     std::size_t rows = 0, columns = 0;
     std::vector<std::uint16_t> blocks;  ///< rows * columns, row by row
@@ -36,13 +37,14 @@ struct StencilMap {
     friend bool operator==(const StencilMap&, const StencilMap&) = default;
 };
 
-/// Merges blocks by a stencil (paper, Algorithm 4): cell (i, j) is cell (i mod r, j mod c) of the block that the map
-/// names there. Errors: an empty map, an entry that names no block, blocks whose repeated t or p differ (the first such
-/// row or column is named).
+/// Merges blocks by a stencil (paper, Algorithm 4): cell (i, j) is cell (i mod r, j mod c) of the block that
+/// the map names there. Errors: an empty map, an entry that names no block, blocks whose repeated t or p
+/// differ (the first such row or column is named).
 Result<Block> stencil(std::span<const BlockPtr> blocks, const StencilMap& map);
 
-/// Changes the insertion order of the picks of one row: the k-th pick becomes the one that was number order[k] of that
-/// row, from 0. Permutes rows of the card image within the row of the block and changes nothing else.
+/// Changes the insertion order of the picks of one row: the k-th pick becomes the one that was number
+/// order[k] of that row, from 0. Permutes rows of the card image within the row of the block and changes
+/// nothing else.
 Result<Block> renumber_row(const Block& block, std::size_t row, std::span<const std::size_t> order);
 
 /// The same for the ends of one column.

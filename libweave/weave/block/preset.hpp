@@ -1,11 +1,11 @@
 #pragma once
 
+#include <weave/block/block.hpp>
+
 #include <cstdint>
 #include <map>
 #include <string>
 #include <vector>
-
-#include <weave/block/block.hpp>
 
 namespace weave {
 
@@ -23,7 +23,8 @@ struct PresetFamily {
     std::vector<PresetOption> options;
 };
 
-/// plain, twill, satin, sateen, rib, basket, layer-to-layer, angle-interlock, orthogonal, multi-layer and more.
+/// plain, twill, satin, sateen, rib, basket, layer-to-layer, angle-interlock, orthogonal, multi-layer and
+/// more.
 const std::vector<PresetFamily>& preset_families();
 
 /// A family and the options that differ from its defaults.
@@ -33,8 +34,8 @@ struct Preset {
     friend bool operator==(const Preset&, const Preset&) = default;
 };
 
-/// Errors: a family, option or value that does not exist, or values that do not go together (a satin move that shares a
-/// factor with its size, say), with what would be possible.
+/// Errors: a family, option or value that does not exist, or values that do not go together (a satin move
+/// that shares a factor with its size, say), with what would be possible.
 Result<Block> make_preset(const Preset& preset);
 
 }  // namespace weave

@@ -62,14 +62,16 @@ Result<Stack> parse_stack(std::string_view text, std::size_t first_pick, std::si
         const bool yarn = word[0] == 'T' || word[0] == 'P';
         if (!yarn || digits.empty() || code != std::errc{} || end != digits.data() + digits.size() ||
             number >= Slot::most_yarns) {
-            return bad_input("'" + std::string(word.substr(0, 40)) + "' is not a yarn such as T0, P12 or P3~, nor - for empty");
+            return bad_input("'" + std::string(word.substr(0, 40)) +
+                             "' is not a yarn such as T0, P12 or P3~, nor - for empty");
         }
         const std::size_t first = word[0] == 'T' ? first_pick : first_end;
         if (number < first) {
             return bad_input("holds " + std::string(word) + ", which belongs to an earlier " +
                              (word[0] == 'T' ? "row" : "column"));
         }
-        slots.push_back(word[0] == 'T' ? Slot::weft(number - first, loose) : Slot::warp(number - first, loose));
+        slots.push_back(word[0] == 'T' ? Slot::weft(number - first, loose)
+                                       : Slot::warp(number - first, loose));
     }
 }
 

@@ -1,5 +1,7 @@
 #pragma once
 
+#include <weave/core/result.hpp>
+
 #include <cstddef>
 #include <cstdint>
 #include <functional>
@@ -8,8 +10,6 @@
 #include <string_view>
 #include <vector>
 
-#include <weave/core/result.hpp>
-
 namespace weave {
 
 /// The two yarn systems of a cloth.
@@ -17,12 +17,12 @@ enum class System : std::uint8_t { warp, weft };
 
 /// One place in a stack: empty (paper's E), a weft or a warp.
 ///
-/// A yarn is counted from 0 within its own row (wefts) or column (warps) of the block, so a stack means the same
-/// wherever it stands and operations need not renumber it. The number on the loom is Block::first_pick(row) + index
-/// or Block::first_end(column) + index.
+/// A yarn is counted from 0 within its own row (wefts) or column (warps) of the block, so a stack means the
+/// same wherever it stands and operations need not renumber it. The number on the loom is
+/// Block::first_pick(row) + index or Block::first_end(column) + index.
 ///
-/// A yarn may be loose on purpose: a placeholder, or a part that is trimmed after weaving. It weaves as it lies, but
-/// checks do not ask that it binds, and trimmed pictures leave it out.
+/// A yarn may be loose on purpose: a placeholder, or a part that is trimmed after weaving. It weaves as it
+/// lies, but checks do not ask that it binds, and trimmed pictures leave it out.
 class Slot {
   public:
     static constexpr std::uint32_t most_yarns = std::uint32_t{1} << 28;
@@ -68,7 +68,8 @@ class Stack {
     /// Otherwise a sentence that names the yarn which is missing or repeated.
     [[nodiscard]] Status check() const;
 
-    /// Position of each weft (or warp) from the bottom, by its number in the cell. The stack must pass check().
+    /// Position of each weft (or warp) from the bottom, by its number in the cell. The stack must pass
+    /// check().
     [[nodiscard]] std::vector<std::size_t> positions(System system) const;
 
     friend bool operator==(const Stack& a, const Stack& b) { return a.m_slots == b.m_slots; }
@@ -82,9 +83,9 @@ struct StackHash {
     std::size_t operator()(const Stack& stack) const;
 };
 
-/// Reads a stack as people write it, bottom first: `T0 P1 P0 -` is weft 0, warp 1, warp 0 and an empty slot; a yarn
-/// that is loose on purpose has a tilde: `P2~`. Numbers count through the whole block, so the first pick and end of
-/// the cell are taken off. Errors: an unknown word, or a yarn that comes before the cell.
+/// Reads a stack as people write it, bottom first: `T0 P1 P0 -` is weft 0, warp 1, warp 0 and an empty slot;
+/// a yarn that is loose on purpose has a tilde: `P2~`. Numbers count through the whole block, so the first
+/// pick and end of the cell are taken off. Errors: an unknown word, or a yarn that comes before the cell.
 Result<Stack> parse_stack(std::string_view text, std::size_t first_pick = 0, std::size_t first_end = 0);
 
 /// The stack in the form that parse_stack reads.

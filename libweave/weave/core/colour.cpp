@@ -18,7 +18,8 @@ std::string to_text(Colour colour) {
 Result<Colour> parse_colour(std::string_view text) {
     std::uint32_t value = 0;
     const char* end = text.data() + text.size();
-    const bool shaped = text.size() == 7 && text[0] == '#' && std::isxdigit(static_cast<unsigned char>(text[1])) != 0;
+    const bool shaped =
+        text.size() == 7 && text[0] == '#' && std::isxdigit(static_cast<unsigned char>(text[1])) != 0;
     if (!shaped || std::from_chars(text.data() + 1, end, value, 16).ptr != end) {
         return bad_input("'" + std::string(text) + "' is not a colour such as #d08030");
     }

@@ -1,10 +1,10 @@
 #pragma once
 
+#include <weave/core/result.hpp>
+
 #include <cstdint>
 #include <string>
 #include <string_view>
-
-#include <weave/core/result.hpp>
 
 namespace weave {
 

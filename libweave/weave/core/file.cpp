@@ -1,12 +1,11 @@
 #include <weave/core/file.hpp>
 
-#include <fcntl.h>
-#include <sys/stat.h>
-#include <unistd.h>
-
 #include <cerrno>
 #include <cstring>
+#include <fcntl.h>
 #include <random>
+#include <sys/stat.h>
+#include <unistd.h>
 
 namespace weave {
 
@@ -78,7 +77,8 @@ fs::path real_target(const fs::path& path) {
 
 Result<std::string> read_file(const fs::path& path, std::uint64_t limit) {
     const Descriptor file(::open(path.c_str(), O_RDONLY | O_CLOEXEC | O_NONBLOCK));
-    if (file.number() < 0) return bad_input(std::string("cannot open: ") + std::strerror(errno), path.string());
+    if (file.number() < 0)
+        return bad_input(std::string("cannot open: ") + std::strerror(errno), path.string());
     struct stat facts {};
     if (::fstat(file.number(), &facts) != 0) return fault(path, "examine");
     if (!S_ISREG(facts.st_mode)) return bad_input("is not a regular file", path.string());
@@ -92,7 +92,8 @@ Result<std::string> read_file(const fs::path& path, std::uint64_t limit) {
         if (got == 0) return bytes;
         bytes.append(buffer, static_cast<std::size_t>(got));
         if (bytes.size() > limit) {
-            return bad_input("is larger than the limit of " + std::to_string(limit) + " bytes", path.string());
+            return bad_input("is larger than the limit of " + std::to_string(limit) + " bytes",
+                             path.string());
         }
     }
 }
@@ -101,7 +102,8 @@ Status write_file(const fs::path& path, std::string_view bytes) {
     const fs::path target = real_target(path);
     std::error_code ignored;
     if (fs::is_directory(target, ignored)) return system_fault("is a folder, not a file", path.string());
-    if (fs::exists(target, ignored) && !fs::is_regular_file(target, ignored)) {  // a device or pipe: no rename
+    if (fs::exists(target, ignored) &&
+        !fs::is_regular_file(target, ignored)) {  // a device or pipe: no rename
         const Descriptor file(::open(target.c_str(), O_WRONLY | O_CLOEXEC));
         if (file.number() < 0) return fault(path, "open");
         return write_all(file, bytes, path);
@@ -137,7 +139,8 @@ Status write_folder(const fs::path& folder, const std::vector<std::pair<std::str
         assert(fs::path(name).filename() == name);
         if (written) written = write_new(temporary / name, bytes);
     }
-    if (written && ::rename(temporary.c_str(), target.c_str()) != 0) written = fault(folder, "put into place");
+    if (written && ::rename(temporary.c_str(), target.c_str()) != 0)
+        written = fault(folder, "put into place");
     if (!written) {
         fs::remove_all(temporary, code);
         Error error = std::move(written).error();

@@ -1,5 +1,7 @@
 #pragma once
 
+#include <weave/core/result.hpp>
+
 #include <cstdint>
 #include <filesystem>
 #include <string>
@@ -7,14 +9,13 @@
 #include <utility>
 #include <vector>
 
-#include <weave/core/result.hpp>
-
 namespace weave {
 
 /// A file larger than this is refused by read_file unless its caller says otherwise.
 inline constexpr std::uint64_t default_file_limit = std::uint64_t{512} << 20;
 
-/// The whole content of a regular file. Errors: missing, unreadable, not a regular file, larger than `limit` bytes.
+/// The whole content of a regular file. Errors: missing, unreadable, not a regular file, larger than `limit`
+/// bytes.
 Result<std::string> read_file(const std::filesystem::path& path, std::uint64_t limit = default_file_limit);
 
 /// Writes a file whole or not at all: temporary file beside it, fsync, rename. An existing file is replaced.

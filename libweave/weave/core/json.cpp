@@ -11,9 +11,11 @@ namespace weave {
 namespace {
 
 constexpr int deepest_level = 64;
-constexpr std::size_t most_members = 4096;  // ordered objects search linearly: a bound keeps hostile files cheap
+constexpr std::size_t most_members =
+    4096;  // ordered objects search linearly: a bound keeps hostile files cheap
 
-/// Looks over the parser's shoulder and stops it at what it would accept: repeated names, and objects without end.
+/// Looks over the parser's shoulder and stops it at what it would accept: repeated names, and objects without
+/// end.
 class Watcher {
   public:
     bool operator()(nlohmann::detail::parse_event_t event, const Json& value) {
@@ -41,8 +43,10 @@ bool nests_too_deep(std::string_view text) {
     for (std::size_t i = 0; i < text.size(); ++i) {
         const char c = text[i];
         if (in_string) {
-            if (c == '\\') ++i;
-            else if (c == '"') in_string = false;
+            if (c == '\\')
+                ++i;
+            else if (c == '"')
+                in_string = false;
         } else if (c == '"') {
             in_string = true;
         } else if (c == '[' || c == '{') {
@@ -54,7 +58,8 @@ bool nests_too_deep(std::string_view text) {
     return false;
 }
 
-/// nlohmann's message without its own error number, so that it starts with the place: "line 3, column 7: ...".
+/// nlohmann's message without its own error number, so that it starts with the place: "line 3, column 7:
+/// ...".
 std::string parser_message(std::string message) {
     const auto place = message.find(" at line ");
     if (place != std::string::npos) return message.substr(place + 4);
@@ -88,13 +93,27 @@ void append_string(std::string& out, std::string_view text) {
     for (const char c : text) {
         const auto byte = static_cast<unsigned char>(c);
         switch (c) {
-            case '"': out += "\\\""; break;
-            case '\\': out += "\\\\"; break;
-            case '\b': out += "\\b"; break;
-            case '\f': out += "\\f"; break;
-            case '\n': out += "\\n"; break;
-            case '\r': out += "\\r"; break;
-            case '\t': out += "\\t"; break;
+            case '"':
+                out += "\\\"";
+                break;
+            case '\\':
+                out += "\\\\";
+                break;
+            case '\b':
+                out += "\\b";
+                break;
+            case '\f':
+                out += "\\f";
+                break;
+            case '\n':
+                out += "\\n";
+                break;
+            case '\r':
+                out += "\\r";
+                break;
+            case '\t':
+                out += "\\t";
+                break;
             default:
                 if (byte < 0x20) {
                     out += "\\u00";
@@ -126,7 +145,8 @@ void append_object(std::string& out, const Json& object) {
 
 void append(std::string& out, const Json& value) {
     switch (value.type()) {
-        case Json::value_t::object: return append_object(out, value);
+        case Json::value_t::object:
+            return append_object(out, value);
         case Json::value_t::array:
             out.push_back('[');
             for (std::size_t i = 0; i < value.size(); ++i) {
@@ -135,12 +155,18 @@ void append(std::string& out, const Json& value) {
             }
             out.push_back(']');
             return;
-        case Json::value_t::string: return append_string(out, value.get_ref<const std::string&>());
-        case Json::value_t::boolean: out += value.get<bool>() ? "true" : "false"; return;
+        case Json::value_t::string:
+            return append_string(out, value.get_ref<const std::string&>());
+        case Json::value_t::boolean:
+            out += value.get<bool>() ? "true" : "false";
+            return;
         case Json::value_t::number_integer:
         case Json::value_t::number_unsigned:
-        case Json::value_t::number_float: out += ecmascript_number(value.get<double>()); return;
-        default: out += "null";
+        case Json::value_t::number_float:
+            out += ecmascript_number(value.get<double>());
+            return;
+        default:
+            out += "null";
     }
 }
 
@@ -152,7 +178,8 @@ Result<Json> parse_json(std::string_view text) {
     }
     Watcher watcher;
     try {
-        return Json::parse(text, [&watcher](int, auto event, const Json& value) { return watcher(event, value); });
+        return Json::parse(text,
+                           [&watcher](int, auto event, const Json& value) { return watcher(event, value); });
     } catch (const nlohmann::json::exception& trouble) {
         return bad_input("is not JSON: " + parser_message(trouble.what()));
     } catch (Error& stopped) {
@@ -164,7 +191,8 @@ std::string ecmascript_number(double value) {
     assert(std::isfinite(value));
     if (value == 0) return "0";
     char buffer[40];
-    const auto end = std::to_chars(buffer, buffer + sizeof buffer, std::abs(value), std::chars_format::scientific).ptr;
+    const auto end =
+        std::to_chars(buffer, buffer + sizeof buffer, std::abs(value), std::chars_format::scientific).ptr;
     const std::string_view shortest(buffer, static_cast<std::size_t>(end - buffer));
     const auto e = shortest.find('e');
     std::string digits(shortest.substr(0, 1));
@@ -179,7 +207,8 @@ std::string ecmascript_number(double value) {
     if (count <= point && point <= 21) {
         text += digits + std::string(static_cast<std::size_t>(point - count), '0');
     } else if (0 < point && point <= 21) {
-        text += digits.substr(0, static_cast<std::size_t>(point)) + "." + digits.substr(static_cast<std::size_t>(point));
+        text += digits.substr(0, static_cast<std::size_t>(point)) + "." +
+                digits.substr(static_cast<std::size_t>(point));
     } else if (-6 < point && point <= 0) {
         text += "0." + std::string(static_cast<std::size_t>(-point), '0') + digits;
     } else {

@@ -36,7 +36,9 @@ JsonReader::JsonReader(const Json& value, std::string where, std::shared_ptr<std
     }
 }
 
-bool JsonReader::has(const std::string& key) const { return m_value->contains(key); }
+bool JsonReader::has(const std::string& key) const {
+    return m_value->contains(key);
+}
 
 std::string JsonReader::place(const std::string& key) const {
     if (key.empty()) return m_where;
@@ -75,7 +77,8 @@ std::int64_t JsonReader::integer(const std::string& key, std::int64_t low, std::
     const std::int64_t spare = fallback.value_or(low);
     const Json* member = find(key, !fallback);
     if (member == nullptr) return spare;
-    if (member->is_number_integer() && !(member->is_number_unsigned() && member->get<std::uint64_t>() > INT64_MAX)) {
+    if (member->is_number_integer() &&
+        !(member->is_number_unsigned() && member->get<std::uint64_t>() > INT64_MAX)) {
         const auto value = member->get<std::int64_t>();
         if (value >= low && value <= high) return value;
     }
@@ -91,7 +94,8 @@ bool JsonReader::boolean(const std::string& key, std::optional<bool> fallback) {
     return fallback.value_or(false);
 }
 
-std::string JsonReader::text(const std::string& key, std::optional<std::string> fallback, std::size_t longest) {
+std::string JsonReader::text(const std::string& key, std::optional<std::string> fallback,
+                             std::size_t longest) {
     const Json* member = find(key, !fallback);
     if (member == nullptr) return fallback.value_or("");
     if (!member->is_string()) {

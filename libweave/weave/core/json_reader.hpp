@@ -1,5 +1,8 @@
 #pragma once
 
+#include <weave/core/colour.hpp>
+#include <weave/core/json.hpp>
+
 #include <cstdint>
 #include <limits>
 #include <memory>
@@ -9,9 +12,6 @@
 #include <string_view>
 #include <vector>
 
-#include <weave/core/colour.hpp>
-#include <weave/core/json.hpp>
-
 namespace weave {
 
 /// An interval that a number from outside must lie in, ends included.
@@ -20,9 +20,10 @@ struct Range {
     double high = std::numeric_limits<double>::max();
 };
 
-/// Reads the members of one JSON object with checks, remembering the first error of the whole document with its path.
-/// After an error every read yields its fallback, so code that reads stays a plain list of members; `status()` then
-/// tells the truth. Each member may be read once; `no_others()` refuses what nobody asked for.
+/// Reads the members of one JSON object with checks, remembering the first error of the whole document with
+/// its path. After an error every read yields its fallback, so code that reads stays a plain list of members;
+/// `status()` then tells the truth. Each member may be read once; `no_others()` refuses what nobody asked
+/// for.
 class JsonReader {
   public:
     JsonReader(const Json& value, std::string where);
@@ -36,7 +37,8 @@ class JsonReader {
                          std::optional<std::int64_t> fallback = {});
     bool boolean(const std::string& key, std::optional<bool> fallback = {});
     /// A string of at most `longest` bytes.
-    std::string text(const std::string& key, std::optional<std::string> fallback = {}, std::size_t longest = 65536);
+    std::string text(const std::string& key, std::optional<std::string> fallback = {},
+                     std::size_t longest = 65536);
     Colour colour(const std::string& key, std::optional<Colour> fallback = {});
     /// The index into `names` of the member's text, which must be one of them.
     std::size_t choice(const std::string& key, const std::vector<std::string>& names,

@@ -23,9 +23,16 @@ struct Error {
     std::string message;  ///< a sentence without a full stop, in weavers' words
     std::string where;    ///< file and place, such as `shoe.weave: blocks.toe.stacks[3][4]`; may be empty
 
-    /// The same error seen from further out: `outer` goes in front of the place.
-    [[nodiscard]] Error in(const std::string& outer) && {
-        where = where.empty() ? outer : outer + (where.front() == '[' ? "" : ": ") + where;
+    /// The same error seen from a file: its name goes in front of the place, `shoe.weave: blocks.toe`.
+    [[nodiscard]] Error in(const std::string& file) && {
+        where = where.empty() ? file : file + ": " + where;
+        return std::move(*this);
+    }
+
+    /// The same error seen from further out in a document: `blocks.toe` and `stacks[3][4]` make
+    /// `blocks.toe.stacks[3][4]`.
+    [[nodiscard]] Error under(const std::string& path) && {
+        where = where.empty() || where.front() == '[' ? path + where : path + "." + where;
         return std::move(*this);
     }
 
@@ -88,11 +95,11 @@ class [[nodiscard]] Status {
 #define WEAVE_JOIN(a, b) WEAVE_JOIN2(a, b)
 
 /// `WEAVE_TRY(auto x, make_x());` declares x, or returns the error of make_x() from the enclosing function.
-#define WEAVE_TRY(declaration, ...)                                                              \
-    auto WEAVE_JOIN(weave_try_, __LINE__) = (__VA_ARGS__);                                       \
+#define WEAVE_TRY(declaration, ...)                                                                    \
+    auto WEAVE_JOIN(weave_try_, __LINE__) = (__VA_ARGS__);                                             \
     if (!WEAVE_JOIN(weave_try_, __LINE__)) return std::move(WEAVE_JOIN(weave_try_, __LINE__)).error(); \
     declaration = std::move(WEAVE_JOIN(weave_try_, __LINE__)).value()
 
 /// `WEAVE_CHECK_OK(check());` returns the error of a Status (or Result) from the enclosing function.
-#define WEAVE_CHECK_OK(...)                                               \
+#define WEAVE_CHECK_OK(...) \
     if (auto weave_status = (__VA_ARGS__); !weave_status) return std::move(weave_status).error()

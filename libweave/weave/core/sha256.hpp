@@ -7,8 +7,8 @@
 
 namespace weave {
 
-/// SHA-256 (FIPS 180-4) of bytes given piece by piece. Own code, because the core may need headers alone and no
-/// packaged header offers it.
+/// SHA-256 (FIPS 180-4) of bytes given piece by piece. Own code, because the core may need headers alone and
+/// no packaged header offers it.
 class Sha256 {
   public:
     void add(std::string_view bytes);

@@ -1,5 +1,14 @@
 #pragma once
 
+#include <weave/block/block.hpp>
+#include <weave/block/flip.hpp>
+#include <weave/block/operations.hpp>
+#include <weave/block/preset.hpp>
+#include <weave/block/slice.hpp>
+#include <weave/core/json.hpp>
+#include <weave/design/scene.hpp>
+#include <weave/design/yarns.hpp>
+
 #include <cstddef>
 #include <cstdint>
 #include <map>
@@ -7,14 +16,6 @@
 #include <string>
 #include <variant>
 #include <vector>
-
-#include <weave/block/block.hpp>
-#include <weave/block/operations.hpp>
-#include <weave/block/preset.hpp>
-#include <weave/block/slice.hpp>
-#include <weave/core/json.hpp>
-#include <weave/design/scene.hpp>
-#include <weave/design/yarns.hpp>
 
 namespace weave {
 
@@ -65,17 +66,11 @@ struct RenumberOperation {
 using NodeSource = std::variant<StacksLeaf, CardLeaf, PresetLeaf, SliceLeaf, TileOperation, AttachOperation,
                                 StencilOperation, RenumberOperation>;
 
-/// An edit of one crossing that a node keeps: it is applied again whenever what the node is made from changes.
-struct Flip {
-    std::size_t pick = 0, end = 0;  ///< from 0
-    bool weft_over = false;         ///< what the pixel is to be
-    friend bool operator==(const Flip&, const Flip&) = default;
-};
-
-/// One named block of a design: what it is made from, and the flips on top. Nodes never change, edits replace them.
+/// One named block of a design: what it is made from, and the flips on top. Nodes never change, edits replace
+/// them.
 struct Node {
     NodeSource source;
-    std::vector<Flip> flips;
+    std::vector<Flip> flips;  ///< applied again whenever what the node is made from changes
 };
 using NodePtr = std::shared_ptr<const Node>;
 
@@ -85,25 +80,31 @@ std::vector<std::string> children_of(const Node& node);
 /// Equal in meaning: the same source and flips.
 bool operator==(const Node& a, const Node& b);
 
-/// A whole design: named blocks that form a directed graph without cycles, one of them the cloth, and how it is woven.
+/// A whole design: named blocks that form a directed graph without cycles, one of them the cloth, and how it
+/// is woven.
 struct Design {
     std::string title;
     std::string notes;
-    std::string root;                      ///< the block that is the cloth
+    std::string root;  ///< the block that is the cloth
     std::map<std::string, NodePtr> blocks;
     WarpPlan warp = default_warp();
     WeftPlan weft = default_weft();
     Scene scene;
-    Json view = Json::object();            ///< whatever a program with windows wants to find again; never hashed
+    Json view = Json::object();  ///< whatever a program with windows wants to find again; never hashed
 
     friend bool operator==(const Design& a, const Design& b);
 };
 
+/// Limits of what a document holds, so that whatever is written can be read again.
+inline constexpr std::size_t most_blocks = 4096;
+inline constexpr std::size_t longest_title = 1000, longest_notes = 65536, longest_yarn_name = 200;  ///< bytes
+
 /// Block names: 1 to 64 letters, digits, '-', '_' or '.', the first a letter or digit.
 Status check_block_name(const std::string& name);
 
-/// Everything that can be said without evaluating: a root that exists, children that exist, no cycle (named as a chain of
-/// blocks), indices of yarns, feeders and beams in range, numbers finite and in their ranges.
+/// Everything that can be said without evaluating: a root that exists, children that exist, no cycle (named
+/// as a chain of blocks), indices of yarns, feeders and beams in range, numbers finite and in their ranges,
+/// texts and lists no longer than a document may hold.
 Status check(const Design& design);
 
 }  // namespace weave

@@ -1,21 +1,22 @@
 #pragma once
 
+#include <weave/design/design.hpp>
+
 #include <filesystem>
 #include <string>
 #include <string_view>
-
-#include <weave/design/design.hpp>
 
 namespace weave {
 
 /// The version of the `.weave` format that this library writes; it reads this one and all before it.
 inline constexpr int document_version = 1;
 
-/// A design as a `.weave` document (specification: FORMAT.md beside this file). Reading what write_document made gives an equal
-/// design, and writing it again the same bytes.
+/// A design as a `.weave` document (specification: FORMAT.md beside this file). Reading what write_document
+/// made gives an equal design, and writing it again the same bytes.
 std::string write_document(const Design& design);
 
-/// Reads a `.weave` document and checks it (see check()). Errors name the place, such as `blocks.toe.stacks[3][4]`.
+/// Reads a `.weave` document and checks it (see check()). Errors name the place, such as
+/// `blocks.toe.stacks[3][4]`.
 Result<Design> read_document(std::string_view text);
 
 /// The same from and to a file; errors name it. Saving replaces the file whole or leaves it as it was.

@@ -1,9 +1,9 @@
 #pragma once
 
+#include <weave/design/design.hpp>
+
 #include <string>
 #include <variant>
-
-#include <weave/design/design.hpp>
 
 namespace weave {
 
@@ -45,11 +45,11 @@ struct SetScene {
     Scene scene;
 };
 
-using Edit = std::variant<PutBlock, RemoveBlock, RenameBlock, SetRoot, PutFlip, RemoveFlip, SetTitle, SetWarp, SetWeft,
-                          SetScene>;
+using Edit = std::variant<PutBlock, RemoveBlock, RenameBlock, SetRoot, PutFlip, RemoveFlip, SetTitle, SetWarp,
+                          SetWeft, SetScene>;
 
-/// Makes an edit and gives the edit that undoes it exactly. On an error (unknown block, a cycle that would arise, a
-/// block still in use) the design is unchanged.
+/// Makes an edit and gives the edit that undoes it exactly. On an error (unknown block, a cycle that would
+/// arise, a block still in use) the design is unchanged.
 Result<Edit> apply(Design& design, const Edit& edit);
 
 /// An edit as one JSON object and back, for journals and messages.

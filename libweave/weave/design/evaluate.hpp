@@ -1,11 +1,11 @@
 #pragma once
 
+#include <weave/design/design.hpp>
+
 #include <cstddef>
 #include <map>
 #include <string>
 #include <vector>
-
-#include <weave/design/design.hpp>
 
 namespace weave {
 
@@ -22,8 +22,10 @@ struct Evaluation {
     std::vector<LostFlip> lost_flips;  ///< of the root and of all that it is made from
 };
 
-/// Turns designs into blocks, remembering every node's block. A node is computed again only when it, or a block that it is
-/// made from, is another than last time; so after an edit only what depends on it is recomputed.
+/// Turns designs into blocks, remembering every node's block. A node is computed again only when it, or a
+/// block that it is made from, is not remembered; so after an edit only what depends on it is recomputed, and
+/// undoing an edit computes nothing. Of each name the latest versions are remembered: up to 8, fewer of large
+/// blocks.
 class Evaluator {
   public:
     /// The cloth. Errors carry the place, such as `blocks.toe`.
@@ -41,8 +43,9 @@ class Evaluator {
         BlockPtr block;
         std::vector<LostFlip> lost_flips;
     };
-    Result<const Known*> known(const Design& design, const std::string& name, std::vector<std::string>& path);
-    std::map<std::string, Known> m_known;
+    Status make_known(const std::string& name, const NodePtr& node);
+    [[nodiscard]] const Known& known(const std::string& name) const { return m_known.at(name).front(); }
+    std::map<std::string, std::vector<Known>> m_known;  ///< of each name its versions, the latest first
     std::size_t m_computed = 0;
 };
 

@@ -9,20 +9,25 @@
 
 namespace weave {
 
+/// No yarn has a larger number, from 0.
+inline constexpr std::int64_t most_yarn_number = (std::int64_t{1} << 28) - 1;
+
 /// How the rim of the simulated piece behaves in one direction.
 enum class Boundary : std::uint8_t { periodic, frozen, free };
 
-/// Whether each pick runs from edge to edge, or the picks of a feeder are one yarn that turns where an end catches it.
+/// Whether each pick runs from edge to edge, or the picks of a feeder are one yarn that turns where an end
+/// catches it.
 enum class WeftMode : std::uint8_t { periodic, wraparound };
 
 /// How the loom inserts the weft.
 enum class Insertion : std::uint8_t { shuttle, rapier, air_jet };
 
-/// Parameters of one yarn system that override its yarn types for the simulation; what is absent follows the types.
+/// Parameters of one yarn system that override its yarn types for the simulation; what is absent follows the
+/// types.
 struct SystemScene {
-    std::optional<double> strain;            ///< target strain S >= 1 of the balanced yarns
-    std::optional<double> stiffness_scale;   ///< factor on EA and EI
-    std::optional<double> radius_scale;      ///< factor on the radii
+    std::optional<double> strain;           ///< target strain S >= 1 of the balanced yarns
+    std::optional<double> stiffness_scale;  ///< factor on EA and EI
+    std::optional<double> radius_scale;     ///< factor on the radii
     friend bool operator==(const SystemScene&, const SystemScene&) = default;
 };
 
@@ -41,7 +46,8 @@ struct ForceField {
     friend bool operator==(const ForceField&, const ForceField&) = default;
 };
 
-/// What the simulator needs to know beyond the weave itself. Everything has a default that comes from the yarns.
+/// What the simulator needs to know beyond the weave itself. Everything has a default that comes from the
+/// yarns.
 struct Scene {
     std::optional<double> dx_mm, dy_mm, dz_mm;  ///< spacing of rows, columns and levels
     Boundary boundary_x = Boundary::periodic, boundary_y = Boundary::periodic;
@@ -50,7 +56,7 @@ struct Scene {
     SystemScene warp, weft;
     std::vector<Pin> pins;
     std::vector<ForceField> fields;
-    double friction = 0;       ///< Coulomb coefficient
+    double friction = 0;  ///< Coulomb coefficient
     bool gravity = false;
     friend bool operator==(const Scene&, const Scene&) = default;
 };

@@ -1,17 +1,18 @@
 #pragma once
 
+#include <weave/block/card_image.hpp>
+#include <weave/core/colour.hpp>
+
 #include <cstdint>
 #include <filesystem>
 #include <string>
 #include <string_view>
 #include <vector>
 
-#include <weave/block/card_image.hpp>
-#include <weave/core/colour.hpp>
-
 namespace weave {
 
-/// How a bilevel picture stands for a card. The default is ours: bottom row = pick 1, left column = end 1, black = end lifted.
+/// How a bilevel picture stands for a card. The default is ours: bottom row = pick 1, left column = end 1,
+/// black = end lifted.
 struct BitmapReading {
     bool pick_1_at_bottom = true;
     bool end_1_at_left = true;
@@ -23,12 +24,15 @@ enum class BitmapFormat : std::uint8_t { png, tiff, bmp };
 /// By the file's extension (.png, .tif, .tiff, .bmp, either case).
 Result<BitmapFormat> bitmap_format_of(const std::filesystem::path& path);
 
-/// A card as a bilevel picture file: PNG of one bit grey, TIFF as mills' looms take it (little-endian, one bit, uncompressed,
-/// WhiteIsZero, one strip), BMP of one bit. What the reading means is written into PNG text and the TIFF description.
-Result<std::string> write_bitmap(const CardImage& card, BitmapFormat format, const BitmapReading& reading = {});
+/// A card as a bilevel picture file: PNG of one bit grey, TIFF as mills' looms take it (little-endian, one
+/// bit, uncompressed, WhiteIsZero, one strip), BMP of one bit. What the reading means is written into PNG
+/// text and the TIFF description.
+Result<std::string> write_bitmap(const CardImage& card, BitmapFormat format,
+                                 const BitmapReading& reading = {});
 
-/// A card from such a file, whatever its format, recognised by its first bytes. Pictures that are not bilevel (two colours,
-/// black and white) are refused, with the first pixel that is neither. Warnings tell what was odd.
+/// A card from such a file, whatever its format, recognised by its first bytes. Pictures that are not bilevel
+/// (two colours, black and white) are refused, with the first pixel that is neither. Warnings tell what was
+/// odd.
 struct CardFromBitmap {
     CardImage card;
     std::vector<std::string> warnings;

@@ -34,7 +34,15 @@ enum class HookRule : std::uint8_t { straight, point, repeats, list };
 /// What the file for the controller looks like.
 enum class OutputFormat : std::uint8_t { tiff, png, bmp, jc5, ep, raw };
 
+/// How the file tells the loom which feeder a pick takes: not at all (a hand picks it), one function bit a feeder, the
+/// feeder's number in function bits, or one hook a feeder among the hooks.
 enum class FeederEncoding : std::uint8_t { none, one_hot, binary, hooks };
+
+/// What a hook does on this loom.
+enum class HookUse : std::uint8_t { cast_out, body, selvedge, constant_on, feeder, regulator };
+
+/// No loom of this library has more hooks.
+inline constexpr std::size_t most_hooks = 65536;
 
 /// Limits that validation holds a design to. Absent means: this loom does not limit it.
 struct LoomLimits {
@@ -49,7 +57,8 @@ struct LoomLimits {
 /// One loom with its harness and controller, as one validated, versioned JSON file (see PROFILE.md beside this file).
 struct LoomProfile {
     std::string name, maker;
-    std::string version;                         ///< of this profile, as its keeper counts
+    std::string version;                         ///< of this profile, as its keeper counts (member `revision`)
+    std::string notes;                           ///< what is known about this loom, and what is not
     Insertion insertion = Insertion::shuttle;
 
     std::vector<HookArea> areas;                 ///< ordered; their sum is total_hooks
@@ -63,7 +72,7 @@ struct LoomProfile {
 
     std::size_t feeders = 1;
     FeederEncoding feeder_encoding = FeederEncoding::none;
-    std::vector<std::size_t> feeder_hooks;       ///< for FeederEncoding::hooks, and others that need places
+    std::vector<std::size_t> feeder_hooks;       ///< hooks: the hook of each feeder; one_hot, binary: the function bits
     std::size_t feeders_per_pick = 1;
     std::vector<std::size_t> regulator_hooks;    ///< hooks that stop the take-up when lifted
 
@@ -87,8 +96,18 @@ struct LoomProfile {
 Result<LoomProfile> read_profile(std::string_view text);
 Result<LoomProfile> load_profile(const std::filesystem::path& path);
 
-/// How many ends this loom can carry, and the hooks (from 0) of end `end` out of `ends`.
+/// How many ends this loom can carry: all body hooks (straight), half of them and the tip (point), their share of each
+/// repeat (repeats), or as many as are listed (list).
 std::size_t most_ends(const LoomProfile& profile);
+
+/// The hooks (from 0) that lift end `end` of a design with `ends` ends, none where it does not fit. Straight and list: one.
+/// Point: the end's own and its mirror image's; the last end is the tip and stands once. Repeats: one in each repeat.
 std::vector<std::size_t> hooks_of_end(const LoomProfile& profile, std::size_t end, std::size_t ends);
+
+/// What each hook is for; whatever the profile does not name is cast out.
+std::vector<HookUse> hook_uses(const LoomProfile& profile);
+
+/// Whether a selvedge hook is lifted on a pick. `place` counts the selvedge hooks from the first, `pick` from 0.
+bool selvedge_lifted(const LoomProfile& profile, std::size_t place, std::size_t pick);
 
 }  // namespace weave

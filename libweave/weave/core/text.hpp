@@ -1,0 +1,16 @@
+#pragma once
+
+#include <cstdint>
+#include <optional>
+#include <string>
+#include <string_view>
+
+namespace weave {
+
+/// The whole number that `text` is, all of it; nothing otherwise.
+std::optional<std::int64_t> parse_whole(std::string_view text);
+
+/// `1 pick`, `2 picks`.
+std::string counted(std::size_t number, const std::string& noun);
+
+}  // namespace weave

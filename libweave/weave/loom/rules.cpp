@@ -1,0 +1,44 @@
+#include <weave/loom/check.hpp>
+
+namespace weave {
+
+const std::vector<Rule>& rules() {
+    using enum Severity;
+    static const std::vector<Rule> all{
+        {"block.constraints", error, "every stack holds each pick of its row and each end of its column exactly once"},
+        {"flips.apply", error, "every flip of the design still applies"},
+        {"float.face", warning, "no float on the face is longer than the loom's limit"},
+        {"float.back", warning, "no float on the back is longer than the loom's limit"},
+        {"bind.pick", error, "every pick that is not loose on purpose passes over one end and under another in a repeat"},
+        {"bind.end", error, "every end that is not loose on purpose passes over one pick and under another in a repeat"},
+        {"hooks.fit", error, "the loom has a hook for every end"},
+        {"hooks.castout", error, "cast-out hooks, and hooks that serve something else, carry no end and never lift"},
+        {"hooks.read-back", error, "the lifts of the hooks, read back, give the card image again"},
+        {"picks.limit", error, "the design has no more picks than one file holds"},
+        {"name.limit", warning, "the title fits the name field of the file"},
+        {"feeders.per-pick", error, "no pick takes more feeders than the loom can present at once"},
+        {"feeders.none", error, "a pick without weft only takes up"},
+        {"feeders.range", error, "the loom has every feeder that the picks ask for"},
+        {"lift.balance", warning, "the share of lifted ends does not change too much from pick to pick"},
+        {"lift.share", warning, "no pick lifts too large a share of the ends"},
+        {"lift.face-down", info, "whether the loom would lift less with the face of the cloth down"},
+        {"insertion.match", warning, "the loom inserts the weft as the design was drawn for"},
+        {"selvedge.needed", warning, "a loom that cuts each pick has hooks for a selvedge"},
+        {"selvedge.binds", error, "every selvedge hook and every pick of the selvedge binds"},
+        {"turn.caught", error, "every turn of a shuttle's weft is caught by an end or a pick"},
+        {"turn.crossed", error, "the two turns of a pick do not pull past each other"},
+        {"turn.box", error, "the shuttle stands on the side where its next pick starts"},
+        {"turn.cut", warning, "a design whose weft turns in the cloth is woven with a shuttle"},
+        {"repeat.doubled", info, "each feeder's picks come out even, so that the repeat continues in the same direction"},
+        {"take-up.stop", error, "the cloth stands still between the picks of one row and advances after the last"},
+        {"take-up.regulator", info, "the loom has a hook that stops the take-up where the design needs it"},
+        {"take-up.beam", warning, "the ends of one beam take up alike"},
+        {"reed.width", error, "the warp is not wider than the reed"},
+        {"reed.dents", info, "the ends fill the last dent of the reed"},
+        {"warp.density", warning, "the warp has the density of the harness"},
+        {"consumption", info, "yarn used from each cone and beam"},
+    };
+    return all;
+}
+
+}  // namespace weave

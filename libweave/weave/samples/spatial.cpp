@@ -1,0 +1,237 @@
+#include <array>
+
+#include <weave/samples/build.hpp>
+#include <weave/samples/makers.hpp>
+
+namespace weave::sample {
+
+namespace {
+
+/// Four layers, each with one weft a row and one end a column; wall k of the honeycomb joins layers k and k + 1.
+NodePtr tube_layers(std::size_t rows, const std::array<bool, 3>& joined) {
+    return stacks(rows, 2, 4, 4, [&](std::size_t i, std::size_t j) {
+        std::array<End, 4> ends;
+        for (std::size_t layer = 0; layer < 4; ++layer) {
+            const bool up = (i + j + layer) % 2 == 0;
+            // Within its own layer an end lies over or under one weft, in a joined wall over or under two.
+            const std::size_t low = layer > 0 && joined[layer - 1] ? layer - 1 : layer;
+            const std::size_t high = layer < 3 && joined[layer] ? layer + 2 : layer + 1;
+            ends[layer] = at(up ? high : low);
+        }
+        return cell(4, ends);
+    });
+}
+
+}  // namespace
+
+Design hexagon_tubes() {
+    Design design = cloth("Hexagon tubes",
+                          "Four layers that join in pairs and part again along the warp, so that the cells between them open "
+                          "to hexagons: first layers 1 and 2, and 3 and 4, are one wall each, then 2 and 3. The "
+                          "outermost wefts are pinned, which stands for whatever keeps the cloth from collapsing under "
+                          "warp tension. The paper shows its section; the weave was built from that description.",
+                          yarn("glass warp", "#e08a2c", 0.15, 136, 6000, 0.3),
+                          yarn("glass weft", "#8f959b", 0.2, 200, 9000, 0.6));
+    design.warp.beams = {{"layer 1"}, {"layer 2"}, {"layer 3"}, {"layer 4"}};
+    design.warp.beam_order.once = {0, 1, 2, 3};
+    design.warp.colour_order.once = {0, 1, 2, 3};
+    design.warp.colours = {colour("#3f6fb0"), colour("#b0413f"), colour("#5a9b4a")};
+    design.warp.density_ends_per_cm = 32;
+    design.warp.ends_per_dent = 4;
+    design.weft.density_picks_per_cm = 10;
+    add(design, "outer-walls", tube_layers(6, {true, false, true}));
+    add(design, "apart", tube_layers(6, {false, false, false}));
+    add(design, "inner-wall", tube_layers(6, {false, true, false}));
+    add(design, "half-cell", attached("outer-walls", "apart", Face::plus_x));
+    add(design, "other-half", attached("inner-wall", "apart", Face::plus_x));
+    add(design, "cell", attached("half-cell", "other-half", Face::plus_x));
+    add(design, "tubes", tiled("cell", 1, 2));
+    for (std::size_t row = 0; row < 24; ++row) {
+        design.scene.pins.push_back({true, 4 * row});
+        design.scene.pins.push_back({true, 4 * row + 3});
+    }
+    return design;
+}
+
+namespace {
+
+/// TL013 has six wefts a row: 0 and 1 are the plies of the lower double cloth, 2 and 3 the lower and upper section of
+/// the zigzag layer, 4 and 5 the plies of the upper double cloth. Of the five ends of a column end 2 is the zigzag.
+constexpr std::size_t tl013_rows = 16, tl013_columns = 8, zigzag_end = 2, upper_section_weft = 3;
+
+/// Heights of the zigzag in the wrong version. Between the binding points below (1) and above (5) it should cross the
+/// upper section at the same distance on its way up and down; here both crossings come one row early.
+constexpr std::array<std::size_t, 8> leaning_zigzag{1, 2, 4, 4, 5, 3, 3, 2};
+constexpr std::array<std::size_t, 8> upright_zigzag{1, 2, 3, 4, 5, 4, 3, 2};
+
+/// Every other end starts half a zigzag later, so that the ends cross like the struts of a girder.
+constexpr std::size_t zigzag_step(std::size_t row, std::size_t column) { return (row + 4 * (column % 2)) % 8; }
+
+Stack tl013_stack(std::size_t i, std::size_t j) {
+    const bool up = (i + j) % 2 == 0;
+    // On a few points the inner ply of a double cloth binds the outer ply's weft: the plies are stitched.
+    const bool stitch = (3 * i + j) % 8 == 3;
+    return cell(6, {at(up ? 1 : 0), at(up ? (stitch ? 0 : 1) : 2), at(leaning_zigzag[zigzag_step(i, j)]),
+                    at(up ? 4 : (stitch ? 6 : 5)), at(up ? 6 : 5)});
+}
+
+Design tl013(std::string title, std::string notes) {
+    Design design = cloth(std::move(title), std::move(notes), cotton("surface warp", "#e08a2c", 0.1, 25),
+                          yarn("thick weft", "#8f959b", 0.3, 220, 500, 0.05));
+    design.warp.yarns.push_back(yarn("zigzag monofilament", "#3f6fb0", 0.1, 40, 120, 0.02));
+    design.warp.order.once = {0, 0, 1, 0, 0};
+    design.warp.beams = {{"lower cloth"}, {"zigzag"}, {"upper cloth"}};
+    design.warp.beam_order.once = {0, 0, 1, 2, 2};
+    design.warp.density_ends_per_cm = 50;
+    design.warp.ends_per_dent = 5;
+    design.weft.density_picks_per_cm = 8;
+    add(design, "tl013", stacks(tl013_rows, tl013_columns, 6, 5, tl013_stack));
+    return design;
+}
+
+}  // namespace
+
+Design tl013_wrong() {
+    return tl013("TL013, wrong",
+                 "Two double cloths joined by a zigzag layer, wefts three times as thick as the warp. The error: on its "
+                 "way up and on its way down each zigzag end crosses the weft of the upper section (pick 4 of the row) "
+                 "one row early, so the upper section leans. The weave of the paper's TL013 is not printed; this one was "
+                 "built from its description and section.");
+}
+
+Design tl013_corrected() {
+    Design design = tl013("TL013, corrected",
+                          "The wrong version with two crossings of each zigzag end flipped in every zigzag: the ones with "
+                          "the weft of the upper section (pick 4 of the row) in the third and in the sixth row of the "
+                          "zigzag. Now it stands upright.");
+    auto corrected = std::make_shared<Node>(*design.blocks.at("tl013"));
+    for (std::size_t i = 0; i < tl013_rows; ++i) {
+        for (std::size_t j = 0; j < tl013_columns; ++j) {
+            const std::size_t step = zigzag_step(i, j);
+            if (leaning_zigzag[step] == upright_zigzag[step]) continue;
+            corrected->flips.push_back({6 * i + upper_section_weft, 5 * j + zigzag_end,
+                                        upright_zigzag[step] <= upper_section_weft});
+        }
+    }
+    design.blocks["tl013"] = std::move(corrected);
+    return design;
+}
+
+namespace {
+
+constexpr std::size_t pocket_columns = 25, pocket_rows = 35, seam_rows = 5;
+
+/// Weft 0 and end 0 are the back, weft 1 and end 1 the front; the front is a 2/3 satin, the back a 4/1 twill.
+Stack pocket_stack(std::size_t i, std::size_t j) {
+    const std::size_t satin = (j + 3 * i) % 5;
+    return cell(2, {at((j + 5 - i) % 5 == 0 ? 1 : 0), at(satin < 2 ? 1 : 2)});
+}
+
+/// Every end goes over both wefts or under both, so the seam is one cloth.
+Stack seam_stack(std::size_t i, std::size_t j) {
+    const bool up = (i + j) % 2 == 0;
+    return cell(2, {at(up ? 0 : 2), at(up ? 2 : 0)});
+}
+
+}  // namespace
+
+Design pocket() {
+    Design design = cloth("Pocket",
+                          "Two layers, open on one side only. One shuttle weaves back and front in turn, so its turns close "
+                          "both long sides; in the first rows both layers are woven as one, which closes the bottom; "
+                          "the last row is the mouth. The spheres push it open. Sizes and weaves follow "
+                          "the paper's user study (25 ends and 35 picks a layer, a 2/3 satin and a 4/1 twill); its "
+                          "figure does not print the weave.",
+                          cotton("front warp", "#e08a2c", 0.15, 50), cotton("weft", "#8f959b", 0.15, 50));
+    design.warp.yarns.push_back(cotton("back warp", "#3f6fb0", 0.15, 50));
+    design.warp.order.once = {1, 0};
+    design.warp.density_ends_per_cm = 40;
+    design.warp.ends_per_dent = 4;
+    design.weft.density_picks_per_cm = 20;
+    add(design, "layers", stacks(5, 5, 2, 2, pocket_stack));
+    add(design, "body", tiled("layers", pocket_rows / 5, pocket_columns / 5));
+    add(design, "seam", stacks(seam_rows, pocket_columns, 2, 2, seam_stack));
+    add(design, "pocket", attached("body", "seam", Face::minus_x));
+
+    Scene& scene = design.scene;
+    scene.weft_mode = WeftMode::wraparound;
+    scene.boundary_x = Boundary::frozen;
+    scene.boundary_y = Boundary::free;
+    scene.dx_mm = scene.dy_mm = 0.5;
+    scene.dz_mm = 0.4;
+    // Three spheres in a row between the layers, from the bottom of the pocket to its mouth.
+    for (const double along : {9.0, 13.0, 17.0}) scene.fields.push_back({{along, 6.0, 0.6}, 3.0, 0.5});
+    return design;
+}
+
+namespace {
+
+/// Ten wefts a row: 0 to 2 the bottom flange, 3 to 6 the web, 7 to 9 the top flange. Eleven ends a column: four bind the
+/// bottom flange, three stand in the height of the web, four bind the top flange.
+constexpr std::size_t beam_wefts = 10, flange_wefts = 3, top_flange = 7;
+
+std::array<End, 11> flange_ends(std::size_t i, std::size_t j) {
+    // Layer to layer: end k binds levels k - 1 and k of its flange.
+    const auto height = [&](std::size_t k) {
+        return (i + j) % 2 == 0 ? std::min(k + 1, flange_wefts) : std::max<std::size_t>(k, 1) - 1;
+    };
+    std::array<End, 11> ends;
+    for (std::size_t k = 0; k < 4; ++k) {
+        ends[k] = at(height(k));
+        ends[7 + k] = at(top_flange + height(k));
+    }
+    return ends;
+}
+
+/// Beside the web all web picks lie between the flanges, under the same placeholder ends, so that nothing holds them there.
+Stack flange_stack(std::size_t i, std::size_t j) {
+    std::array<End, 11> ends = flange_ends(i, j);
+    for (std::size_t k = 4; k < 7; ++k) ends[k] = loose_at(top_flange);
+    return cell(beam_wefts, ends, lowest(top_flange) & ~lowest(flange_wefts));
+}
+
+/// In the web the ends of the middle go on a slant from under the top weft of the bottom flange to over the bottom weft of the
+/// top flange. With twelve ends in twelve different steps each height has its end in every row: every turn is caught.
+Stack web_stack(std::size_t i, std::size_t j) {
+    static constexpr std::array<std::size_t, 12> height{2, 3, 4, 5, 6, 7, 8, 7, 6, 5, 4, 3};
+    std::array<End, 11> ends = flange_ends(i, j);
+    for (std::size_t k = 0; k < 3; ++k) ends[4 + k] = at(height[(i + 3 * j + 4 * k) % 12]);
+    return cell(beam_wefts, ends);
+}
+
+}  // namespace
+
+Design i_beam() {
+    Design design = cloth("I-beam",
+                          "A carbon-fibre beam that is woven flat: two flanges over the whole width and a thin web in the "
+                          "middle. The shuttle of the web runs across, but its yarn turns round the outermost ends of the web, for "
+                          "beside it the ends (purple) are placeholders that bind nothing and are trimmed. Each flange "
+                          "has a shuttle of its own, or its edges would be tied to the other flange. Built after figure 14; the "
+                          "paper prints its card too small to be read.",
+                          yarn("carbon warp", "#e08a2c", 0.25, 200, 26000, 1.5),
+                          yarn("carbon weft", "#8f959b", 0.25, 200, 26000, 1.5));
+    design.warp.beams = {{"flanges"}, {"web"}};
+    design.warp.beam_order.once = {0, 0, 0, 0, 1, 1, 1, 0, 0, 0, 0};
+    design.warp.colours = {colour("#7d3c98")};
+    design.warp.density_ends_per_cm = 40;
+    design.warp.ends_per_dent = 11;
+    design.weft.density_picks_per_cm = 4;
+    design.weft.feeders = {{"bottom flange", 0}, {"web", 0}, {"top flange", 0}};
+    design.weft.feeder_order = {{0}, {0}, {0}, {1}, {1}, {1}, {1}, {2}, {2}, {2}};
+    add(design, "flange-repeat", stacks(2, 2, 10, 11, flange_stack));
+    add(design, "web", stacks(12, 4, 10, 11, web_stack));
+    add(design, "flanges", tiled("flange-repeat", 6, 4));
+    add(design, "left-half", attached("flanges", "web", Face::plus_y));
+    add(design, "beam", attached("left-half", "flanges", Face::plus_y));
+    std::vector<std::uint32_t>& colours = design.warp.colour_order.once;
+    colours.clear();
+    for (std::size_t column = 0; column < 20; ++column) {
+        const bool web = column >= 8 && column < 12;
+        for (std::size_t end = 0; end < 11; ++end) colours.push_back(!web && end >= 4 && end < 7 ? 1 : 0);
+    }
+    design.scene.weft_mode = WeftMode::wraparound;
+    design.scene.boundary_y = Boundary::free;
+    return design;
+}
+
+}  // namespace weave::sample

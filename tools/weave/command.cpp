@@ -1,0 +1,111 @@
+#include "command.hpp"
+#include "progress.hpp"
+
+#include <weave/block/flip.hpp>
+#include <weave/design/document.hpp>
+
+#include <iostream>
+
+namespace weave::program {
+
+namespace {
+
+int exit_of(ErrorCode code) {
+    switch (code) {
+        case ErrorCode::usage:
+            return usage;
+        case ErrorCode::bad_input:
+            return bad_file;
+        case ErrorCode::invalid:
+            return findings;
+        case ErrorCode::refused:
+            return refused;
+        case ErrorCode::system:
+            return fault;
+    }
+    return fault;
+}
+
+/// Names from files may hold line breaks and other control characters; a terminal must not obey them.
+std::string on_one_line(const std::string& text) {
+    constexpr char digits[] = "0123456789abcdef";
+    std::string line;
+    for (const char c : text) {
+        const auto byte = static_cast<unsigned char>(c);
+        if (byte >= 0x20 && byte != 0x7f) {
+            line.push_back(c);
+        } else {
+            line += {'\\', 'x', digits[byte >> 4], digits[byte & 15]};
+        }
+    }
+    return line;
+}
+
+std::string lost_flip_line(const LostFlip& lost) {
+    return "a flip of block '" + lost.block + "' no longer applies: " + lost.reason;
+}
+
+}  // namespace
+
+void Program::fail(const Error& error) {
+    exit_code = exit_of(error.code);
+    note(error.text());
+}
+
+void Program::note(const std::string& line) const {
+    std::cerr << "weave: " << on_one_line(line) << '\n';
+}
+
+void Program::answer(const Json& json_answer, const std::string& words) const {
+    if (json) {
+        std::cout << json_answer.dump(1, ' ', false, Json::error_handler_t::replace) << '\n';
+    } else {
+        std::cout << words;
+    }
+}
+
+CLI::App* add_command(CLI::App& app, Program& program, const std::string& name, const std::string& help) {
+    CLI::App* command = app.add_subcommand(name, help);
+    command->add_flag("--json", program.json, "answer with one JSON object on standard output");
+    return command;
+}
+
+void on_run(CLI::App* command, Program& program, std::function<Status()> run) {
+    command->callback([&program, run = std::move(run)] {
+        if (Status status = run(); !status) program.fail(status.error());
+    });
+}
+
+Result<Cloth> load_cloth(const Program& program, const std::string& file) {
+    const Progress progress("reading " + file);
+    WEAVE_TRY(Design design, load_design(file));
+    Result<Evaluation> evaluation = evaluate(design);
+    if (!evaluation) return std::move(evaluation).error().in(file);
+    for (const LostFlip& lost : evaluation->lost_flips) program.note(file + ": " + lost_flip_line(lost));
+    return Cloth{std::move(design), std::move(evaluation).value()};
+}
+
+Status save_cloth(const Program& program, const Design& design, const std::string& file,
+                  const std::vector<std::string>& warnings) {
+    const Progress progress("weaving " + file);
+    WEAVE_TRY(const Evaluation cloth, evaluate(design));
+    WEAVE_CHECK_OK(save_design(design, file));
+    std::vector<std::string> notes = warnings;
+    for (const LostFlip& lost : cloth.lost_flips) notes.push_back(lost_flip_line(lost));
+    const Block& block = *cloth.block;
+    for (const std::string& line : notes) program.note(line);
+    program.answer({{"file", file},
+                    {"picks", block.picks()},
+                    {"ends", block.ends()},
+                    {"rows", block.rows()},
+                    {"columns", block.columns()},
+                    {"height", block.height()},
+                    {"warnings", notes}},
+                   file + ": " + std::to_string(block.picks()) + " picks and " +
+                       std::to_string(block.ends()) + " ends in " + std::to_string(block.rows()) +
+                       " rows and " + std::to_string(block.columns()) + " columns, " +
+                       std::to_string(block.height()) + " high\n");
+    return {};
+}
+
+}  // namespace weave::program

@@ -1,0 +1,57 @@
+#pragma once
+
+#include <weave/core/json.hpp>
+#include <weave/design/design.hpp>
+#include <weave/design/evaluate.hpp>
+
+#include <CLI/CLI.hpp>
+
+#include <filesystem>
+#include <functional>
+#include <string>
+#include <vector>
+
+namespace weave::program {
+
+/// Exit codes that scripts rely on.
+enum Exit : int { done = 0, findings = 1, usage = 2, bad_file = 3, refused = 4, fault = 5 };
+
+/// What every command has: whether a program reads along, and how it ended.
+struct Program {
+    bool json = false;
+    int exit_code = done;
+    std::string doing;  ///< what runs now, told on standard error once it takes over a second
+
+    /// Prints the error and remembers its exit code.
+    void fail(const Error& error);
+    /// A line for people on standard error.
+    void note(const std::string& line) const;
+    /// The answer: as JSON if a program reads along, else in words, on standard output.
+    void answer(const Json& json_answer, const std::string& words) const;
+};
+
+/// Adds a command; `run` is called with the program when it is chosen. Every command takes --json.
+CLI::App* add_command(CLI::App& app, Program& program, const std::string& name, const std::string& help);
+
+/// Lets `run` be the command's work: its error, if any, is told and becomes the exit code.
+void on_run(CLI::App* command, Program& program, std::function<Status()> run);
+
+/// A design from a file, and its cloth. Lost flips are told on standard error.
+struct Cloth {
+    Design design;
+    Evaluation evaluation;
+};
+Result<Cloth> load_cloth(const Program& program, const std::string& file);
+
+/// Checks that a new design evaluates, saves it, and tells what came out.
+Status save_cloth(const Program& program, const Design& design, const std::string& file,
+                  const std::vector<std::string>& warnings = {});
+
+/// The work of each group of commands.
+void add_make_commands(CLI::App& app,
+                       Program& program);  // samples, preset, tile, attach, stencil, renumber, flip
+void add_import_command(CLI::App& app, Program& program);  // import
+void add_look_commands(CLI::App& app, Program& program);   // info, card, render
+void add_loom_commands(CLI::App& app, Program& program);   // check, export
+
+}  // namespace weave::program

@@ -1,0 +1,164 @@
+// `weave import`: a bare card image or a WIF file becomes a design.
+
+#include "command.hpp"
+#include "progress.hpp"
+
+#include <weave/block/from_card.hpp>
+#include <weave/core/file.hpp>
+#include <weave/core/text.hpp>
+#include <weave/design/document.hpp>
+#include <weave/io/bitmap.hpp>
+#include <weave/io/wif.hpp>
+
+#include <algorithm>
+#include <memory>
+
+namespace weave::program {
+
+namespace {
+
+using Counts = std::vector<std::uint32_t>;
+
+struct ImportRequest {
+    std::string in, out;
+    Counts t, p;
+    bool infer = false;
+    std::size_t grouping = 1;
+    BitmapReading reading;
+};
+
+bool is_wif(const std::string& file) {
+    std::string extension = std::filesystem::path(file).extension().string();
+    std::transform(extension.begin(), extension.end(), extension.begin(),
+                   [](unsigned char c) { return static_cast<char>(std::tolower(c)); });
+    return extension == ".wif";
+}
+
+std::string in_short(const Counts& counts) {
+    std::string text;
+    for (std::size_t k = 0; k < std::min<std::size_t>(counts.size(), 8); ++k)
+        text += (k > 0 ? "," : "") + std::to_string(counts[k]);
+    return text + (counts.size() > 8 ? ",…" : "");
+}
+
+/// The counts without their repetitions: 2,2,2,2 is 2.
+Counts shortest(const Counts& counts) {
+    for (std::size_t period = 1; period < counts.size(); ++period) {
+        if (counts.size() % period != 0) continue;
+        if (std::equal(counts.begin() + static_cast<std::ptrdiff_t>(period), counts.end(), counts.begin())) {
+            return {counts.begin(), counts.begin() + static_cast<std::ptrdiff_t>(period)};
+        }
+    }
+    return counts;
+}
+
+Result<DesignFromWif> design_from_bitmap(const ImportRequest& request, const std::string& bytes) {
+    WEAVE_TRY(CardFromBitmap read, read_bitmap(bytes, request.reading));
+    DesignFromWif result{{}, std::move(read.warnings)};
+    result.design.title = std::filesystem::path(request.in).stem().string();
+    result.design.root = "card";
+    const CardLeaf leaf{std::make_shared<const CardImage>(std::move(read.card)), {1}, {1}};
+    result.design.blocks["card"] = std::make_shared<const Node>(Node{leaf, {}});
+    return result;
+}
+
+/// The leaf of the imported card with the grouping that was asked for.
+Status group(const ImportRequest& request, Design& design, Json& groupings) {
+    CardLeaf leaf = std::get<CardLeaf>(design.blocks.at(design.root)->source);
+    if (!request.t.empty()) leaf.t = request.t;
+    if (!request.p.empty()) leaf.p = request.p;
+    if (request.infer) {
+        const std::vector<Grouping> possible =
+            possible_groupings(*leaf.card, std::max<std::size_t>(8, request.grouping));
+        for (const Grouping& one : possible)
+            groupings.push_back({{"t", shortest(one.t)}, {"p", shortest(one.p)}, {"reason", one.reason}});
+        if (request.grouping > possible.size()) {
+            return Error{ErrorCode::usage, "there are only " + counted(possible.size(), "possible grouping"),
+                         ""};
+        }
+        leaf.t = shortest(possible[request.grouping - 1].t);
+        leaf.p = shortest(possible[request.grouping - 1].p);
+    }
+    design.blocks[design.root] = std::make_shared<const Node>(Node{std::move(leaf), {}});
+    return {};
+}
+
+std::string in_words(const ImportRequest& request, const Block& block, const Json& groupings) {
+    std::string words =
+        request.out + ": " + counted(block.picks(), "pick") + " and " + counted(block.ends(), "end") + "\n";
+    for (std::size_t k = 0; k < groupings.size(); ++k) {
+        words += std::string(k + 1 == request.grouping ? "* " : "  ") + std::to_string(k + 1) +
+                 ": t = " + in_short(groupings[k]["t"].get<Counts>()) +
+                 "  p = " + in_short(groupings[k]["p"].get<Counts>()) + "  (" +
+                 groupings[k]["reason"].get<std::string>() + ")\n";
+    }
+    if (groupings.size() > 1) words += "Another one: --infer --grouping N\n";
+    return words;
+}
+
+Status import_design(const Program& program, const ImportRequest& request) {
+    const Progress progress("reading " + request.in);
+    WEAVE_TRY(const std::string bytes, read_file(request.in));
+    Result<DesignFromWif> read = is_wif(request.in) ? read_wif(bytes) : design_from_bitmap(request, bytes);
+    if (!read) return std::move(read).error().in(request.in);
+    Design& design = read->design;
+    Json groupings = Json::array();
+    WEAVE_CHECK_OK(group(request, design, groupings));
+    Result<Evaluation> cloth = evaluate(design);
+    if (!cloth) return bad_input(cloth.error().message, cloth.error().where).in(request.in);
+    WEAVE_CHECK_OK(save_design(design, request.out));
+    for (const std::string& warning : read->warnings) program.note(request.in + ": " + warning);
+    const Block& block = *cloth->block;
+    Json json{{"file", request.out},
+              {"picks", block.picks()},
+              {"ends", block.ends()},
+              {"warnings", read->warnings}};
+    if (request.infer) json["groupings"] = groupings;
+    program.answer(json, in_words(request, block, groupings));
+    return {};
+}
+
+}  // namespace
+
+void add_import_command(CLI::App& app, Program& program) {
+    CLI::App* command =
+        add_command(app, program, "import", "Make a design from a card image (PNG, TIFF, BMP) or a WIF file");
+    const auto request = std::make_shared<ImportRequest>();
+    const auto pick_1 = std::make_shared<std::string>("bottom");
+    const auto end_1 = std::make_shared<std::string>("left");
+    const auto lifted = std::make_shared<std::string>("black");
+    command->add_option("IN", request->in, "the file to read")->required();
+    command->add_option("-o,--out", request->out, "the .weave file to write")->required();
+    const CLI::Range count(std::uint32_t{0}, std::uint32_t{1} << 28);
+    CLI::Option* t =
+        command->add_option("--t", request->t, "picks of each row, repeated over the card, such as 2,2")
+            ->delimiter(',')
+            ->allow_extra_args(false)
+            ->check(count);
+    CLI::Option* p = command->add_option("--p", request->p, "ends of each column, repeated, such as 2,2")
+                         ->delimiter(',')
+                         ->allow_extra_args(false)
+                         ->check(count);
+    CLI::Option* infer =
+        command->add_flag("--infer", request->infer,
+                          "find rows and columns from the card; lists the possible groupings, best first");
+    command->add_option("--grouping", request->grouping, "which of the possible groupings to take, from 1")
+        ->needs(infer)
+        ->check(CLI::Range(1, 1000));
+    infer->excludes(t)->excludes(p);
+    command->add_option("--pick-1", *pick_1, "where the picture has pick 1")
+        ->check(CLI::IsMember({"bottom", "top"}))
+        ->capture_default_str();
+    command->add_option("--end-1", *end_1, "where the picture has end 1")
+        ->check(CLI::IsMember({"left", "right"}))
+        ->capture_default_str();
+    command->add_option("--lifted", *lifted, "the colour of a lifted end")
+        ->check(CLI::IsMember({"black", "white"}))
+        ->capture_default_str();
+    on_run(command, program, [=, &program] {
+        request->reading = {*pick_1 == "bottom", *end_1 == "left", *lifted == "black"};
+        return import_design(program, *request);
+    });
+}
+
+}  // namespace weave::program

@@ -1,0 +1,170 @@
+// Commands that show a design: in numbers, as its card image, as pictures.
+
+#include "command.hpp"
+#include "progress.hpp"
+
+#include <weave/core/file.hpp>
+#include <weave/core/text.hpp>
+#include <weave/design/document.hpp>
+#include <weave/io/bitmap.hpp>
+#include <weave/picture/picture.hpp>
+
+#include <algorithm>
+#include <memory>
+
+namespace weave::program {
+
+namespace {
+
+const std::vector<std::string> kind_names{"stacks", "card",   "preset",  "slice",
+                                          "tile",   "attach", "stencil", "renumber"};
+
+/// One line a block: what it is and what it is made from.
+Json tree_of(const Design& design) {
+    Json tree = Json::array();
+    for (const auto& [name, node] : design.blocks) {
+        tree.push_back({{"name", name},
+                        {"kind", kind_names[node->source.index()]},
+                        {"of", children_of(*node)},
+                        {"flips", node->flips.size()}});
+    }
+    return tree;
+}
+
+std::string tree_in_words(const Design& design) {
+    std::string text;
+    for (const auto& [name, node] : design.blocks) {
+        text += (name == design.root ? "  * " : "    ") + name + "  " + kind_names[node->source.index()];
+        const std::vector<std::string> children = children_of(*node);
+        for (std::size_t k = 0; k < std::min<std::size_t>(children.size(), 6); ++k)
+            text += (k == 0 ? " of " : ", ") + children[k];
+        if (children.size() > 6) text += " and " + std::to_string(children.size() - 6) + " more";
+        if (!node->flips.empty()) text += ", " + counted(node->flips.size(), "flip");
+        text += "\n";
+    }
+    return text;
+}
+
+Status tell_info(const Program& program, const std::string& file) {
+    WEAVE_TRY(const Cloth cloth, load_cloth(program, file));
+    const Block& block = *cloth.evaluation.block;
+    const std::string card = block.card_image().sha256(), design = design_sha256(cloth.design);
+    const Json json{{"title", cloth.design.title},
+                    {"rows", block.rows()},
+                    {"columns", block.columns()},
+                    {"height", block.height()},
+                    {"picks", block.picks()},
+                    {"ends", block.ends()},
+                    {"blocks", cloth.design.blocks.size()},
+                    {"different_stacks", block.stacks().size()},
+                    {"card_sha256", card},
+                    {"design_sha256", design},
+                    {"scene_sha256", scene_sha256(cloth.design)},
+                    {"lost_flips", cloth.evaluation.lost_flips.size()},
+                    {"tree", tree_of(cloth.design)}};
+    program.answer(json, (cloth.design.title.empty() ? file : cloth.design.title) + "\n" + "picks    " +
+                             std::to_string(block.picks()) + " in " + counted(block.rows(), "row") + "\n" +
+                             "ends     " + std::to_string(block.ends()) + " in " +
+                             counted(block.columns(), "column") + "\n" + "height   " +
+                             std::to_string(block.height()) + "\n" + "card     " + card + "\n" + "design   " +
+                             design + "\n" + "blocks   " + std::to_string(cloth.design.blocks.size()) +
+                             " (* is the cloth)\n" + tree_in_words(cloth.design));
+    return {};
+}
+
+void add_info(CLI::App& app, Program& program) {
+    CLI::App* command = add_command(app, program, "info", "Tell a design's size, hashes and tree of blocks");
+    const auto file = std::make_shared<std::string>();
+    command->add_option("FILE", *file, "the .weave file")->required();
+    on_run(command, program, [=, &program] { return tell_info(program, *file); });
+}
+
+Status write_card(const Program& program, const std::string& file, const std::string& out,
+                  const BitmapReading& reading) {
+    WEAVE_TRY(const BitmapFormat format, bitmap_format_of(out));
+    WEAVE_TRY(const Cloth cloth, load_cloth(program, file));
+    const Progress progress("writing " + out);
+    const CardImage card = cloth.evaluation.block->card_image();
+    WEAVE_TRY(const std::string bytes, write_bitmap(card, format, reading));
+    WEAVE_TRY(const CardFromBitmap back, read_bitmap(bytes, reading));
+    if (back.card != card) return system_fault("the card image does not read back as it was", out);
+    WEAVE_CHECK_OK(write_file(out, bytes));
+    program.answer(
+        {{"file", out}, {"picks", card.picks()}, {"ends", card.ends()}, {"card_sha256", card.sha256()}},
+        out + ": " + counted(card.picks(), "pick") + " and " + counted(card.ends(), "end") + "\n");
+    return {};
+}
+
+void add_card(CLI::App& app, Program& program) {
+    CLI::App* command =
+        add_command(app, program, "card",
+                    "Write the card image: bottom row pick 1, left column end 1, black = end lifted");
+    const auto file = std::make_shared<std::string>();
+    const auto out = std::make_shared<std::string>();
+    const auto pick_1 = std::make_shared<std::string>("bottom");
+    const auto end_1 = std::make_shared<std::string>("left");
+    const auto lifted = std::make_shared<std::string>("black");
+    command->add_option("FILE", *file, "the .weave file")->required();
+    command->add_option("-o,--out", *out, "the picture to write: .png, .tif or .bmp")->required();
+    command->add_option("--pick-1", *pick_1, "where pick 1 goes")
+        ->check(CLI::IsMember({"bottom", "top"}))
+        ->capture_default_str();
+    command->add_option("--end-1", *end_1, "where end 1 goes")
+        ->check(CLI::IsMember({"left", "right"}))
+        ->capture_default_str();
+    command->add_option("--lifted", *lifted, "the colour of a lifted end")
+        ->check(CLI::IsMember({"black", "white"}))
+        ->capture_default_str();
+    on_run(command, program, [=, &program] {
+        return write_card(program, *file, *out, {*pick_1 == "bottom", *end_1 == "left", *lifted == "black"});
+    });
+}
+
+Result<PictureFormat> picture_format_of(const std::string& file) {
+    std::string extension = std::filesystem::path(file).extension().string();
+    std::transform(extension.begin(), extension.end(), extension.begin(),
+                   [](unsigned char c) { return static_cast<char>(std::tolower(c)); });
+    if (extension == ".png") return PictureFormat::png;
+    if (extension == ".svg") return PictureFormat::svg;
+    return Error{ErrorCode::usage, "a picture's name ends in .png or .svg", file};
+}
+
+Status render(const Program& program, const std::string& file, const std::string& view, bool trim,
+              const std::string& out) {
+    WEAVE_TRY(const PictureFormat format, picture_format_of(out));
+    WEAVE_TRY(const Cloth cloth, load_cloth(program, file));
+    const Progress progress("drawing " + out);
+    WEAVE_TRY(PictureRequest request, parse_view(view, *cloth.evaluation.block));
+    request.trim = trim;
+    WEAVE_TRY(const std::string bytes, draw(cloth.design, cloth.evaluation, request, format));
+    WEAVE_CHECK_OK(write_file(out, bytes));
+    program.answer({{"file", out}, {"view", view}, {"bytes", bytes.size()}}, out + ": " + view + "\n");
+    return {};
+}
+
+void add_render(CLI::App& app, Program& program) {
+    CLI::App* command = add_command(app, program, "render",
+                                    "Draw a design: card, face, back, floats, layers, slices, or the block");
+    const auto file = std::make_shared<std::string>();
+    const auto view = std::make_shared<std::string>();
+    const auto trim = std::make_shared<bool>(false);
+    const auto out = std::make_shared<std::string>();
+    command->add_option("FILE", *file, "the .weave file")->required();
+    command
+        ->add_option("--view", *view,
+                     "card, face, back, floats, layers, weft:N, warp:N (pick or end N, from 1) or block")
+        ->required();
+    command->add_flag("--trim", *trim, "leave out yarns that are loose on purpose");
+    command->add_option("-o,--out", *out, "the picture to write: .png or .svg")->required();
+    on_run(command, program, [=, &program] { return render(program, *file, *view, *trim, *out); });
+}
+
+}  // namespace
+
+void add_look_commands(CLI::App& app, Program& program) {
+    add_info(app, program);
+    add_card(app, program);
+    add_render(app, program);
+}
+
+}  // namespace weave::program

@@ -1,0 +1,120 @@
+// Commands that hold a design to a loom: validation, and the export of a sample.
+
+#include "command.hpp"
+#include "progress.hpp"
+
+#include <weave/core/file.hpp>
+#include <weave/core/text.hpp>
+#include <weave/io/sample_export.hpp>
+#include <weave/loom/check.hpp>
+
+#include <memory>
+
+namespace weave::program {
+
+namespace {
+
+const std::vector<std::string> severity_names{"off", "info", "warning", "error"};
+
+/// Picks and ends count from 1 for people and programs that read along.
+Json number_or_null(const std::optional<std::size_t>& number) {
+    return number ? Json(*number + 1) : Json(nullptr);
+}
+
+Json to_json(const CheckReport& report) {
+    Json findings = Json::array(), missing = Json::array();
+    for (const Finding& finding : report.findings) {
+        findings.push_back({{"rule", finding.rule},
+                            {"severity", severity_names[static_cast<std::size_t>(finding.severity)]},
+                            {"pick", number_or_null(finding.pick)},
+                            {"end", number_or_null(finding.end)},
+                            {"message", finding.message}});
+    }
+    for (const NotEvaluated& rule : report.not_evaluated)
+        missing.push_back({{"rule", rule.rule}, {"reason", rule.reason}});
+    return {{"errors", report.count(Severity::error)},      {"warnings", report.count(Severity::warning)},
+            {"not_evaluated", report.not_evaluated.size()}, {"findings", std::move(findings)},
+            {"not_evaluated_rules", std::move(missing)},    {"passed_rules", report.passed}};
+}
+
+std::string in_words(const CheckReport& report, const std::string& loom) {
+    std::string text;
+    for (const Finding& finding : report.findings) {
+        text += severity_names[static_cast<std::size_t>(finding.severity)] + "  " + finding.rule + "  " +
+                finding.message + "\n";
+    }
+    for (const NotEvaluated& rule : report.not_evaluated)
+        text += "not evaluated  " + rule.rule + "  " + rule.reason + "\n";
+    return text + "On " + loom + ": " + counted(report.count(Severity::error), "error") + ", " +
+           counted(report.count(Severity::warning), "warning") + ", " +
+           counted(report.passed.size(), "rule") + " passed, " + std::to_string(report.not_evaluated.size()) +
+           " not evaluated\n";
+}
+
+void add_check(CLI::App& app, Program& program) {
+    CLI::App* command =
+        add_command(app, program, "check",
+                    "Hold a design to a loom, rule by rule; exit status 1 where a rule finds an error");
+    const auto file = std::make_shared<std::string>();
+    const auto loom = std::make_shared<std::string>();
+    command->add_option("FILE", *file, "the .weave file")->required();
+    command->add_option("--loom", *loom, "the loom's profile, a .json file")->required();
+    on_run(command, program, [=, &program]() -> Status {
+        WEAVE_TRY(const LoomProfile profile, load_profile(*loom));
+        WEAVE_TRY(const Cloth cloth, load_cloth(program, *file));
+        const Progress progress("checking " + *file);
+        const CheckReport report = check_for_loom(cloth.design, cloth.evaluation, profile);
+        program.answer(to_json(report), in_words(report, profile.name));
+        if (report.count(Severity::error) > 0) program.exit_code = findings;
+        return {};
+    });
+}
+
+Status export_sample(Program& program, const std::string& file, const std::string& loom,
+                     const std::string& folder) {
+    WEAVE_TRY(const LoomProfile profile, load_profile(loom));
+    WEAVE_TRY(const Cloth cloth, load_cloth(program, file));
+    const Progress progress("exporting " + file);
+    const CheckReport report = check_for_loom(cloth.design, cloth.evaluation, profile);
+    if (report.count(Severity::error) > 0) {
+        program.answer(to_json(report), in_words(report, profile.name));
+        return invalid("does not validate on " + profile.name + ", so nothing is exported", file);
+    }
+    const std::string stem = std::filesystem::path(file).stem().string();
+    WEAVE_TRY(const SampleExport made, make_sample_export(cloth.design, cloth.evaluation, profile, stem));
+    WEAVE_CHECK_OK(write_folder(folder, made.files));
+    Json listed = Json::array();
+    std::string words;
+    for (Json entry : made.manifest.at("files")) {
+        entry["path"] = (std::filesystem::path(folder) / entry.at("path").get<std::string>()).string();
+        words += entry["path"].get<std::string>() + "\n";
+        listed.push_back(std::move(entry));
+    }
+    program.answer(
+        {{"files", std::move(listed)}, {"certified", false}, {"released", false}, {"folder", folder}},
+        words + "SAMPLE, NOT RELEASED: only a release may go to production.\n");
+    return {};
+}
+
+void add_export(CLI::App& app, Program& program) {
+    CLI::App* command = add_command(app, program, "export",
+                                    "Write a sample for a loom: card image, pick table and manifest. Refused "
+                                    "where validation finds errors");
+    const auto file = std::make_shared<std::string>();
+    const auto loom = std::make_shared<std::string>();
+    const auto folder = std::make_shared<std::string>();
+    command->add_option("FILE", *file, "the .weave file")->required();
+    command->add_option("--loom", *loom, "the loom's profile, a .json file")->required();
+    command->add_option("-o,--out", *folder, "the folder to write; it must not exist, or be empty")
+        ->required();
+    on_run(command, program, [=, &program] { return export_sample(program, *file, *loom, *folder); });
+}
+
+}  // namespace
+
+void add_loom_commands(CLI::App& app, Program& program) {
+    add_check(app, program);
+    add_export(app, program);
+}
+
+}  // namespace weave::program

@@ -1,0 +1,306 @@
+// Commands that make a design, or one from others; each result keeps its operation tree.
+
+#include "command.hpp"
+#include "progress.hpp"
+
+#include <weave/core/file.hpp>
+#include <weave/core/text.hpp>
+#include <weave/design/document.hpp>
+#include <weave/design/edit.hpp>
+#include <weave/design/merge.hpp>
+#include <weave/io/bitmap.hpp>
+#include <weave/samples/samples.hpp>
+
+#include <algorithm>
+#include <memory>
+
+namespace weave::program {
+
+namespace {
+
+/// Makes `source` the new root of the design, under a name that tells what it is.
+void put_root(Design& design, const std::string& name, NodeSource source) {
+    const std::string free = free_name(design, name);
+    design.blocks[free] = std::make_shared<const Node>(Node{std::move(source), {}});
+    design.root = free;
+}
+
+Error usage_error(const std::string& message) {
+    return {ErrorCode::usage, message, ""};
+}
+
+// ---- samples
+
+void list_samples(const Program& program) {
+    Json list = Json::array();
+    std::string names;
+    for (const Sample& sample : samples()) {
+        list.push_back(
+            {{"name", sample.name}, {"title", sample.title}, {"about", sample.about}, {"loom", sample.loom}});
+        names += sample.name + "\n";
+    }
+    program.answer({{"samples", std::move(list)}}, names);
+}
+
+void add_samples(CLI::App& app, Program& program) {
+    CLI::App* command =
+        add_command(app, program, "samples", "List the designs that come with the program, or write one");
+    const auto name = std::make_shared<std::string>();
+    const auto out = std::make_shared<std::string>();
+    command->add_option("NAME", *name, "the sample to write; without it the names are listed, one a line");
+    command->add_option("-o,--out", *out, "the .weave file to write");
+    on_run(command, program, [=, &program]() -> Status {
+        if (name->empty()) {
+            if (!out->empty()) return usage_error("-o needs the NAME of a sample");
+            list_samples(program);
+            return {};
+        }
+        const Sample* sample = find_sample(*name);
+        if (sample == nullptr)
+            return usage_error("there is no sample '" + *name + "'; 'weave samples' lists them");
+        if (out->empty()) return usage_error("name the file to write with -o");
+        return save_cloth(program, sample->make(), *out);
+    });
+}
+
+// ---- preset
+
+std::string preset_help() {
+    std::string text = "Families and their options (name=value):\n";
+    for (const PresetFamily& family : preset_families()) {
+        text += "  " + family.name + ": " + family.help + "\n";
+        for (const PresetOption& option : family.options) {
+            text += "      " + option.name + "=" + std::to_string(option.fallback) + "  " + option.help +
+                    " (" + std::to_string(option.low) + " to " + std::to_string(option.high) + ")\n";
+        }
+    }
+    return text;
+}
+
+Result<Preset> parse_preset(const std::string& family, const std::vector<std::string>& settings) {
+    Preset preset{family, {}};
+    for (const std::string& setting : settings) {
+        const auto equals = setting.find('=');
+        const std::string name = setting.substr(0, equals);
+        const auto value =
+            equals == std::string::npos ? std::nullopt : parse_whole(setting.substr(equals + 1));
+        if (!value) return usage_error("'" + setting + "' is not an option such as up=3");
+        if (!preset.options.emplace(name, *value).second)
+            return usage_error("option '" + name + "' is given twice");
+    }
+    return preset;
+}
+
+void add_preset(CLI::App& app, Program& program) {
+    CLI::App* command = add_command(app, program, "preset", "Make a weave of a family by its rule");
+    const auto family = std::make_shared<std::string>();
+    const auto settings = std::make_shared<std::vector<std::string>>();
+    const auto out = std::make_shared<std::string>();
+    command->add_option("FAMILY", *family, "the family, see below")->required();
+    command->add_option("OPTIONS", *settings, "options of the family, such as up=3");
+    command->add_option("-o,--out", *out, "the .weave file to write")->required();
+    command->footer(preset_help);
+    on_run(command, program, [=, &program]() -> Status {
+        WEAVE_TRY(Preset preset, parse_preset(*family, *settings));
+        if (Result<Block> made = make_preset(preset); !made) return usage_error(made.error().text());
+        Design design;
+        design.title = *family;
+        put_root(design, *family, PresetLeaf{std::move(preset)});
+        return save_cloth(program, design, *out);
+    });
+}
+
+// ---- tile, attach, renumber
+
+void add_tile(CLI::App& app, Program& program) {
+    CLI::App* command = add_command(app, program, "tile",
+                                    "Repeat a design along the warp (x), the weft (y) and in height (z)");
+    const auto file = std::make_shared<std::string>();
+    const auto out = std::make_shared<std::string>();
+    const auto times = std::make_shared<TileOperation>();
+    const CLI::Range range(std::size_t{1}, std::size_t{1} << 30);
+    command->add_option("FILE", *file, "the .weave file to repeat")->required();
+    command->add_option("--x", times->x, "times along the warp")->check(range);
+    command->add_option("--y", times->y, "times along the weft")->check(range);
+    command->add_option("--z", times->z, "times in height")->check(range);
+    command->add_option("-o,--out", *out, "the .weave file to write")->required();
+    on_run(command, program, [=, &program]() -> Status {
+        WEAVE_TRY(Design design, load_design(*file));
+        times->of = design.root;
+        put_root(design, design.root + "-tiled", *times);
+        return save_cloth(program, design, *out);
+    });
+}
+
+void add_attach(CLI::App& app, Program& program) {
+    CLI::App* command =
+        add_command(app, program, "attach",
+                    "Join B to a face of A: +x after A's last row, +y after its last column, +z on top");
+    const auto first = std::make_shared<std::string>();
+    const auto second = std::make_shared<std::string>();
+    const auto face = std::make_shared<std::string>();
+    const auto out = std::make_shared<std::string>();
+    command->add_option("A", *first, "the .weave file that keeps its yarns")->required();
+    command->add_option("B", *second, "the .weave file to join to it")->required();
+    command->add_option("--face", *face, "the face of A")->required()->check(CLI::IsMember(face_names()));
+    command->add_option("-o,--out", *out, "the .weave file to write")->required();
+    on_run(command, program, [=, &program]() -> Status {
+        WEAVE_TRY(Design design, load_design(*first));
+        WEAVE_TRY(const Design other, load_design(*second));
+        std::vector<std::string> warnings;
+        if (!same_yarns(design, other))
+            warnings.push_back(*second + ": its yarns and feeders are not those of " + *first +
+                               " and are left out");
+        const std::string name = bring_in(design, other);
+        const auto at = std::find(face_names().begin(), face_names().end(), *face) - face_names().begin();
+        put_root(design, "attached", AttachOperation{design.root, name, static_cast<Face>(at)});
+        return save_cloth(program, design, *out, warnings);
+    });
+}
+
+void add_renumber(CLI::App& app, Program& program) {
+    CLI::App* command =
+        add_command(app, program, "renumber",
+                    "Change the insertion order of the picks of a row, or the order of the ends of a column");
+    const auto file = std::make_shared<std::string>();
+    const auto order = std::make_shared<std::vector<std::size_t>>();
+    const auto line = std::make_shared<std::size_t>(0);
+    const auto out = std::make_shared<std::string>();
+    const CLI::Range range(std::size_t{0}, std::size_t{1} << 28);
+    command->add_option("FILE", *file, "the .weave file")->required();
+    CLI::Option* row =
+        command->add_option("--row", *line, "the row of the block, from 0 as in stacks")->check(range);
+    CLI::Option* column =
+        command->add_option("--column", *line, "the column of the block, from 0")->check(range);
+    row->excludes(column);
+    command
+        ->add_option(
+            "--order", *order,
+            "the new order: for each place the old number within the row (or column), from 0, such as 1,0,2")
+        ->required()
+        ->delimiter(',')
+        ->allow_extra_args(false)
+        ->check(range);
+    command->add_option("-o,--out", *out, "the .weave file to write")->required();
+    on_run(command, program, [=, &program]() -> Status {
+        if (row->count() + column->count() == 0) return usage_error("name a --row or a --column");
+        WEAVE_TRY(Design design, load_design(*file));
+        const System system = row->count() > 0 ? System::weft : System::warp;
+        put_root(design, design.root + "-renumbered", RenumberOperation{design.root, system, *line, *order});
+        return save_cloth(program, design, *out);
+    });
+}
+
+// ---- stencil
+
+/// The stencil of a picture: which of the mapped colours each pixel is.
+Result<StencilMap> map_of(const ColourImage& image, const std::map<Colour, std::uint16_t>& numbers) {
+    StencilMap map{image.rows, image.columns, {}};
+    map.blocks.reserve(image.pixels.size());
+    for (std::size_t k = 0; k < image.pixels.size(); ++k) {
+        const auto found = numbers.find(image.pixels[k]);
+        if (found == numbers.end()) {
+            return bad_input("the pixel in row " + std::to_string(k / image.columns + 1) +
+                             " from the bottom and column " + std::to_string(k % image.columns + 1) +
+                             " has the colour " + to_text(image.pixels[k]) + ", which no --map names");
+        }
+        map.blocks.push_back(found->second);
+    }
+    return map;
+}
+
+Status make_stencil(const Program& program, const std::string& picture,
+                    const std::vector<std::string>& mappings, const std::string& out) {
+    Design design;
+    StencilOperation stencil;
+    std::map<Colour, std::uint16_t> numbers;
+    std::vector<std::string> warnings;
+    for (const std::string& mapping : mappings) {
+        const auto equals = mapping.find('=');
+        if (equals == std::string::npos)
+            return usage_error("'" + mapping + "' is not a mapping such as #ff0000=twill.weave");
+        const Result<Colour> colour = parse_colour(mapping.substr(0, equals));
+        if (!colour) return usage_error(colour.error().message);
+        if (!numbers.emplace(*colour, static_cast<std::uint16_t>(stencil.of.size())).second) {
+            return usage_error("colour " + to_text(*colour) + " is mapped twice");
+        }
+        const std::string file = mapping.substr(equals + 1);
+        WEAVE_TRY(Design part, load_design(file));
+        if (stencil.of.empty()) {
+            design = part;
+            stencil.of.push_back(part.root);
+            continue;
+        }
+        if (!same_yarns(design, part))
+            warnings.push_back(file +
+                               ": its yarns and feeders are not those of the first design and are left out");
+        stencil.of.push_back(bring_in(design, part));
+    }
+    const Progress progress("reading " + picture);
+    WEAVE_TRY(const std::string bytes, read_file(picture));
+    Result<ColourImage> image = read_colour_image(bytes);
+    if (!image) return std::move(image).error().in(picture);
+    Result<StencilMap> map = map_of(*image, numbers);
+    if (!map) return std::move(map).error().in(picture);
+    stencil.map = std::make_shared<const StencilMap>(std::move(map).value());
+    put_root(design, "stencilled", std::move(stencil));
+    return save_cloth(program, design, out, warnings);
+}
+
+void add_stencil(CLI::App& app, Program& program) {
+    CLI::App* command = add_command(
+        app, program, "stencil",
+        "Merge designs by a picture: each pixel is one stack of the design that its colour names");
+    const auto picture = std::make_shared<std::string>();
+    const auto mappings = std::make_shared<std::vector<std::string>>();
+    const auto out = std::make_shared<std::string>();
+    command
+        ->add_option("IMAGE", *picture,
+                     "PNG, TIFF or BMP; its bottom row is row 1, its left column is column 1")
+        ->required();
+    command->add_option("--map", *mappings, "COLOUR=FILE, such as #ff0000=twill.weave; once for each colour")
+        ->required()
+        ->allow_extra_args(false);
+    command->add_option("-o,--out", *out, "the .weave file to write")->required();
+    on_run(command, program, [=, &program] { return make_stencil(program, *picture, *mappings, *out); });
+}
+
+// ---- flip
+
+void add_flip(CLI::App& app, Program& program) {
+    CLI::App* command =
+        add_command(app, program, "flip",
+                    "Exchange one pick and one end at their crossing: inverts one pixel of the card");
+    const auto file = std::make_shared<std::string>();
+    const auto out = std::make_shared<std::string>();
+    const auto pick = std::make_shared<std::size_t>(0);
+    const auto end = std::make_shared<std::size_t>(0);
+    const CLI::Range from_1(std::size_t{1}, std::size_t{1} << 28);
+    command->add_option("FILE", *file, "the .weave file")->required();
+    command->add_option("--pick", *pick, "the pick, from 1")->required()->check(from_1);
+    command->add_option("--end", *end, "the end, from 1")->required()->check(from_1);
+    command->add_option("-o,--out", *out, "the .weave file to write")->required();
+    on_run(command, program, [=, &program]() -> Status {
+        WEAVE_TRY(Cloth cloth, load_cloth(program, *file));
+        const Block& block = *cloth.evaluation.block;
+        if (Result<Block> flipped = flip(block, *pick - 1, *end - 1); !flipped)
+            return std::move(flipped).error().in(*file);
+        const Flip wish{*pick - 1, *end - 1, !block.weft_over(*pick - 1, *end - 1)};
+        WEAVE_CHECK_OK(apply(cloth.design, PutFlip{cloth.design.root, wish}));
+        return save_cloth(program, cloth.design, *out);
+    });
+}
+
+}  // namespace
+
+void add_make_commands(CLI::App& app, Program& program) {
+    add_samples(app, program);
+    add_preset(app, program);
+    add_tile(app, program);
+    add_attach(app, program);
+    add_stencil(app, program);
+    add_renumber(app, program);
+    add_flip(app, program);
+}
+
+}  // namespace weave::program
