@@ -121,13 +121,23 @@ class Drawing {
 
 using Dart = Diagram::Dart;
 
-/// Pieces of a feeder's yarn outside the cloth: between its crossings with ends on one pick and those on the next.
-bool is_arc(const Diagram& diagram, const Dart& dart) {
+/// The picks that a piece of a feeder's yarn outside the cloth joins, the earlier first; nothing for other pieces.
+std::optional<std::pair<int, int>> loop_of(const Diagram& diagram, const Dart& dart) {
     const auto& yarn = diagram.yarns[dart.yarn];
     int before = -1, after = -1;
     for (std::size_t k = dart.gap; k-- > 0 && before < 0;) before = diagram.of.at(yarn[k].crossing).first;
     for (std::size_t k = dart.gap; k < yarn.size() && after < 0; ++k) after = diagram.of.at(yarn[k].crossing).first;
-    return before >= 0 && after >= 0 && before != after;
+    if (before < 0 || after <= before) return {};
+    return std::pair{before, after};
+}
+
+bool is_arc(const Diagram& diagram, const Dart& dart) { return loop_of(diagram, dart).has_value(); }
+
+/// Loops may choose over or under only where one was closed around the other. Loops that cross outside the cloth lie as they
+/// were laid: a taut loop does not climb over one that was laid on it.
+bool is_around(const Diagram& diagram, const Dart& e, const Dart& f) {
+    const auto outer = *loop_of(diagram, e), inner = *loop_of(diagram, f);
+    return outer.first < inner.first && inner.second < outer.second;
 }
 
 /// Every way of sliding a piece of one loop over or under a piece of another that it faces.
@@ -149,7 +159,7 @@ std::vector<Diagram> pushes(const Diagram& diagram, std::size_t ends) {
                 if (at) done.insert(face.begin(), face.end());
                 for (const Dart& e : face) {
                     for (const Dart& f : face) {
-                        if (e.yarn >= f.yarn) continue;
+                        if (e.yarn == f.yarn || !is_around(diagram, e, f)) continue;
                         made.push_back(diagram.pushed(e, f, true));
                         made.push_back(diagram.pushed(e, f, false));
                     }

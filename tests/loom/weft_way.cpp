@@ -39,7 +39,7 @@ CardImage random_card(Random& random, const std::vector<std::uint32_t>& feeders,
     for (std::size_t n = 0; n < feeders.size(); ++n) {
         const auto last = before.find(feeders[n]);
         for (std::size_t e = 0; e < ends; ++e) {
-            const bool alike = last != before.end() && random.between(0, 3) > 0;
+            const bool alike = last != before.end() && random.between(0, 4) > 1;
             card.set(n, e, alike ? card.weft_over(last->second, e) : random.coin());
         }
         before[feeders[n]] = n;
@@ -95,6 +95,47 @@ void compare(const CardImage& card, const std::vector<Pick>& picks, std::size_t 
 }
 
 }  // namespace
+
+TEST_CASE("a loop is caught by the outermost end that differs, and says when none does") {
+    const auto card = card_of({"0010", "0110", "0110"});
+    const WeftWay way = weft_way(card, picks_of({0, 0, 0}, {false}));
+    REQUIRE(way.turns.size() == 2);
+    CHECK(way.turns[0].side == Side::right);
+    CHECK(way.turns[0].caught_by == CaughtBy::end);
+    CHECK(way.turns[0].end == 1);
+    CHECK(way.turns[1].side == Side::left);
+    CHECK(way.turns[1].caught_by == CaughtBy::none);
+    CHECK(way.spans[0].last == 1);
+    CHECK(way.spans[1].crossed);
+}
+
+TEST_CASE("a pick of another feeder that lies between holds a loop") {
+    // Feeder 2's only pick lies over the end, the loop of feeder 1 under it, and the loop above the pick's tail.
+    const auto card = card_of({"0", "1", "0"});
+    const WeftWay way = weft_way(card, picks_of({0, 1, 0}, {false, false}));
+    REQUIRE(way.turns.size() == 1);
+    CHECK(way.turns[0].caught_by == CaughtBy::pick);
+    CHECK(way.turns[0].pick == 1);
+    CHECK(way.turns[0].end == 0);
+}
+
+TEST_CASE("a shuttle on the wrong side misses its box and does not turn") {
+    auto picks = picks_of({0, 0}, {false});
+    picks[1].direction = Direction::left_to_right;
+    const WeftWay way = weft_way(card_of({"01", "10"}), picks);
+    CHECK(way.turns.empty());
+    REQUIRE(way.missed_boxes.size() == 1);
+    CHECK(way.missed_boxes[0].to_pick == 1);
+}
+
+TEST_CASE("two feeders in one pick both have their way, a pick without feeder has none") {
+    auto picks = picks_of({0, 0, 0}, {false});
+    picks[1].feeders = {0, 1};
+    picks[2].feeders = {};
+    const WeftWay way = weft_way(card_of({"01", "10", "11"}), picks);
+    CHECK(way.spans.size() == 3);
+    CHECK(way.turns.size() == 1);
+}
 
 TEST_CASE("one feeder: loops rest where the diagram reducer leaves them") {
     Tally tally;
