@@ -62,7 +62,10 @@ class Schematic {
         draw_base(canvas);
         draw_tubes(canvas, m_view, m_tubes);
         for (const Label& label : m_labels) {
-            canvas.text(m_view.on_screen(label.place), label.text,
+            const Point middle = m_view.on_screen(label.place);
+            const double half = Canvas::text_width(label.text, 12, true) / 2 + 2;
+            canvas.rectangle({middle.x - half, middle.y - 7, 2 * half, 14}, {0xff, 0xff, 0xff}, 0.8);
+            canvas.text(middle, label.text,
                         {.size = 12, .colour = label.colour, .anchor = Anchor::middle, .bold = true, .centred = true});
         }
         draw_axes(canvas);
@@ -155,6 +158,9 @@ class Schematic {
             add_tube(path, std::move(places), path.loose[k], path.levels[k]);
         }
         if ((path.loose[k] && m_subject.request.trim) || path.levels[k] >= m_shown.levels) return;
+        // The far ends of a thick block lie behind its yarns, where numbers would only be in the way.
+        const bool near = warp == (way < 0);
+        if (!near && m_shown.levels > 3) return;
         m_labels.push_back({place_on(warp, line, edge + way * 0.24, 0, level), std::to_string(path.number + 1),
                             mix(path.colour, {0, 0, 0}, 0.4)});
     }
