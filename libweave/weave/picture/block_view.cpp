@@ -31,11 +31,12 @@ Shown shown_part(const Block& block) {
 class Schematic {
   public:
     Schematic(const Subject& subject, const YarnColours& colours, const WeftRuns& runs, const Shown& shown)
-        : m_subject(subject), m_runs(runs), m_shown(shown),
-          m_view(shown.rows * shown.columns <= 16 ? 84 : shown.rows * shown.columns <= 64 ? 62 : 48),
+        : m_subject(subject), m_colours(colours), m_runs(runs), m_shown(shown),
+          m_scale(shown.rows * shown.columns <= 16 ? 84 : shown.rows * shown.columns <= 64 ? 62 : 48),
+          m_view(m_scale),
           m_pieces(shown.rows * shown.columns <= 36 ? 6 : 4) {
-        for (std::size_t column = 0; column < shown.columns; ++column) add_line(colours, View::warp_slice, column);
-        for (std::size_t row = 0; row < shown.rows; ++row) add_line(colours, View::weft_slice, row);
+        for (std::size_t column = 0; column < shown.columns; ++column) add_line(View::warp_slice, column);
+        for (std::size_t row = 0; row < shown.rows; ++row) add_line(View::weft_slice, row);
         if (runs.wraparound()) add_turns();
     }
 
@@ -61,7 +62,10 @@ class Schematic {
         draw_base(canvas);
         draw_tubes(canvas, m_view, m_tubes);
         for (const Label& label : m_labels) {
-            canvas.text(m_view.on_screen(label.place), label.text,
+            const Point middle = m_view.on_screen(label.place);
+            const double half = Canvas::text_width(label.text, 12, true) / 2 + 2;
+            canvas.rectangle({middle.x - half, middle.y - 7, 2 * half, 14}, {0xff, 0xff, 0xff}, 0.8);
+            canvas.text(middle, label.text,
                         {.size = 12, .colour = label.colour, .anchor = Anchor::middle, .bold = true, .centred = true});
         }
         draw_axes(canvas);
@@ -80,11 +84,11 @@ class Schematic {
         return warp ? Place{along, across, level} : Place{across, along, level};
     }
 
-    void add_line(const YarnColours& colours, View view, std::size_t line) {
+    void add_line(View view, std::size_t line) {
         Subject subject = m_subject;
         subject.request.view = view;
         subject.request.line = line;
-        const SliceMap map = slice_map(subject, colours, m_runs);
+        const SliceMap map = slice_map(subject, m_colours, m_runs);
         const bool warp = view == View::warp_slice;
         const std::size_t shown = warp ? m_shown.rows : m_shown.columns;
         for (const SlicePath& path : map.paths) {
@@ -93,11 +97,7 @@ class Schematic {
         }
     }
 
-    [[nodiscard]] double radius() const { return m_view_scale() * 0.088; }
-    [[nodiscard]] double m_view_scale() const {
-        const Point a = m_view.on_screen({0, 0, 0}), b = m_view.on_screen({0, 1, 0});
-        return std::abs(b.x - a.x) / 0.825;
-    }
+    [[nodiscard]] double radius() const { return m_scale * 0.088; }
 
     void add_path(const SliceMap& map, const SlicePath& path, bool warp, std::size_t line, std::size_t shown) {
         const std::size_t last = std::min(path.last(), shown - 1);
@@ -158,6 +158,9 @@ class Schematic {
             add_tube(path, std::move(places), path.loose[k], path.levels[k]);
         }
         if ((path.loose[k] && m_subject.request.trim) || path.levels[k] >= m_shown.levels) return;
+        // The far ends of a thick block lie behind its yarns, where numbers would only be in the way.
+        const bool near = warp == (way < 0);
+        if (!near && m_shown.levels > 3) return;
         m_labels.push_back({place_on(warp, line, edge + way * 0.24, 0, level), std::to_string(path.number + 1),
                             mix(path.colour, {0, 0, 0}, 0.4)});
     }
@@ -179,9 +182,8 @@ class Schematic {
             const auto a = place_of(turn.from_pick, column), b = place_of(turn.to_pick, column);
             if (!a || !b) continue;
             const double out = turn.side == Side::right ? 1 : -1, reach = 0.5 + 0.07 * std::abs(a->z - b->z);
-            const YarnColours colours(m_subject);
             SlicePath path;
-            path.colour = colours.drawn_pick(turn.from_pick, turn.from_pick - m_subject.block.first_pick(static_cast<std::size_t>(a->x)));
+            path.colour = m_colours.drawn_pick(turn.from_pick, turn.from_pick - m_subject.block.first_pick(static_cast<std::size_t>(a->x)));
             if (turn.caught_by == CaughtBy::none) path.colour = mix(path.colour, {0, 0, 0}, 0.6);
             for (int piece = 0; piece < 8; ++piece) {
                 std::vector<Place> places;
@@ -231,8 +233,10 @@ class Schematic {
     }
 
     const Subject& m_subject;
+    const YarnColours& m_colours;
     const WeftRuns& m_runs;
     Shown m_shown;
+    double m_scale;  ///< pixels of one stack
     Viewpoint m_view;
     std::size_t m_pieces;
     std::vector<Tube> m_tubes;
