@@ -127,10 +127,11 @@ Stack pocket_stack(std::size_t i, std::size_t j) {
     return cell(2, {at((j + 5 - i) % 5 == 0 ? 1 : 0), at(satin < 2 ? 1 : 2)});
 }
 
-/// Every end goes over both wefts or under both, so the seam is one cloth.
+/// The back ends go over both wefts and under both, so the seam is one cloth; the front ends keep the two picks of a row in
+/// different sheds, or the turn between them would not be caught.
 Stack seam_stack(std::size_t i, std::size_t j) {
-    const bool up = (i + j) % 2 == 0;
-    return cell(2, {at(up ? 0 : 2), at(up ? 2 : 0)});
+    static constexpr std::array<std::size_t, 4> front{1, 2, 0, 2};
+    return cell(2, {at((i + j) % 2 == 0 ? 2 : 0), at(front[(i + j) % 4])});
 }
 
 }  // namespace
