@@ -26,6 +26,21 @@ int exit_of(ErrorCode code) {
     return fault;
 }
 
+/// Names from files may hold line breaks and other control characters; a terminal must not obey them.
+std::string on_one_line(const std::string& text) {
+    constexpr char digits[] = "0123456789abcdef";
+    std::string line;
+    for (const char c : text) {
+        const auto byte = static_cast<unsigned char>(c);
+        if (byte >= 0x20 && byte != 0x7f) {
+            line.push_back(c);
+        } else {
+            line += {'\\', 'x', digits[byte >> 4], digits[byte & 15]};
+        }
+    }
+    return line;
+}
+
 std::string lost_flip_line(const LostFlip& lost) {
     return "a flip of block '" + lost.block + "' no longer applies: " + lost.reason;
 }
@@ -34,11 +49,11 @@ std::string lost_flip_line(const LostFlip& lost) {
 
 void Program::fail(const Error& error) {
     exit_code = exit_of(error.code);
-    std::cerr << "weave: " << error.text() << '\n';
+    note(error.text());
 }
 
 void Program::note(const std::string& line) const {
-    std::cerr << "weave: " << line << '\n';
+    std::cerr << "weave: " << on_one_line(line) << '\n';
 }
 
 void Program::answer(const Json& json_answer, const std::string& words) const {

@@ -133,9 +133,11 @@ void add_import_command(CLI::App& app, Program& program) {
     CLI::Option* t =
         command->add_option("--t", request->t, "picks of each row, repeated over the card, such as 2,2")
             ->delimiter(',')
+            ->allow_extra_args(false)
             ->check(count);
     CLI::Option* p = command->add_option("--p", request->p, "ends of each column, repeated, such as 2,2")
                          ->delimiter(',')
+                         ->allow_extra_args(false)
                          ->check(count);
     CLI::Option* infer =
         command->add_flag("--infer", request->infer,

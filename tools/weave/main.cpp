@@ -2,6 +2,7 @@
 
 #include "command.hpp"
 
+#include <csignal>
 #include <iostream>
 #include <new>
 
@@ -18,6 +19,7 @@ constexpr const char* endings =
 }  // namespace
 
 int main(int count, char** words) {
+    std::signal(SIGXFSZ, SIG_IGN);  // a file past the limit is an error to tell and tidy up after, not our end
     weave::program::Program program;
     CLI::App app(about, "weave");
     app.set_version_flag("--version", "weave " WEAVE_VERSION);

@@ -179,6 +179,7 @@ void add_renumber(CLI::App& app, Program& program) {
             "the new order: for each place the old number within the row (or column), from 0, such as 1,0,2")
         ->required()
         ->delimiter(',')
+        ->allow_extra_args(false)
         ->check(range);
     command->add_option("-o,--out", *out, "the .weave file to write")->required();
     on_run(command, program, [=, &program]() -> Status {
@@ -258,7 +259,8 @@ void add_stencil(CLI::App& app, Program& program) {
                      "PNG, TIFF or BMP; its bottom row is row 1, its left column is column 1")
         ->required();
     command->add_option("--map", *mappings, "COLOUR=FILE, such as #ff0000=twill.weave; once for each colour")
-        ->required();
+        ->required()
+        ->allow_extra_args(false);
     command->add_option("-o,--out", *out, "the .weave file to write")->required();
     on_run(command, program, [=, &program] { return make_stencil(program, *picture, *mappings, *out); });
 }

@@ -80,8 +80,18 @@ Status check_tree(const Design& design) {
     return {};
 }
 
+/// False for what is not a number as well.
+bool within(double value, double low, double high) {
+    return value >= low && value <= high;
+}
+
+Status check_length(const std::string& text, std::size_t longest, const std::string& where) {
+    if (text.size() <= longest) return {};
+    return bad_input("is longer than " + std::to_string(longest) + " bytes", where);
+}
+
 Status check_yarn(const YarnType& yarn, const std::string& where) {
-    const auto within = [](double value, double low, double high) { return value >= low && value <= high; };
+    WEAVE_CHECK_OK(check_length(yarn.name, longest_yarn_name, where + ".name"));
     if (!within(yarn.radius_mm, 1e-4, 100)) return bad_input("needs a radius from 0.0001 to 100 mm", where);
     if (!within(yarn.linear_density_tex, 1e-3, 1e7))
         return bad_input("needs a linear density from 0.001 to 1e7 tex", where);
@@ -104,6 +114,8 @@ Status check_yarns(const std::vector<YarnType>& yarns, const std::string& where)
 
 Status check_sequence(const Sequence& sequence, std::size_t below, const std::string& where) {
     if (sequence.once.empty()) return bad_input("is empty, but needs at least one number", where);
+    if (sequence.once.size() > longest_sequence)
+        return bad_input("is longer than " + std::to_string(longest_sequence) + " elements", where);
     for (const std::uint32_t number : sequence.once) {
         if (number >= below) {
             return bad_input("names number " + std::to_string(number) + ", but there are only " +
@@ -117,10 +129,14 @@ Status check_sequence(const Sequence& sequence, std::size_t below, const std::st
 Status check_warp(const WarpPlan& warp) {
     WEAVE_CHECK_OK(check_yarns(warp.yarns, "warp.yarns"));
     if (warp.beams.empty()) return bad_input("needs at least one beam", "warp.beams");
+    for (std::size_t k = 0; k < warp.beams.size(); ++k) {
+        WEAVE_CHECK_OK(check_length(warp.beams[k].name, longest_yarn_name,
+                                    "warp.beams[" + std::to_string(k) + "].name"));
+    }
     WEAVE_CHECK_OK(check_sequence(warp.order, warp.yarns.size(), "warp.order"));
     WEAVE_CHECK_OK(check_sequence(warp.beam_order, warp.beams.size(), "warp.beam_order"));
     WEAVE_CHECK_OK(check_sequence(warp.colour_order, warp.colours.size() + 1, "warp.colour_order"));
-    if (!(warp.density_ends_per_cm >= 0.01 && warp.density_ends_per_cm <= 1e4)) {
+    if (!within(warp.density_ends_per_cm, 0.01, 1e4)) {
         return bad_input("must be from 0.01 to 10000", "warp.density_ends_per_cm");
     }
     if (warp.ends_per_dent == 0 || warp.ends_per_dent > 1000)
@@ -133,6 +149,8 @@ Status check_weft(const WeftPlan& weft) {
     if (weft.feeders.empty() || weft.feeders.size() > 64)
         return bad_input("needs 1 to 64 feeders", "weft.feeders");
     for (std::size_t k = 0; k < weft.feeders.size(); ++k) {
+        WEAVE_CHECK_OK(check_length(weft.feeders[k].name, longest_yarn_name,
+                                    "weft.feeders[" + std::to_string(k) + "].name"));
         if (weft.feeders[k].yarn >= weft.yarns.size()) {
             return bad_input("names yarn " + std::to_string(weft.feeders[k].yarn) + ", but there are only " +
                                  std::to_string(weft.yarns.size()) + ", counted from 0",
@@ -141,6 +159,8 @@ Status check_weft(const WeftPlan& weft) {
     }
     if (weft.feeder_order.empty())
         return bad_input("is empty, but needs at least one pick", "weft.feeder_order");
+    if (weft.feeder_order.size() > longest_sequence)
+        return bad_input("is longer than " + std::to_string(longest_sequence) + " picks", "weft.feeder_order");
     for (const FeederSet& set : weft.feeder_order) {
         if (set.size() > 2) return bad_input("gives a pick more than two feeders", "weft.feeder_order");
         if (set.size() == 2 && set[0] == set[1])
@@ -153,9 +173,52 @@ Status check_weft(const WeftPlan& weft) {
             }
         }
     }
-    if (!(weft.density_picks_per_cm >= 0.01 && weft.density_picks_per_cm <= 1e4)) {
+    if (weft.directions.size() > longest_sequence || weft.take_up.size() > longest_sequence) {
+        return bad_input("has directions or take-up for more than " + std::to_string(longest_sequence) + " picks",
+                         "weft");
+    }
+    if (!within(weft.density_picks_per_cm, 0.01, 1e4)) {
         return bad_input("must be from 0.01 to 10000", "weft.density_picks_per_cm");
     }
+    return {};
+}
+
+Status check_system(const SystemScene& system, const std::string& where) {
+    const auto fits = [](const std::optional<double>& value, double low, double high) {
+        return !value || within(*value, low, high);
+    };
+    if (!fits(system.strain, 1, 2)) return bad_input("must be from 1 to 2", where + ".strain");
+    if (!fits(system.stiffness_scale, 1e-9, 1e9))
+        return bad_input("must be from 1e-9 to 1e9", where + ".stiffness_scale");
+    if (!fits(system.radius_scale, 1e-9, 1e9))
+        return bad_input("must be from 1e-9 to 1e9", where + ".radius_scale");
+    return {};
+}
+
+Status check_scene(const Scene& scene) {
+    const std::pair<const char*, const std::optional<double>*> spacings[] = {
+        {"scene.dx_mm", &scene.dx_mm}, {"scene.dy_mm", &scene.dy_mm}, {"scene.dz_mm", &scene.dz_mm}};
+    for (const auto& [where, spacing] : spacings) {
+        if (*spacing && !within(**spacing, 1e-6, 1e6)) return bad_input("must be from 1e-6 to 1e6 mm", where);
+    }
+    WEAVE_CHECK_OK(check_system(scene.warp, "scene.warp"));
+    WEAVE_CHECK_OK(check_system(scene.weft, "scene.weft"));
+    for (std::size_t k = 0; k < scene.pins.size(); ++k) {
+        if (scene.pins[k].number > static_cast<std::size_t>(most_yarn_number))
+            return bad_input("names a yarn that no cloth has", "scene.pins[" + std::to_string(k) + "].number");
+    }
+    for (std::size_t k = 0; k < scene.fields.size(); ++k) {
+        const ForceField& field = scene.fields[k];
+        const std::string where = "scene.fields[" + std::to_string(k) + "]";
+        for (const double x : field.centre_mm) {
+            if (!within(x, -1e9, 1e9)) return bad_input("must be from -1e9 to 1e9 mm", where + ".centre_mm");
+        }
+        if (!within(field.radius_mm, 1e-6, 1e6))
+            return bad_input("must be from 1e-6 to 1e6 mm", where + ".radius_mm");
+        if (!within(field.strength_N_per_mm, -1e9, 1e9))
+            return bad_input("must be from -1e9 to 1e9 N/mm", where + ".strength_N_per_mm");
+    }
+    if (!within(scene.friction, 0, 100)) return bad_input("must be from 0 to 100", "scene.friction");
     return {};
 }
 
@@ -203,6 +266,10 @@ Status check_block_name(const std::string& name) {
 }
 
 Status check(const Design& design) {
+    WEAVE_CHECK_OK(check_length(design.title, longest_title, "title"));
+    WEAVE_CHECK_OK(check_length(design.notes, longest_notes, "notes"));
+    if (design.blocks.size() > most_blocks)
+        return bad_input("has more than " + std::to_string(most_blocks) + " blocks", "blocks");
     for (const auto& [name, node] : design.blocks) {
         if (Status fine = check_block_name(name); !fine) return std::move(fine).error().in("blocks");
     }
@@ -211,7 +278,8 @@ Status check(const Design& design) {
     }
     WEAVE_CHECK_OK(check_tree(design));
     WEAVE_CHECK_OK(check_warp(design.warp));
-    return check_weft(design.weft);
+    WEAVE_CHECK_OK(check_weft(design.weft));
+    return check_scene(design.scene);
 }
 
 }  // namespace weave

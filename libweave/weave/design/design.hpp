@@ -95,11 +95,16 @@ struct Design {
     friend bool operator==(const Design& a, const Design& b);
 };
 
+/// Limits of what a document holds, so that whatever is written can be read again.
+inline constexpr std::size_t most_blocks = 4096;
+inline constexpr std::size_t longest_title = 1000, longest_notes = 65536, longest_yarn_name = 200;  ///< bytes
+
 /// Block names: 1 to 64 letters, digits, '-', '_' or '.', the first a letter or digit.
 Status check_block_name(const std::string& name);
 
 /// Everything that can be said without evaluating: a root that exists, children that exist, no cycle (named
-/// as a chain of blocks), indices of yarns, feeders and beams in range, numbers finite and in their ranges.
+/// as a chain of blocks), indices of yarns, feeders and beams in range, numbers finite and in their ranges,
+/// texts and lists no longer than a document may hold.
 Status check(const Design& design);
 
 }  // namespace weave

@@ -27,9 +27,11 @@ Status check_version(const Json& document) {
         return bad_input("is not a .weave document: it does not start with \"format\": \"weave\"");
     }
     const Json version = document.value("version", Json());
-    if (!version.is_number_integer() || version < 1)
+    const bool whole = version.is_number_integer();
+    const bool huge = version.is_number_unsigned() && version.get<std::uint64_t>() > INT64_MAX;
+    if (!whole || (!huge && version.get<std::int64_t>() < 1))
         return bad_input("must be a whole number from 1 on", "version");
-    if (version > document_version) {
+    if (huge || version.get<std::int64_t>() > document_version) {
         return bad_input("is " + version.dump() + ", newer than this program, which reads versions up to " +
                              std::to_string(document_version),
                          "version");
@@ -53,12 +55,13 @@ Result<Design> read_document(std::string_view text) {
     static_cast<void>(reader.raw("format"));
     static_cast<void>(reader.raw("version"));
     Design design;
-    design.title = reader.text("title", "", 1000);
-    design.notes = reader.text("notes", "");
+    design.title = reader.text("title", "", longest_title);
+    design.notes = reader.text("notes", "", longest_notes);
     design.root = reader.text("root");
     JsonReader blocks = reader.object("blocks");
     for (const auto& [name, node] : blocks.named_objects()) {
         if (reader.failed()) break;
+        if (Status fine = check_block_name(name); !fine) return std::move(fine).error().in("blocks");
         Result<NodePtr> made = node_from_json(node.json());
         if (!made) return std::move(made).error().under("blocks." + name);
         design.blocks[name] = std::move(made).value();

@@ -58,6 +58,8 @@ Result<Edit> make(Design& design, const PutBlock& edit) {
     if (leads_to(design, *edit.node, edit.name))
         return invalid("'" + edit.name + "' would be made from itself");
     const auto old = design.blocks.find(edit.name);
+    if (old == design.blocks.end() && design.blocks.size() >= most_blocks)
+        return invalid("a design has at most " + std::to_string(most_blocks) + " blocks");
     Edit undo =
         old == design.blocks.end() ? Edit(RemoveBlock{edit.name}) : Edit(PutBlock{edit.name, old->second});
     design.blocks[edit.name] = edit.node;
@@ -98,6 +100,10 @@ Result<Edit> make(Design& design, const SetRoot& edit) {
 Result<Edit> make(Design& design, const PutFlip& edit) {
     const auto found = design.blocks.find(edit.block);
     if (found == design.blocks.end()) return unknown_block(edit.block);
+    constexpr auto most = static_cast<std::size_t>(most_yarn_number);
+    if (edit.flip.pick > most || edit.flip.end > most)
+        return invalid("no cloth has a crossing of pick " + std::to_string(edit.flip.pick + 1) + " and end " +
+                       std::to_string(edit.flip.end + 1));
     std::vector<Flip> flips = found->second->flips;
     const auto same_place = [&](const Flip& flip) {
         return flip.pick == edit.flip.pick && flip.end == edit.flip.end;
@@ -124,6 +130,10 @@ Result<Edit> make(Design& design, const RemoveFlip& edit) {
 }
 
 Result<Edit> make(Design& design, const SetTitle& edit) {
+    if (edit.title.size() > longest_title || edit.notes.size() > longest_notes) {
+        return invalid("a title has at most " + std::to_string(longest_title) + " bytes, notes have at most " +
+                       std::to_string(longest_notes));
+    }
     Edit undo = SetTitle{design.title, design.notes};
     design.title = edit.title;
     design.notes = edit.notes;
@@ -152,7 +162,9 @@ Result<Edit> make(Design& design, const SetWeft& edit) {
 }
 
 Result<Edit> make(Design& design, const SetScene& edit) {
-    return Edit(SetScene{std::exchange(design.scene, edit.scene)});
+    Edit undo = SetScene{design.scene};
+    WEAVE_CHECK_OK(exchange_section(design, design.scene, edit.scene));
+    return undo;
 }
 
 // The members of each edit in JSON, and back.
@@ -190,6 +202,8 @@ Json write(const SetScene& edit) {
 
 Result<Edit> read_put_block(JsonReader& reader) {
     PutBlock edit{reader.text("name"), nullptr};
+    if (!reader.has("node")) reader.fail("is missing", "node");
+    WEAVE_CHECK_OK(reader.status());
     Result<NodePtr> node = node_from_json(reader.raw("node"));
     if (!node) return std::move(node).error().under("node");
     edit.node = std::move(node).value();

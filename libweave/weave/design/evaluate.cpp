@@ -2,6 +2,8 @@
 #include <weave/design/evaluate.hpp>
 #include <weave/design/tree.hpp>
 
+#include <algorithm>
+
 namespace weave {
 
 namespace {
@@ -45,6 +47,12 @@ Result<BlockPtr> block_of(const Node& node, const std::vector<BlockPtr>& childre
     return std::make_shared<const Block>(std::move(flipped.block));
 }
 
+/// So many that a name's versions stay within some 16 MB, unless the latest alone is larger.
+std::size_t versions_to_keep(const Block& block) {
+    constexpr std::size_t most = 8, most_cells = std::size_t{1} << 22;
+    return std::clamp<std::size_t>(most_cells / block.cells().size(), 1, most);
+}
+
 }  // namespace
 
 Result<Evaluation> Evaluator::evaluate(const Design& design) {
@@ -58,27 +66,37 @@ Result<Evaluation> Evaluator::evaluate(const Design& design, const std::string& 
     Evaluation evaluation;
     for (const std::string& name : bottom_up(design, block)) {
         WEAVE_CHECK_OK(make_known(name, design.blocks.at(name)));
-        const Known& known = m_known.at(name);
-        evaluation.lost_flips.insert(evaluation.lost_flips.end(), known.lost_flips.begin(),
-                                     known.lost_flips.end());
-        evaluation.block = known.block;
+        const Known& made = known(name);
+        evaluation.lost_flips.insert(evaluation.lost_flips.end(), made.lost_flips.begin(), made.lost_flips.end());
+        evaluation.block = made.block;
     }
-    std::erase_if(m_known, [&](const auto& known) { return !design.blocks.contains(known.first); });
+    std::erase_if(m_known, [&](const auto& versions) { return !design.blocks.contains(versions.first); });
     return evaluation;
 }
 
 Status Evaluator::make_known(const std::string& name, const NodePtr& node) {
     std::vector<BlockPtr> children;
-    for (const std::string& child : children_of(*node)) children.push_back(m_known.at(child).block);
-    const auto found = m_known.find(name);
-    if (found != m_known.end() && found->second.node == node && found->second.children == children) return {};
+    for (const std::string& child : children_of(*node)) children.push_back(known(child).block);
+    std::vector<Known>& versions = m_known[name];
+    const auto found = std::find_if(versions.begin(), versions.end(), [&](const Known& version) {
+        return version.node == node && version.children == children;
+    });
+    if (found != versions.end()) {
+        std::rotate(versions.begin(), found, found + 1);
+        return {};
+    }
     std::vector<RefusedFlip> refused;
     Result<BlockPtr> block = block_of(*node, children, refused);
-    if (!block) return std::move(block).error().under("blocks." + name);
+    if (!block) {
+        if (versions.empty()) m_known.erase(name);
+        return std::move(block).error().under("blocks." + name);
+    }
     ++m_computed;
     std::vector<LostFlip> lost;
     for (RefusedFlip& flip : refused) lost.push_back({name, flip.flip, std::move(flip.reason)});
-    m_known[name] = {node, std::move(children), std::move(block).value(), std::move(lost)};
+    const std::size_t keep = versions_to_keep(**block);
+    versions.insert(versions.begin(), {node, std::move(children), std::move(block).value(), std::move(lost)});
+    versions.resize(std::min(versions.size(), keep));
     return {};
 }
 

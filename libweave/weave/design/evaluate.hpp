@@ -23,8 +23,9 @@ struct Evaluation {
 };
 
 /// Turns designs into blocks, remembering every node's block. A node is computed again only when it, or a
-/// block that it is made from, is another than last time; so after an edit only what depends on it is
-/// recomputed.
+/// block that it is made from, is not remembered; so after an edit only what depends on it is recomputed, and
+/// undoing an edit computes nothing. Of each name the latest versions are remembered: up to 8, fewer of large
+/// blocks.
 class Evaluator {
   public:
     /// The cloth. Errors carry the place, such as `blocks.toe`.
@@ -43,7 +44,8 @@ class Evaluator {
         std::vector<LostFlip> lost_flips;
     };
     Status make_known(const std::string& name, const NodePtr& node);
-    std::map<std::string, Known> m_known;
+    [[nodiscard]] const Known& known(const std::string& name) const { return m_known.at(name).front(); }
+    std::map<std::string, std::vector<Known>> m_known;  ///< of each name its versions, the latest first
     std::size_t m_computed = 0;
 };
 

@@ -7,7 +7,7 @@ namespace {
 
 /// `wish`, `wish-2`, `wish-3` …, never longer than a block name may be.
 std::string numbered(const std::string& wish, std::size_t k) {
-    return k < 2 ? wish : wish.substr(0, 48) + "-" + std::to_string(k);
+    return k < 2 ? wish.substr(0, 64) : wish.substr(0, 48) + "-" + std::to_string(k);
 }
 
 /// The name under which `node` goes into the design: that of an equal block, or a free one.

@@ -6,7 +6,8 @@
 
 namespace weave {
 
-/// A block name that the design does not use yet: `wish` itself, or `wish-2`, `wish-3` and so on.
+/// A block name that the design does not use yet: `wish` itself, or `wish-2`, `wish-3` and so on. A wish
+/// longer than a block name may be is cut.
 std::string free_name(const Design& design, const std::string& wish);
 
 /// Brings all that `from`'s cloth is made from into `into` and gives the name that its root has there. A

@@ -52,9 +52,21 @@ Result<std::vector<std::uint32_t>> count_yarns(const Json& rows, System system) 
     return counts;
 }
 
+/// How many places a stack has as it is written, empty ones on top included.
+std::size_t places_in(std::string_view text) {
+    std::size_t places = 0;
+    bool between = true;
+    for (const char c : text) {
+        const bool space = c == ' ' || c == '\t';
+        if (between && !space) ++places;
+        between = space;
+    }
+    return places;
+}
+
 Result<NodeSource> read_stacks(JsonReader& reader) {
     const Json& rows = reader.raw("stacks");
-    const auto height = static_cast<std::size_t>(reader.integer("height", 0, 1 << 28, 0));
+    auto height = static_cast<std::size_t>(reader.integer("height", 0, 1 << 28, 0));
     WEAVE_CHECK_OK(reader.status());
     if (!rows.is_array() || rows.empty())
         return bad_input("must be a list of rows, each a list of stacks", "stacks");
@@ -78,6 +90,7 @@ Result<NodeSource> read_stacks(JsonReader& reader) {
             WEAVE_TRY(const std::string text, stack_text(rows, i, j));
             Result<Stack> stack = parse_stack(text, first_pick, first_end);
             if (!stack) return in_list(std::move(stack).error(), "stacks", i, j);
+            height = std::max(height, places_in(text));
             cells.push_back(table.number_of(std::move(stack).value()));
         }
     }

@@ -1,7 +1,9 @@
+#include <weave/design/design.hpp>
 #include <weave/design/plan_json.hpp>
 
 #include <algorithm>
 #include <charconv>
+#include <cmath>
 
 namespace weave {
 
@@ -48,7 +50,7 @@ std::vector<YarnType> yarns_member(JsonReader& reader, const std::vector<YarnTyp
     std::vector<YarnType> yarns;
     for (JsonReader& item : reader.objects("yarns")) {
         YarnType& yarn = yarns.emplace_back();
-        yarn.name = item.text("name", "", 200);
+        yarn.name = item.text("name", "", longest_yarn_name);
         yarn.colour = item.colour("colour", standard.colour);
         yarn.radius_mm = item.number("radius_mm", {1e-4, 100}, standard.radius_mm);
         yarn.linear_density_tex = item.number("linear_density_tex", {1e-3, 1e7}, standard.linear_density_tex);
@@ -98,7 +100,7 @@ bool parse_feeders(std::string_view word, FeederSet& set) {
 }
 
 std::vector<FeederSet> feeder_order_member(JsonReader& reader) {
-    constexpr std::size_t longest = std::size_t{1} << 22;
+    constexpr std::size_t longest = longest_sequence;
     std::vector<FeederSet> order;
     const std::string text = reader.text("feeder_order", "0", std::size_t{1} << 24);
     std::size_t at = 0;
@@ -158,10 +160,11 @@ void read_fields(JsonReader& reader, Scene& scene) {
         const bool three =
             centre.is_array() && centre.size() == 3 &&
             std::all_of(centre.begin(), centre.end(), [](const Json& x) { return x.is_number(); });
-        if (three) {
+        if (three && std::all_of(centre.begin(), centre.end(),
+                                 [](const Json& x) { return std::abs(x.get<double>()) <= 1e9; })) {
             field.centre_mm = centre.get<std::array<double, 3>>();
         } else {
-            item.fail("must be three numbers, in mm", "centre_mm");
+            item.fail("must be three numbers from -1e9 to 1e9, in mm", "centre_mm");
         }
         field.radius_mm = item.number("radius_mm", {1e-6, 1e6});
         field.strength_N_per_mm = item.number("strength_N_per_mm", {-1e9, 1e9});
@@ -202,7 +205,7 @@ WarpPlan warp_from_json(JsonReader reader) {
     if (reader.has("beams")) {
         warp.beams.clear();
         for (JsonReader& item : reader.objects("beams")) {
-            warp.beams.push_back({item.text("name", "", 200)});
+            warp.beams.push_back({item.text("name", "", longest_yarn_name)});
             item.no_others();
         }
     }
@@ -256,7 +259,7 @@ WeftPlan weft_from_json(JsonReader reader) {
         weft.feeders.clear();
         for (JsonReader& item : reader.objects("feeders")) {
             const auto last = static_cast<std::int64_t>(weft.yarns.size()) - 1;
-            const std::string name = item.text("name", "", 200);
+            const std::string name = item.text("name", "", longest_yarn_name);
             weft.feeders.push_back({name, static_cast<std::uint32_t>(item.integer("yarn", 0, last, 0))});
             item.no_others();
         }

@@ -6,8 +6,6 @@ namespace weave {
 
 namespace {
 
-constexpr std::size_t longest_sequence = std::size_t{1} << 22;
-
 /// Reads a number at the start of `text` and takes it off.
 bool take_number(std::string_view& text, std::uint32_t& number) {
     const auto [end, code] = std::from_chars(text.data(), text.data() + text.size(), number);

@@ -11,6 +11,9 @@
 
 namespace weave {
 
+/// No sequence has more elements before it repeats.
+inline constexpr std::size_t longest_sequence = std::size_t{1} << 22;
+
 /// A list that repeats for ever: element i is `once[i mod size]`. In files it is text with runs: `0*12 1
 /// 0*12`.
 struct Sequence {

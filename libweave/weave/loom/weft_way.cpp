@@ -1,0 +1,266 @@
+// Where the loops of a shuttle's weft come to rest.
+//
+// Seen from above, ends and picks are straight lines that cross in a grid, pick n at place n of the insertion order. On each side a
+// feeder's yarn makes an arc outside the cloth from one of its picks, a, to its next, b. Tension pulls the arc inwards, end by
+// end. It slips past an end when a and b lie on the same side of it (both over or both under): nothing holds it there. The
+// outermost end for which they differ catches it.
+//
+// Another feeder's pick c between a and b, as far as it is still in the cloth at that end, has to let the loop pass as well.
+// The loop crosses c (the bight, between a and b), c crosses the end, and the end crosses the bight: a triangle. One yarn of
+// the three can pass the crossing of the other two unless each lies over the next in a ring; then c holds the loop.
+// Whether the bight lies over c is settled outside the cloth, where c's own yarn leaves:
+//   - c turns there to a pick outside a … b: the arcs cross once, and the one formed later lies above;
+//   - c is the feeder's first or last pick and its tail leaves there: it was laid before the loop closed, so the loop is above;
+//   - c turns to a pick d that also lies in a … b: the arcs do not cross. The loop may slide over both or under both, so what
+//     counts is the way on which it comes further.
+// As loops are pulled in their picks vanish outside them and hold others no longer; the reach of every loop only grows with
+// that, so the state of rest is the least fixed point, whatever the order. tests/loom/weft_way.cpp holds this rule against
+// a reducer of crossing diagrams that knows nothing of it.
+
+#include <weave/loom/weft_way.hpp>
+
+#include <algorithm>
+#include <array>
+#include <bit>
+#include <deque>
+
+namespace weave {
+
+namespace {
+
+constexpr std::size_t nowhere = static_cast<std::size_t>(-1);
+
+/// One feeder's yarn in one pick. `depth` is, per side, how many ends its turn there has slipped past; `turn` the turn there.
+struct Strand {
+    std::uint32_t feeder = 0;
+    std::size_t pick = 0;
+    std::array<std::size_t, 2> turn{nowhere, nowhere};
+    std::array<std::size_t, 2> depth{0, 0};
+};
+
+/// What may hold a loop besides ends: one strand with a settled crossing, or two that turn into each other.
+struct Obstacle {
+    std::size_t strand = nowhere, partner = nowhere;  ///< indices of strands; partner: nested, the loop may choose
+    bool loop_above = true;
+};
+
+struct Loop {
+    Turn turn;
+    std::size_t from = 0, to = 0;   ///< strands
+    std::size_t catching_depth = 0; ///< of the outermost end that differs between the two picks; all ends if there is none
+    std::size_t depth = 0;
+    std::size_t holder = nowhere;   ///< strand that holds it at `depth`
+    std::vector<Obstacle> obstacles;
+};
+
+std::size_t index(Side side) { return static_cast<std::size_t>(side); }
+
+/// Side on which a pick starts or ends.
+Side start_of(Direction direction) { return direction == Direction::left_to_right ? Side::left : Side::right; }
+Side end_of(Direction direction) { return direction == Direction::left_to_right ? Side::right : Side::left; }
+
+/// First (from the left) or last set bit of a row of bytes within the ends `low` … `high`, or nowhere.
+template <class ByteAt>
+std::size_t outermost(Side side, std::size_t low, std::size_t high, ByteAt byte_at) {
+    if (low > high || high == nowhere) return nowhere;
+    const std::size_t first = low / 8, last = high / 8;
+    for (std::size_t k = 0; k <= last - first; ++k) {
+        const std::size_t at = side == Side::left ? first + k : last - k;
+        auto byte = static_cast<unsigned>(byte_at(at)) & 0xffU;
+        if (at == first) byte &= 0xffU >> low % 8;
+        if (at == last) byte &= 0xffU << (7 - high % 8) & 0xffU;
+        if (byte == 0) continue;
+        const auto zeros = side == Side::left ? std::countl_zero(static_cast<std::uint8_t>(byte))
+                                              : 7 - std::countr_zero(static_cast<std::uint8_t>(byte));
+        return at * 8 + static_cast<std::size_t>(zeros);
+    }
+    return nowhere;
+}
+
+class Loops {
+  public:
+    Loops(const CardImage& card, const std::vector<Pick>& picks) : m_card(card), m_ends(card.ends()) {
+        follow_feeders(picks);
+        find_obstacles();
+        pull();
+    }
+
+    WeftWay way() && {
+        for (const Loop& loop : m_loops) m_way.turns.push_back(at_rest(loop));
+        std::sort(m_way.turns.begin(), m_way.turns.end(), [](const Turn& a, const Turn& b) {
+            return std::pair(a.from_pick, a.feeder) < std::pair(b.from_pick, b.feeder);
+        });
+        for (const Strand& strand : m_strands) m_way.spans.push_back(span(strand));
+        std::sort(m_way.spans.begin(), m_way.spans.end(), [](const PickSpan& a, const PickSpan& b) {
+            return std::pair(a.pick, a.feeder) < std::pair(b.pick, b.feeder);
+        });
+        return std::move(m_way);
+    }
+
+  private:
+    /// Strands in the order of picks; a loop wherever a feeder's next pick starts where the last one ended.
+    void follow_feeders(const std::vector<Pick>& picks) {
+        std::vector<std::size_t> last_strand;
+        for (std::size_t k = 0; k < std::min(picks.size(), m_card.picks()); ++k) {
+            for (const std::uint32_t feeder : picks[k].feeders) {
+                if (feeder >= last_strand.size()) last_strand.resize(std::size_t{feeder} + 1, nowhere);
+                const std::size_t before = std::exchange(last_strand[feeder], m_strands.size());
+                m_strands.push_back({feeder, k, {nowhere, nowhere}, {0, 0}});
+                if (before != nowhere) join(before, picks);
+            }
+        }
+    }
+
+    void join(std::size_t from, const std::vector<Pick>& picks) {
+        const std::size_t to = m_strands.size() - 1;
+        Loop loop;
+        loop.turn.feeder = m_strands[to].feeder;
+        loop.turn.from_pick = m_strands[from].pick;
+        loop.turn.to_pick = m_strands[to].pick;
+        loop.turn.side = end_of(picks[loop.turn.from_pick].direction);
+        if (start_of(picks[loop.turn.to_pick].direction) != loop.turn.side) {
+            m_way.missed_boxes.push_back({loop.turn.feeder, loop.turn.from_pick, loop.turn.to_pick});
+            return;
+        }
+        loop.from = from;
+        loop.to = to;
+        loop.catching_depth = depth_of_difference(loop.turn);
+        m_strands[from].turn[index(loop.turn.side)] = m_loops.size();
+        m_strands[to].turn[index(loop.turn.side)] = m_loops.size();
+        m_loops.push_back(std::move(loop));
+    }
+
+    std::size_t depth_of(Side side, std::size_t end) const { return side == Side::left ? end : m_ends - 1 - end; }
+
+    std::size_t depth_of_difference(const Turn& turn) const {
+        const auto a = m_card.row(turn.from_pick), b = m_card.row(turn.to_pick);
+        const std::size_t end =
+            outermost(turn.side, 0, m_ends - 1, [&](std::size_t i) { return a[i] ^ b[i]; });
+        return end == nowhere ? m_ends : depth_of(turn.side, end);
+    }
+
+    /// Every strand between the picks of a loop, once each, and for each strand the loops that it may hold.
+    void find_obstacles() {
+        m_held_by.resize(m_strands.size());
+        for (std::size_t number = 0; number < m_loops.size(); ++number) {
+            Loop& loop = m_loops[number];
+            for (std::size_t s = loop.from + 1; s < loop.to; ++s) {
+                const std::size_t pick = m_strands[s].pick;
+                if (pick == loop.turn.from_pick || pick == loop.turn.to_pick) continue;
+                add_obstacle(loop, s);
+                m_held_by[s].push_back(number);
+            }
+        }
+    }
+
+    void add_obstacle(Loop& loop, std::size_t s) const {
+        const std::size_t turn = m_strands[s].turn[index(loop.turn.side)];
+        if (turn == nowhere) return loop.obstacles.push_back({s, nowhere, true});
+        const Loop& other = m_loops[turn];
+        // Two feeders in one pick lie side by side and need not cross, so the ends of the range count as inside.
+        const bool nested =
+            other.turn.from_pick >= loop.turn.from_pick && other.turn.to_pick <= loop.turn.to_pick;
+        if (!nested) return loop.obstacles.push_back({s, nowhere, loop.turn.to_pick > other.turn.to_pick});
+        const std::size_t partner = s == other.from ? other.to : other.from;
+        const bool partner_counts = m_strands[partner].pick != loop.turn.from_pick &&
+                                    m_strands[partner].pick != loop.turn.to_pick;
+        if (s == other.from || !partner_counts) loop.obstacles.push_back({s, partner_counts ? partner : s, true});
+    }
+
+    /// Ends at which a strand is still in the cloth: first … last, empty where first > last.
+    std::pair<std::size_t, std::size_t> presence(const Strand& strand) const {
+        const std::size_t left = strand.depth[index(Side::left)], right = strand.depth[index(Side::right)];
+        if (left + right >= m_ends) return {1, 0};
+        return {left, m_ends - 1 - right};
+    }
+
+    /// The depth from `from` on, short of the catching end, at which a strand holds a loop that lies above (below) it.
+    std::size_t held_at(const Loop& loop, std::size_t strand, bool loop_above) const {
+        auto [low, high] = presence(m_strands[strand]);
+        if (low > high || loop.catching_depth <= loop.depth) return m_ends;
+        const bool left = loop.turn.side == Side::left;
+        const std::size_t outer = loop.depth, inner = loop.catching_depth - 1;  // depths
+        low = std::max(low, left ? outer : m_ends - 1 - inner);
+        high = std::min(high, left ? inner : m_ends - 1 - outer);
+        const auto bight = m_card.row(loop.turn.from_pick), c = m_card.row(m_strands[strand].pick);
+        const std::size_t end = outermost(loop.turn.side, low, high, [&](std::size_t i) {
+            return loop_above ? c[i] & ~bight[i] : ~c[i] & bight[i];
+        });
+        return end == nowhere ? m_ends : depth_of(loop.turn.side, end);
+    }
+
+    /// How far the loop comes with the strands where they are now, and what holds it there.
+    std::pair<std::size_t, std::size_t> reach(const Loop& loop) const {
+        std::pair nearest{loop.catching_depth, nowhere};
+        const auto pair_at = [&](const Obstacle& obstacle, bool above) {
+            std::pair held{held_at(loop, obstacle.strand, above), obstacle.strand};
+            if (obstacle.partner != nowhere && obstacle.partner != obstacle.strand) {
+                const std::size_t other = held_at(loop, obstacle.partner, above);
+                if (other < held.first) held = {other, obstacle.partner};
+            }
+            return held;
+        };
+        for (const Obstacle& obstacle : loop.obstacles) {
+            auto held = pair_at(obstacle, obstacle.loop_above);
+            if (obstacle.partner != nowhere) {
+                const auto below = pair_at(obstacle, false);
+                if (below.first > held.first) held = below;
+            }
+            if (held.first < nearest.first) nearest = held;
+        }
+        return nearest;
+    }
+
+    void pull() {
+        std::deque<std::size_t> waiting;
+        std::vector<bool> is_waiting(m_loops.size(), true);
+        for (std::size_t k = 0; k < m_loops.size(); ++k) waiting.push_back(k);
+        while (!waiting.empty()) {
+            Loop& loop = m_loops[waiting.front()];
+            is_waiting[waiting.front()] = false;
+            waiting.pop_front();
+            const auto [depth, holder] = reach(loop);
+            loop.holder = holder;
+            if (depth == loop.depth) continue;
+            loop.depth = depth;
+            for (const std::size_t strand : {loop.from, loop.to}) {
+                m_strands[strand].depth[index(loop.turn.side)] = depth;
+                for (const std::size_t held : m_held_by[strand]) {
+                    if (!is_waiting[held]) waiting.push_back(held);
+                    is_waiting[held] = true;
+                }
+            }
+        }
+    }
+
+    Turn at_rest(const Loop& loop) const {
+        Turn turn = loop.turn;
+        if (loop.depth >= m_ends) return turn;
+        turn.end = loop.turn.side == Side::left ? loop.depth : m_ends - 1 - loop.depth;
+        turn.caught_by = loop.holder == nowhere ? CaughtBy::end : CaughtBy::pick;
+        if (loop.holder != nowhere) turn.pick = m_strands[loop.holder].pick;
+        return turn;
+    }
+
+    PickSpan span(const Strand& strand) const {
+        const auto [first, last] = presence(strand);
+        if (first > last) return {strand.feeder, strand.pick, 0, m_ends - 1, true};
+        return {strand.feeder, strand.pick, first, last, false};
+    }
+
+    const CardImage& m_card;
+    std::size_t m_ends;
+    std::vector<Strand> m_strands;
+    std::vector<Loop> m_loops;
+    std::vector<std::vector<std::size_t>> m_held_by;
+    WeftWay m_way;
+};
+
+}  // namespace
+
+WeftWay weft_way(const CardImage& card, const std::vector<Pick>& picks) {
+    if (card.ends() == 0) return {};
+    return Loops(card, picks).way();
+}
+
+}  // namespace weave

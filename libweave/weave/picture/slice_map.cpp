@@ -1,0 +1,112 @@
+#include <weave/picture/slice_map.hpp>
+
+#include <algorithm>
+
+namespace weave {
+
+namespace {
+
+constexpr double across = 46, up = 27;  ///< pixels between positions and between levels
+constexpr double left = 104, top = 30;
+
+const Stack& stack_at(const Subject& subject, System dots, std::size_t position) {
+    return dots == System::weft ? subject.block.stack(position, subject.request.line)
+                                : subject.block.stack(subject.request.line, position);
+}
+
+void list_dots(const Subject& subject, const YarnColours& colours, SliceMap& map) {
+    const Block& block = subject.block;
+    for (std::size_t position = 0; position < map.positions; ++position) {
+        const auto slots = stack_at(subject, map.dots, position).slots();
+        for (std::size_t level = 0; level < std::min(slots.size(), map.levels); ++level) {
+            const Slot slot = slots[level];
+            if (map.dots == System::weft ? !slot.is_weft() : !slot.is_warp()) continue;
+            if (subject.request.trim && slot.is_loose()) continue;
+            SliceDot dot{position, level, slot.index(), {}, slot.is_loose()};
+            if (map.dots == System::weft) {
+                dot.number += block.first_pick(position);
+                if (!colours.has_weft(dot.number)) continue;
+                dot.colour = colours.drawn_pick(dot.number, 0);
+            } else {
+                dot.number += block.first_end(position);
+                dot.colour = colours.drawn_end(dot.number, 0);
+            }
+            map.dot_list.push_back(dot);
+        }
+    }
+}
+
+/// Levels and looseness of every path yarn at every shown position: two tables, yarn by yarn.
+void list_paths(const Subject& subject, SliceMap& map, std::size_t yarns) {
+    map.paths.resize(yarns);
+    for (std::size_t position = 0; position < map.positions; ++position) {
+        const auto slots = stack_at(subject, map.dots, position).slots();
+        for (std::size_t level = 0; level < slots.size(); ++level) {
+            const Slot slot = slots[level];
+            if (slot.is_empty() || (map.dots == System::weft ? !slot.is_warp() : !slot.is_weft())) continue;
+            map.paths[slot.index()].levels.push_back(level);
+            map.paths[slot.index()].loose.push_back(slot.is_loose());
+        }
+    }
+    for (std::size_t k = 0; k < yarns; ++k) {
+        map.paths[k].shift = (static_cast<double>(k) + 0.5) / static_cast<double>(yarns) - 0.5;
+    }
+}
+
+void cut(SlicePath& path, const WeftRuns::Run& run) {
+    const std::size_t last = std::min(run.last, path.levels.size() - 1);
+    if (run.first > last) return path.levels.clear();
+    const auto from = static_cast<std::ptrdiff_t>(run.first), to = static_cast<std::ptrdiff_t>(last + 1);
+    path.first = run.first;
+    path.levels = {path.levels.begin() + from, path.levels.begin() + to};
+    path.loose = {path.loose.begin() + from, path.loose.begin() + to};
+}
+
+}  // namespace
+
+SliceMap slice_map(const Subject& subject, const YarnColours& colours, const WeftRuns& runs) {
+    const Block& block = subject.block;
+    const std::size_t line = subject.request.line;
+    SliceMap map;
+    map.dots = subject.request.view == View::warp_slice ? System::weft : System::warp;
+    const bool warps_run = map.dots == System::weft;
+    map.all_positions = warps_run ? block.rows() : block.columns();
+    map.all_levels = block.height();
+    map.positions = std::min(map.all_positions, SliceMap::most_positions);
+    map.levels = std::min(map.all_levels, SliceMap::most_levels);
+    list_dots(subject, colours, map);
+    list_paths(subject, map, warps_run ? block.p()[line] : block.t()[line]);
+    for (std::size_t k = 0; k < map.paths.size(); ++k) {
+        SlicePath& path = map.paths[k];
+        path.number = (warps_run ? block.first_end(line) : block.first_pick(line)) + k;
+        path.colour = warps_run ? colours.drawn_end(path.number, k) : colours.drawn_pick(path.number, k);
+        if (warps_run) continue;
+        const WeftRuns::Run& run = runs.of_pick(path.number);
+        path.leftwards = run.leftwards;
+        if (run.woven) {
+            cut(path, run);
+        } else {
+            path.levels.clear();
+        }
+    }
+    std::erase_if(map.paths, [&](const SlicePath& path) {
+        return path.levels.empty() || std::ranges::all_of(path.levels, [&](std::size_t level) { return level >= map.levels; });
+    });
+    return map;
+}
+
+bool swaps(const SliceMap& map, const SlicePath& path, std::size_t k) {
+    return std::ranges::any_of(map.paths, [&](const SlicePath& other) {
+        const std::size_t here = path.first + k;
+        if (&other == &path || here < other.first || here + 1 > other.last()) return false;
+        const std::size_t j = here - other.first;
+        return (path.levels[k] < other.levels[j]) != (path.levels[k + 1] < other.levels[j + 1]);
+    });
+}
+
+Point slice_point(const SliceMap& map, double position, double level) {
+    return {Page::margin + left + across * position,
+            Page::body_top + top + up * (static_cast<double>(map.levels) - 1 - level)};
+}
+
+}  // namespace weave

@@ -1,0 +1,285 @@
+#include <algorithm>
+#include <cmath>
+
+#include <weave/picture/slice_map.hpp>
+#include <weave/picture/views.hpp>
+
+namespace weave {
+
+namespace {
+
+constexpr double dot_radius = 10, path_width = 5, overhang = 0.62;
+constexpr Colour grid_ink{0xd4, 0xd8, 0xdc}, uncaught_ink{0x11, 0x11, 0x11};
+
+/// The drawer of one slice.
+class SliceDrawer {
+  public:
+    SliceDrawer(Canvas& canvas, const SliceMap& map, const WeftRuns& runs, bool trim)
+        : m_canvas(canvas), m_map(map), m_runs(runs), m_trim(trim) {}
+
+    void draw() {
+        draw_grid();
+        const double rim = dot_radius + 6;
+        const Point low = at(-1.9, -0.5), high = at(static_cast<double>(m_map.positions) + 0.9, static_cast<double>(m_map.levels) - 0.5);
+        m_canvas.clip({low.x, high.y - rim, high.x - low.x, low.y - high.y + 2 * rim});
+        for (const SlicePath& path : m_map.paths) draw_path(path, true);
+        if (turning()) draw_turns();
+        for (const SlicePath& path : m_map.paths) draw_path(path, false);
+        for (const SliceDot& dot : m_map.dot_list) draw_dot(dot);
+        for (const SlicePath& path : m_map.paths) draw_names(path);
+        m_canvas.unclip();
+    }
+
+  private:
+    struct Piece {
+        std::vector<Point> bezier;
+        bool loose = false;
+    };
+
+    [[nodiscard]] bool turning() const { return m_map.dots == System::warp && m_runs.wraparound(); }
+    [[nodiscard]] Point at(double position, double level) const { return slice_point(m_map, position, level); }
+
+    void draw_grid() {
+        const auto positions = static_cast<double>(m_map.positions), levels = static_cast<double>(m_map.levels);
+        std::vector<Point> lines;
+        for (std::size_t k = 0; k < m_map.levels; ++k) {
+            const auto level = static_cast<double>(k);
+            lines.insert(lines.end(), {at(-0.4, level), at(positions - 0.6, level)});
+        }
+        for (std::size_t k = 0; k < m_map.positions; ++k) {
+            const auto position = static_cast<double>(k);
+            lines.insert(lines.end(), {at(position, -0.4), at(position, levels - 0.6)});
+            Point name = at(position, 0);
+            name.y += 34;
+            m_canvas.text(name, std::to_string(k + 1), {.size = 10, .colour = faint_ink, .anchor = Anchor::middle});
+        }
+        m_canvas.lines(lines, {.colour = grid_ink, .width = 1, .round = false});
+        const bool rows = m_map.dots == System::weft;
+        Point from = at(0, 0);
+        from.y += 48;
+        const Point axis[]{{from.x, from.y}, {from.x + 22, from.y}};
+        m_canvas.polyline(axis, {.colour = accent, .width = 2});
+        m_canvas.arrow_head({axis[1].x + 6, from.y}, {1, 0}, 8, accent);
+        m_canvas.text({axis[1].x + 12, from.y}, rows ? "rows, from pick 1 (along the warp)" : "columns, from end 1 (along the weft)",
+                      {.size = 11, .colour = accent, .bold = true, .centred = true});
+        const Point corner{at(0, 0).x - 96, at(0, 0).y};
+        const Point height[]{corner, {corner.x, corner.y - 16}};
+        m_canvas.polyline(height, {.colour = accent, .width = 2});
+        m_canvas.arrow_head({corner.x, corner.y - 22}, {0, -1}, 8, accent);
+        m_canvas.text({corner.x - 4, corner.y + 16}, "face up", {.size = 11, .colour = accent, .bold = true});
+    }
+
+    /// Bézier points from level k of the path to the next, the first point left out.
+    [[nodiscard]] std::array<Point, 4> step(const SlicePath& path, std::size_t k) const {
+        const Point a = at(static_cast<double>(path.first + k), static_cast<double>(path.levels[k]));
+        const Point b = at(static_cast<double>(path.first + k + 1), static_cast<double>(path.levels[k + 1]));
+        const double reach = (b.x - a.x) * 0.5, aside = swaps(m_map, path, k) ? path.shift * (b.x - a.x) * 0.55 : 0;
+        return {a, {a.x + reach + aside, a.y}, {b.x - reach + aside, b.y}, b};
+    }
+
+    static std::pair<std::array<Point, 4>, std::array<Point, 4>> halves(const std::array<Point, 4>& c) {
+        const auto middle = [](Point a, Point b) { return Point{(a.x + b.x) / 2, (a.y + b.y) / 2}; };
+        const Point ab = middle(c[0], c[1]), bc = middle(c[1], c[2]), cd = middle(c[2], c[3]);
+        const Point abc = middle(ab, bc), bcd = middle(bc, cd), all = middle(abc, bcd);
+        return {{c[0], ab, abc, all}, {all, bcd, cd, c[3]}};
+    }
+
+    /// Whether the path runs on to the edge of the picture at its beginning or end.
+    [[nodiscard]] bool reaches(const SlicePath& path, bool at_end) const {
+        if (!turning()) return true;
+        const Side side = at_end ? Side::right : Side::left;
+        return std::ranges::none_of(m_runs.turns(), [&](const Turn& turn) {
+            return turn.side == side && (turn.from_pick == path.number || turn.to_pick == path.number);
+        });
+    }
+
+    void append(std::vector<Piece>& pieces, const std::array<Point, 4>& bezier, bool loose) const {
+        if (pieces.empty() || pieces.back().loose != loose) pieces.push_back({{bezier[0]}, loose});
+        pieces.back().bezier.insert(pieces.back().bezier.end(), bezier.begin() + 1, bezier.end());
+    }
+
+    static std::array<Point, 4> straight(Point a, Point b) {
+        return {a, {a.x + (b.x - a.x) / 3, a.y}, {a.x + (b.x - a.x) * 2 / 3, b.y}, b};
+    }
+
+    [[nodiscard]] std::vector<Piece> pieces_of(const SlicePath& path) const {
+        std::vector<Piece> pieces;
+        const auto first = static_cast<double>(path.first), last = static_cast<double>(path.last());
+        const auto low = static_cast<double>(path.levels.front()), high = static_cast<double>(path.levels.back());
+        if (reaches(path, false)) append(pieces, straight(at(-overhang, low), at(first, low)), path.loose.front());
+        for (std::size_t k = 0; k + 1 < path.levels.size(); ++k) {
+            const auto [here, next] = halves(step(path, k));
+            append(pieces, here, path.loose[k]);
+            append(pieces, next, path.loose[k + 1]);
+        }
+        if (reaches(path, true)) {
+            const double edge = static_cast<double>(m_map.positions) - 1 + overhang;
+            append(pieces, straight(at(last, high), at(edge, high)), path.loose.back());
+        }
+        return pieces;
+    }
+
+    void draw_path(const SlicePath& path, bool casing) {
+        for (const Piece& piece : pieces_of(path)) {
+            if (piece.loose && m_trim) continue;
+            Stroke stroke{.colour = path.colour, .width = path_width};
+            if (casing) {
+                stroke = {.colour = mix(path.colour, {0, 0, 0}, 0.45), .width = path_width + 1.6};
+            }
+            if (piece.loose) {
+                if (casing) continue;
+                stroke.dash = {2, 8};
+                stroke.width = path_width - 1.5;
+            }
+            m_canvas.curve(piece.bezier, stroke);
+        }
+        if (!casing && m_map.dots == System::warp) draw_directions(path);
+    }
+
+    /// Arrow heads on the weft, about every sixth position, in the direction of the shuttle.
+    void draw_directions(const SlicePath& path) {
+        const std::size_t steps = path.levels.size() - 1;
+        const double way = path.leftwards ? -1 : 1;
+        const auto mark = [&](Point point, double slope) {
+            const double norm = std::hypot(1.0, slope);
+            const Point ahead{way / norm, way * slope / norm};
+            m_canvas.arrow_head({point.x + ahead.x * 7, point.y + ahead.y * 7}, ahead, 14, mix(path.colour, {0, 0, 0}, 0.62));
+        };
+        if (steps == 0) return mark(at(static_cast<double>(path.first) + way * 0.42, static_cast<double>(path.levels[0])), 0);
+        for (std::size_t k = std::min<std::size_t>(steps - 1, steps / 2 % 6); k < steps; k += 6) {
+            if (m_trim && (path.loose[k] || path.loose[k + 1])) continue;
+            const auto curve = halves(step(path, k));
+            const Point tip = curve.second[0], before = curve.first[2];
+            mark(tip, tip.x == before.x ? 0 : (tip.y - before.y) / (tip.x - before.x));
+        }
+    }
+
+    void draw_dot(const SliceDot& dot) {
+        const Point centre = at(static_cast<double>(dot.position), static_cast<double>(dot.level));
+        const Colour rim = mix(dot.colour, {0, 0, 0}, 0.45), fill = dot.loose ? mix(dot.colour, {0xff, 0xff, 0xff}, 0.7) : dot.colour;
+        m_canvas.circle(centre, dot_radius, fill);
+        m_canvas.ring(centre, dot_radius, {.colour = rim, .width = 1.3, .dash = dot.loose ? std::vector<double>{2.5, 3} : std::vector<double>{}});
+        const std::string number = std::to_string(dot.number + 1);
+        const double size = number.size() <= 2 ? 10.5 : number.size() == 3 ? 8.5 : 6.5;
+        m_canvas.text(centre, number, {.size = size, .colour = ink_on(fill), .anchor = Anchor::middle, .bold = true, .centred = true});
+    }
+
+    void draw_names(const SlicePath& path) {
+        const std::string number = std::to_string(path.number + 1);
+        const Colour dark = mix(path.colour, {0, 0, 0}, 0.35);
+        const auto name = [&](double position, std::size_t level, Anchor anchor) {
+            if (level >= m_map.levels) return;
+            m_canvas.text(at(position, static_cast<double>(level)), number,
+                          {.size = 11, .colour = dark, .anchor = anchor, .bold = true, .centred = true});
+        };
+        const double edge = static_cast<double>(m_map.positions) - 1;
+        if (reaches(path, false) && !(m_trim && path.loose.front())) name(-overhang - 0.14, path.levels.front(), Anchor::end);
+        if (reaches(path, true) && !(m_trim && path.loose.back())) name(edge + overhang + 0.14, path.levels.back(), Anchor::start);
+    }
+
+    [[nodiscard]] const SlicePath* path_of(std::size_t pick) const {
+        const auto found = std::ranges::find(m_map.paths, pick, &SlicePath::number);
+        return found == m_map.paths.end() ? nullptr : &*found;
+    }
+
+    void draw_turns() {
+        for (const Turn& turn : m_runs.turns()) {
+            const SlicePath* from = path_of(turn.from_pick);
+            const SlicePath* to = path_of(turn.to_pick);
+            if (from != nullptr && to != nullptr) {
+                draw_turn(turn, *from, *to);
+            } else if (from != nullptr || to != nullptr) {
+                draw_way_out(turn, from != nullptr ? *from : *to, from != nullptr);
+            }
+        }
+    }
+
+    [[nodiscard]] Point end_of(const SlicePath& path, Side side) const {
+        return side == Side::right ? at(static_cast<double>(path.last()), static_cast<double>(path.levels.back()))
+                                   : at(static_cast<double>(path.first), static_cast<double>(path.levels.front()));
+    }
+
+    /// Whether the side on which a path ends lies within the shown part.
+    [[nodiscard]] bool is_shown(const Turn& turn) const { return m_runs.column_of(turn) < m_map.positions; }
+
+    void draw_turn(const Turn& turn, const SlicePath& from, const SlicePath& to) {
+        if (!is_shown(turn)) return;
+        const Point a = end_of(from, turn.side), b = end_of(to, turn.side);
+        const double out = turn.side == Side::right ? 1 : -1;
+        const double outermost = out > 0 ? std::max(a.x, b.x) : std::min(a.x, b.x);
+        const double reach = outermost + out * (34 + std::abs(a.y - b.y) * 0.12);
+        const Point arc[]{a, {reach, a.y}, {reach, b.y}, b};
+        const bool caught = turn.caught_by != CaughtBy::none;
+        const Colour colour = caught ? from.colour : uncaught_ink;
+        m_canvas.curve(arc, {.colour = mix(colour, {0, 0, 0}, 0.45), .width = path_width + 1.6,
+                             .dash = caught ? std::vector<double>{} : std::vector<double>{3, 8}});
+        if (caught) m_canvas.curve(arc, {.colour = colour, .width = path_width});
+        const Point middle{(a.x + b.x + 6 * reach) / 8, (a.y + b.y) / 2};
+        const double down = b.y > a.y ? 1 : -1;
+        m_canvas.arrow_head({middle.x, middle.y + down * 7}, {0, down}, 14, mix(colour, {0, 0, 0}, 0.62));
+    }
+
+    /// A turn whose other pick lies in another row: the yarn leaves the slice, with the number of where it goes or comes from.
+    void draw_way_out(const Turn& turn, const SlicePath& path, bool leaves) {
+        if (!is_shown(turn)) return;
+        const Point a = end_of(path, turn.side);
+        const double out = turn.side == Side::right ? 1 : -1;
+        const Point stub[]{a, {a.x + out * 24, a.y}};
+        m_canvas.polyline(stub, {.colour = mix(path.colour, {0, 0, 0}, 0.3), .width = 2, .dash = {1, 4}});
+        if (leaves) m_canvas.arrow_head({a.x + out * 32, a.y}, {out, 0}, 9, mix(path.colour, {0, 0, 0}, 0.5));
+        const std::size_t other = (leaves ? turn.to_pick : turn.from_pick) + 1;
+        m_canvas.text({a.x + out * 35, a.y}, (leaves ? "to " : "from ") + std::to_string(other),
+                      {.size = 10, .colour = faint_ink, .anchor = out > 0 ? Anchor::start : Anchor::end, .centred = true});
+    }
+
+    Canvas& m_canvas;
+    const SliceMap& m_map;
+    const WeftRuns& m_runs;
+    bool m_trim;
+};
+
+std::string range(const char* one, const char* many, std::size_t first, std::size_t after) {
+    if (after - first == 1) return std::string(one) + " " + std::to_string(first + 1);
+    return std::string(many) + " " + std::to_string(first + 1) + "–" + std::to_string(after);
+}
+
+PageText slice_words(const Subject& subject, const SliceMap& map, const WeftRuns& runs) {
+    const Block& block = subject.block;
+    const std::size_t line = subject.request.line;
+    const bool warps_run = map.dots == System::weft;
+    const std::string place = std::to_string(line + 1);
+    PageText text = words_of(
+        subject, warps_run ? "warp slice, column " + place + ": " + range("end", "ends", block.first_end(line), block.first_end(line + 1))
+                           : "weft slice, row " + place + ": " + range("pick", "picks", block.first_pick(line), block.first_pick(line + 1)) +
+                                 (runs.wraparound() ? ", wraparound" : ", periodic"));
+    if (map.positions < map.all_positions || map.levels < map.all_levels) {
+        text.notes.push_back("Shown: the first " + std::to_string(map.positions) + " of " + std::to_string(map.all_positions) +
+                             (warps_run ? " rows" : " columns") + ", the lowest " + std::to_string(map.levels) + " of " +
+                             std::to_string(map.all_levels) + " levels.");
+    }
+    text.notes.push_back(warps_run ? "Dots: wefts with their pick numbers. Lines: warps with their end numbers."
+                                   : "Dots: warps with their end numbers. Lines: wefts with their pick numbers; arrows show the way of the shuttle.");
+    const auto loose = [](const SlicePath& path) { return std::ranges::find(path.loose, true) != path.loose.end(); };
+    if (subject.request.trim) {
+        text.notes.emplace_back("Trimmed: yarns that are loose on purpose are left out.");
+    } else if (std::ranges::any_of(map.paths, loose) || std::ranges::any_of(map.dot_list, &SliceDot::loose)) {
+        text.notes.emplace_back("Dotted: loose on purpose.");
+    }
+    const auto uncaught = [](const Turn& turn) { return turn.caught_by == CaughtBy::none; };
+    if (!warps_run && std::ranges::any_of(runs.turns(), uncaught)) text.notes.emplace_back("Black dotted turns are not caught.");
+    return text;
+}
+
+}  // namespace
+
+Result<std::string> draw_slice(const Subject& subject) {
+    const YarnColours colours(subject);
+    const WeftRuns runs(subject, colours);
+    const SliceMap map = slice_map(subject, colours, runs);
+    const Point origin = slice_point(map, 0, 0), far = slice_point(map, static_cast<double>(map.positions), static_cast<double>(map.levels));
+    WEAVE_TRY(Page page, Page::open(subject.format, slice_words(subject, map, runs), far.x + 40 - Page::margin, origin.y - Page::body_top + 58));
+    SliceDrawer(page.canvas, map, runs, subject.request.trim).draw();
+    return std::move(page.canvas).finish();
+}
+
+}  // namespace weave
