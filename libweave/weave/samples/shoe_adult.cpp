@@ -32,7 +32,14 @@ void lay_sole(Sole sole, std::size_t i, std::size_t j, std::array<End, 6>& ends)
 
 /// End 2 ties the insole to the sole by going under the sole's upper weft, end 3 binds the insole's own wefts. Firm: in every
 /// row; soft: every other; loft: with long slack stretches between; air: end 2 does not reach the sole.
-void lay_insole(Insole insole, std::size_t i, std::size_t j, std::array<End, 6>& ends) {
+void lay_insole(const Recipe& recipe, std::size_t i, std::size_t j, std::array<End, 6>& ends) {
+    if (recipe.sole == Sole::trimmed) {
+        // The side of the shoe: the insole's ends bind the wefts of sole and insole in one thin layer.
+        const bool even = (i + j) % 2 == 0;
+        ends[2] = at(even ? 3 : 0);
+        ends[3] = at(even ? 1 : 4);
+        return;
+    }
     using Wave = std::array<std::size_t, 8>;
     static constexpr std::array<std::array<Wave, 2>, 4> waves{{
         {Wave{3, 1, 3, 1, 3, 1, 3, 1}, Wave{2, 4, 2, 4, 2, 4, 2, 4}},
@@ -40,7 +47,7 @@ void lay_insole(Insole insole, std::size_t i, std::size_t j, std::array<End, 6>&
         {Wave{1, 2, 2, 3, 3, 3, 2, 2}, Wave{4, 4, 3, 3, 2, 2, 3, 3}},
         {Wave{3, 2, 3, 2, 3, 2, 3, 2}, Wave{3, 3, 4, 4, 3, 3, 4, 4}},
     }};
-    const auto& [lower, upper] = waves[static_cast<std::size_t>(insole)];
+    const auto& [lower, upper] = waves[static_cast<std::size_t>(recipe.insole)];
     ends[2] = at(lower[(i + 3 * j) % 8]);
     ends[3] = at(upper[(i + 3 * j) % 8]);
 }
@@ -107,7 +114,7 @@ Stack stack_of(const Recipe& recipe, std::size_t i, std::size_t j) {
         lay_flat(recipe.join == Join::flat_twill, i, j, ends);
         return cell(wefts, ends);
     }
-    lay_insole(recipe.insole, i, j, ends);
+    lay_insole(recipe, i, j, ends);
     lay_upper(recipe.upper, i, j, ends);
     join(recipe.join, i, j, ends);
     return cell(wefts, ends, recipe.upper == Upper::opening ? upper_wefts : 0);
@@ -123,8 +130,10 @@ std::string name_of(const Recipe& recipe, std::size_t number) {
     if (recipe.join == Join::flat_rib) return prefix + "trim.flat-rib";
     if (recipe.join == Join::flat_twill) return prefix + "rim.flat-twill";
     const auto word = [](const auto& words, auto value) { return std::string(words[static_cast<std::size_t>(value)]); };
-    return prefix + word(sole, recipe.sole) + "." + word(insole, recipe.insole) + "." + word(upper, recipe.upper) +
-           word(joined, recipe.join);
+    const std::string lower = recipe.sole == Sole::trimmed
+                                  ? std::string("side")
+                                  : word(sole, recipe.sole) + "." + word(insole, recipe.insole);
+    return prefix + lower + "." + word(upper, recipe.upper) + word(joined, recipe.join);
 }
 
 void plan_yarns(Design& design) {
