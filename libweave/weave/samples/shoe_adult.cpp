@@ -155,7 +155,7 @@ void plan_yarns(Design& design) {
 
 Design shoe_adult() {
     Design design;
-    design.title = "Adult shoe";
+    design.title = "Shoe 42";  // eight characters are all that the loom's file has room for
     design.notes = "A full-size right shoe, woven flat and seen from above: heel first, toe last. Three sets of ends and three "
                    "shuttles make a zigzag sole of coated polyester, a cotton insole with more and less cushion, and an upper "
                    "with toe cap, vents, lace stays with eyelets, tongue with lace loops, stripes, seams, collar and heel "
