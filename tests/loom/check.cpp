@@ -4,20 +4,27 @@
 
 #include <catch2/catch.hpp>
 
+#include <algorithm>
 #include <set>
-
-#include <weave/block/from_card.hpp>
 
 using namespace weave;
 
 namespace {
 
-BlockPtr block_of(const std::vector<std::string>& rows, std::vector<std::uint32_t> t = {1}) {
-    CardImage card(rows.size(), rows.front().size());
-    for (std::size_t pick = 0; pick < rows.size(); ++pick) {
-        for (std::size_t end = 0; end < rows[pick].size(); ++end) card.set(pick, end, rows[pick][end] == '1');
-    }
-    return std::make_shared<const Block>(block_from_card(card, std::move(t), {1}).value());
+/// One end a column; in each stack the picks that pass under the end, the end, the picks that pass over it.
+BlockPtr block_of(const std::vector<std::string>& rows, std::uint32_t t = 1) {
+    const auto stack = [&](std::size_t row, std::size_t column) {
+        std::vector<Slot> slots;
+        for (const char wanted : {'0', '1'}) {
+            if (wanted == '1') slots.push_back(Slot::warp(0));
+            for (std::size_t k = 0; k < t; ++k) {
+                if (rows[row * t + k][column] == wanted) slots.push_back(Slot::weft(k));
+            }
+        }
+        return Stack(std::move(slots));
+    };
+    std::vector<std::uint32_t> picks(rows.size() / t, t), ends(rows.front().size(), 1);
+    return std::make_shared<const Block>(make_block(std::move(picks), std::move(ends), stack).value());
 }
 
 LoomProfile loom() {
@@ -223,7 +230,7 @@ TEST_CASE("turns: caught, crossed, box, cut") {
 
 TEST_CASE("take-up: stops, regulator, beams") {
     Case c;
-    c.cloth.block = block_of(plain, {2});
+    c.cloth.block = block_of(plain, 2);
     CHECK(c.passes("take-up.stop"));
     CHECK(c.passes("take-up.regulator"));
     c.profile.regulator_hooks.clear();
