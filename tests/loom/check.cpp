@@ -61,9 +61,11 @@ struct Case {
     }
     [[nodiscard]] bool lacks(const std::string& rule) const {
         const auto missing = check_for_loom(design, cloth, profile, take_ups).not_evaluated;
-        return std::any_of(missing.begin(), missing.end(), [&](const auto& n) { return n.rule == rule && !n.reason.empty(); });
+        return std::any_of(missing.begin(), missing.end(),
+                           [&](const auto& n) { return n.rule == rule && !n.reason.empty(); });
     }
-    void expect_at(const std::string& rule, std::optional<std::size_t> pick, std::optional<std::size_t> end) const {
+    void expect_at(const std::string& rule, std::optional<std::size_t> pick,
+                   std::optional<std::size_t> end) const {
         INFO(rule);
         const auto found = of(rule);
         REQUIRE(!found.empty());
@@ -103,7 +105,8 @@ TEST_CASE("floats are runs of the card image, also through the repeat, on both f
     c.cloth.block = block_of({"111011", "010101", "101010", "010101"});
     c.expect_at("float.face", 0, 4);  // 5 ends from end 5 through the repeat to end 3
     CHECK(c.of("float.face").size() == 1);
-    CHECK(c.of("float.face")[0].message.find("5 ends, from end 5 through the repeat to 3") != std::string::npos);
+    CHECK(c.of("float.face")[0].message.find("5 ends, from end 5 through the repeat to 3") !=
+          std::string::npos);
     CHECK(c.passes("float.back"));
     c.cloth.block = block_of({"10", "10", "10", "10", "01"});
     c.expect_at("float.face", 0, 1);  // end 2 over picks 1 to 4
