@@ -4,20 +4,27 @@
 
 #include <catch2/catch.hpp>
 
+#include <algorithm>
 #include <set>
-
-#include <weave/block/from_card.hpp>
 
 using namespace weave;
 
 namespace {
 
-BlockPtr block_of(const std::vector<std::string>& rows, std::vector<std::uint32_t> t = {1}) {
-    CardImage card(rows.size(), rows.front().size());
-    for (std::size_t pick = 0; pick < rows.size(); ++pick) {
-        for (std::size_t end = 0; end < rows[pick].size(); ++end) card.set(pick, end, rows[pick][end] == '1');
-    }
-    return std::make_shared<const Block>(block_from_card(card, std::move(t), {1}).value());
+/// One end a column; in each stack the picks that pass under the end, the end, the picks that pass over it.
+BlockPtr block_of(const std::vector<std::string>& rows, std::uint32_t t = 1) {
+    const auto stack = [&](std::size_t row, std::size_t column) {
+        std::vector<Slot> slots;
+        for (const char wanted : {'0', '1'}) {
+            if (wanted == '1') slots.push_back(Slot::warp(0));
+            for (std::size_t k = 0; k < t; ++k) {
+                if (rows[row * t + k][column] == wanted) slots.push_back(Slot::weft(k));
+            }
+        }
+        return Stack(std::move(slots));
+    };
+    std::vector<std::uint32_t> picks(rows.size() / t, t), ends(rows.front().size(), 1);
+    return std::make_shared<const Block>(make_block(std::move(picks), std::move(ends), stack).value());
 }
 
 LoomProfile loom() {
@@ -54,9 +61,11 @@ struct Case {
     }
     [[nodiscard]] bool lacks(const std::string& rule) const {
         const auto missing = check_for_loom(design, cloth, profile, take_ups).not_evaluated;
-        return std::any_of(missing.begin(), missing.end(), [&](const auto& n) { return n.rule == rule && !n.reason.empty(); });
+        return std::any_of(missing.begin(), missing.end(),
+                           [&](const auto& n) { return n.rule == rule && !n.reason.empty(); });
     }
-    void expect_at(const std::string& rule, std::optional<std::size_t> pick, std::optional<std::size_t> end) const {
+    void expect_at(const std::string& rule, std::optional<std::size_t> pick,
+                   std::optional<std::size_t> end) const {
         INFO(rule);
         const auto found = of(rule);
         REQUIRE(!found.empty());
@@ -96,7 +105,8 @@ TEST_CASE("floats are runs of the card image, also through the repeat, on both f
     c.cloth.block = block_of({"111011", "010101", "101010", "010101"});
     c.expect_at("float.face", 0, 4);  // 5 ends from end 5 through the repeat to end 3
     CHECK(c.of("float.face").size() == 1);
-    CHECK(c.of("float.face")[0].message.find("5 ends, from end 5 through the repeat to 3") != std::string::npos);
+    CHECK(c.of("float.face")[0].message.find("5 ends, from end 5 through the repeat to 3") !=
+          std::string::npos);
     CHECK(c.passes("float.back"));
     c.cloth.block = block_of({"10", "10", "10", "10", "01"});
     c.expect_at("float.face", 0, 1);  // end 2 over picks 1 to 4
@@ -223,7 +233,7 @@ TEST_CASE("turns: caught, crossed, box, cut") {
 
 TEST_CASE("take-up: stops, regulator, beams") {
     Case c;
-    c.cloth.block = block_of(plain, {2});
+    c.cloth.block = block_of(plain, 2);
     CHECK(c.passes("take-up.stop"));
     CHECK(c.passes("take-up.regulator"));
     c.profile.regulator_hooks.clear();

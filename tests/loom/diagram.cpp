@@ -11,19 +11,21 @@ struct Arc {
     int from = 0, to = 0;
 };
 
-/// Draws the yarns as they leave the loom: straight picks, an arc from each pick of a feeder to its next, shorter arcs nearer to
-/// the cloth, tails to infinity. What is laid later lies above.
+/// Draws the yarns as they leave the loom: straight picks, an arc from each pick of a feeder to its next,
+/// shorter arcs nearer to the cloth, tails to infinity. What is laid later lies above.
 class Drawing {
   public:
     Drawing(const CardImage& card, const std::vector<Pick>& picks, std::size_t feeders)
         : m_card(card), m_picks(picks), m_of_feeder(feeders) {
-        for (std::size_t n = 0; n < picks.size(); ++n) m_of_feeder.at(picks[n].feeders.at(0)).push_back(static_cast<int>(n));
+        for (std::size_t n = 0; n < picks.size(); ++n)
+            m_of_feeder.at(picks[n].feeders.at(0)).push_back(static_cast<int>(n));
         m_turn.resize(picks.size());
         for (const auto& own : m_of_feeder) {
             for (std::size_t k = 0; k + 1 < own.size(); ++k) {
                 const std::size_t side = goes_right(own[k]) ? 1 : 0;
-                m_turn[static_cast<std::size_t>(own[k])][side] = m_turn[static_cast<std::size_t>(own[k + 1])][side] =
-                    static_cast<int>(m_arcs[side].size());
+                m_turn[static_cast<std::size_t>(own[k])][side] =
+                    m_turn[static_cast<std::size_t>(own[k + 1])][side] =
+                        static_cast<int>(m_arcs[side].size());
                 m_arcs[side].push_back({own[k], own[k + 1]});
             }
         }
@@ -48,7 +50,9 @@ class Drawing {
     [[nodiscard]] bool goes_right(int n) const {
         return m_picks[static_cast<std::size_t>(n)].direction == Direction::left_to_right;
     }
-    [[nodiscard]] int turn(int n, std::size_t side) const { return m_turn[static_cast<std::size_t>(n)][side].value_or(tail); }
+    [[nodiscard]] int turn(int n, std::size_t side) const {
+        return m_turn[static_cast<std::size_t>(n)][side].value_or(tail);
+    }
     [[nodiscard]] int length(std::size_t side, int arc) const {
         if (arc == tail) return std::numeric_limits<int>::max();
         const Arc& a = m_arcs[side][static_cast<std::size_t>(arc)];
@@ -73,7 +77,8 @@ class Drawing {
     }
 
     [[nodiscard]] bool pick_over_arc(int n, std::size_t side, int arc) const {
-        const int own = turn(n, side), formed = own == tail ? n : m_arcs[side][static_cast<std::size_t>(own)].to;
+        const int own = turn(n, side),
+                  formed = own == tail ? n : m_arcs[side][static_cast<std::size_t>(own)].to;
         return formed > m_arcs[side][static_cast<std::size_t>(arc)].to;
     }
 
@@ -87,7 +92,8 @@ class Drawing {
         std::vector<int> arcs;
         for (int k = 0; k < static_cast<int>(m_arcs[side].size()); ++k) {
             const Arc& arc = m_arcs[side][static_cast<std::size_t>(k)];
-            if (arc.from < n && n < arc.to && length(side, k) < length(side, turn(n, side))) arcs.push_back(k);
+            if (arc.from < n && n < arc.to && length(side, k) < length(side, turn(n, side)))
+                arcs.push_back(k);
         }
         std::sort(arcs.begin(), arcs.end(), [&](int a, int b) { return length(side, a) < length(side, b); });
         return arcs;
@@ -121,20 +127,24 @@ class Drawing {
 
 using Dart = Diagram::Dart;
 
-/// The picks that a piece of a feeder's yarn outside the cloth joins, the earlier first; nothing for other pieces.
+/// The picks that a piece of a feeder's yarn outside the cloth joins, the earlier first; nothing for other
+/// pieces.
 std::optional<std::pair<int, int>> loop_of(const Diagram& diagram, const Dart& dart) {
     const auto& yarn = diagram.yarns[dart.yarn];
     int before = -1, after = -1;
     for (std::size_t k = dart.gap; k-- > 0 && before < 0;) before = diagram.of.at(yarn[k].crossing).first;
-    for (std::size_t k = dart.gap; k < yarn.size() && after < 0; ++k) after = diagram.of.at(yarn[k].crossing).first;
+    for (std::size_t k = dart.gap; k < yarn.size() && after < 0; ++k)
+        after = diagram.of.at(yarn[k].crossing).first;
     if (before < 0 || after <= before) return {};
     return std::pair{before, after};
 }
 
-bool is_arc(const Diagram& diagram, const Dart& dart) { return loop_of(diagram, dart).has_value(); }
+bool is_arc(const Diagram& diagram, const Dart& dart) {
+    return loop_of(diagram, dart).has_value();
+}
 
-/// Loops may choose over or under only where one was closed around the other. Loops that cross outside the cloth lie as they
-/// were laid: a taut loop does not climb over one that was laid on it.
+/// Loops may choose over or under only where one was closed around the other. Loops that cross outside the
+/// cloth lie as they were laid: a taut loop does not climb over one that was laid on it.
 bool is_around(const Diagram& diagram, const Dart& e, const Dart& f) {
     const auto outer = *loop_of(diagram, e), inner = *loop_of(diagram, f);
     return outer.first < inner.first && inner.second < outer.second;
@@ -190,8 +200,10 @@ bool remove_at_ends(Diagram& diagram, std::size_t ends) {
     return false;
 }
 
-/// Looks through what slides (and at most `most_pushes` pushes) reach for a diagram in which a loop slips past an end.
-std::optional<Diagram> slipped(const Diagram& start, std::size_t ends, int most_pushes, std::size_t most_states, bool& gave_up) {
+/// Looks through what slides (and at most `most_pushes` pushes) reach for a diagram in which a loop slips
+/// past an end.
+std::optional<Diagram> slipped(const Diagram& start, std::size_t ends, int most_pushes,
+                               std::size_t most_states, bool& gave_up) {
     std::set<std::vector<Diagram::Yarn>> seen{start.yarns};
     std::deque<std::pair<Diagram, int>> waiting{{start, 0}};
     while (!waiting.empty()) {
@@ -222,12 +234,14 @@ Diagram diagram_of(const CardImage& card, const std::vector<Pick>& picks, std::s
     return Drawing(card, picks, feeders).draw();
 }
 
-std::set<std::pair<int, int>> pulled_tight(Diagram diagram, std::size_t ends, std::size_t most_states, bool& gave_up) {
+std::set<std::pair<int, int>> pulled_tight(Diagram diagram, std::size_t ends, std::size_t most_states,
+                                           bool& gave_up) {
     const std::size_t feeders = diagram.yarns.size() - ends;
     for (bool moved = true; moved;) {
         diagram.simplify();
         moved = false;
-        for (int pushes_allowed = 0; pushes_allowed <= (feeders > 1 ? 2 : 0) && !moved && !gave_up; ++pushes_allowed) {
+        for (int pushes_allowed = 0; pushes_allowed <= (feeders > 1 ? 2 : 0) && !moved && !gave_up;
+             ++pushes_allowed) {
             if (auto further = slipped(diagram, ends, pushes_allowed, most_states, gave_up)) {
                 diagram = std::move(*further);
                 moved = true;

@@ -1,5 +1,7 @@
 #pragma once
 
+#include <weave/loom/weft_way.hpp>
+
 #include <algorithm>
 #include <array>
 #include <cstddef>
@@ -10,10 +12,9 @@
 #include <utility>
 #include <vector>
 
-#include <weave/loom/weft_way.hpp>
-
-/// The oracle for the weft's way: a crossing diagram of yarns and Reidemeister's three moves on it. It knows yarns as lists of
-/// crossings, over or under, and what a move may do to them; it knows nothing of picks that hold loops.
+/// The oracle for the weft's way: a crossing diagram of yarns and Reidemeister's three moves on it. It knows
+/// yarns as lists of crossings, over or under, and what a move may do to them; it knows nothing of picks that
+/// hold loops.
 namespace weave::testing {
 
 class Diagram {
@@ -31,8 +32,9 @@ class Diagram {
     };
 
     std::vector<Yarn> yarns;
-    std::map<int, int> signs;             ///< +1: over yarn turned left gives the under yarn's direction
-    std::map<int, std::pair<int, int>> of;  ///< crossing of an end with a pick (pick, end), or (-1, -1) between wefts
+    std::map<int, int> signs;  ///< +1: over yarn turned left gives the under yarn's direction
+    std::map<int, std::pair<int, int>>
+        of;  ///< crossing of an end with a pick (pick, end), or (-1, -1) between wefts
 
     [[nodiscard]] std::map<int, std::array<Spot, 2>> spots() const {
         std::map<int, std::vector<Spot>> all;
@@ -73,7 +75,8 @@ class Diagram {
                 const Visit a = yarn[k], b = yarn[k + 1];
                 if (a.crossing == b.crossing) return std::set{a.crossing};
                 if (a.over != b.over) continue;
-                if (!seen.insert(std::minmax(a.crossing, b.crossing)).second) return std::set{a.crossing, b.crossing};
+                if (!seen.insert(std::minmax(a.crossing, b.crossing)).second)
+                    return std::set{a.crossing, b.crossing};
             }
         }
         return {};
@@ -97,11 +100,13 @@ class Diagram {
             }
         }
         const auto for_triangle = [&](Edge p, Edge q, Edge r) {
-            // Each of the three corners joins two of the edges; a yarn that is over at both its corners is on top.
+            // Each of the three corners joins two of the edges; a yarn that is over at both its corners is on
+            // top.
             const std::array sides{p, q, r};
             int tops = 0, bottoms = 0;
             for (const Edge& side : sides) {
-                const bool first = yarns[side.yarn][side.place].over, second = yarns[side.yarn][side.place + 1].over;
+                const bool first = yarns[side.yarn][side.place].over,
+                           second = yarns[side.yarn][side.place + 1].over;
                 tops += first && second;
                 bottoms += !first && !second;
             }
@@ -112,7 +117,8 @@ class Diagram {
             }
             if (tops != 1 || bottoms != 1 || used.size() != 6) return;
             Diagram next = *this;
-            for (const Edge& side : sides) std::swap(next.yarns[side.yarn][side.place], next.yarns[side.yarn][side.place + 1]);
+            for (const Edge& side : sides)
+                std::swap(next.yarns[side.yarn][side.place], next.yarns[side.yarn][side.place + 1]);
             made.push_back(std::move(next));
         };
         for (const auto& [pair, first] : edges) {
@@ -136,7 +142,8 @@ class Diagram {
     };
 
     /// The next dart round the face on the left, or nothing where the yarn leaves for infinity.
-    [[nodiscard]] std::optional<Dart> next(const Dart& dart, const std::map<int, std::array<Spot, 2>>& where) const {
+    [[nodiscard]] std::optional<Dart> next(const Dart& dart,
+                                           const std::map<int, std::array<Spot, 2>>& where) const {
         const Yarn& yarn = yarns[dart.yarn];
         if (dart.forward ? dart.gap == yarn.size() : dart.gap == 0) return {};
         const std::size_t place = dart.forward ? dart.gap : dart.gap - 1;
@@ -161,7 +168,8 @@ class Diagram {
         const auto insert = [&](const Dart& at, int first, int second, bool is_over) {
             Yarn& yarn = made.yarns[at.yarn];
             if (!at.forward) std::swap(first, second);
-            yarn.insert(yarn.begin() + static_cast<std::ptrdiff_t>(at.gap), {{first, is_over}, {second, is_over}});
+            yarn.insert(yarn.begin() + static_cast<std::ptrdiff_t>(at.gap),
+                        {{first, is_over}, {second, is_over}});
         };
         insert(e, x, y, over);
         insert(f, y, x, !over);
@@ -173,6 +181,7 @@ class Diagram {
 Diagram diagram_of(const CardImage& card, const std::vector<Pick>& picks, std::size_t feeders);
 
 /// Pulls every loop as far as moves allow and gives the (pick, end) crossings that remain.
-std::set<std::pair<int, int>> pulled_tight(Diagram diagram, std::size_t ends, std::size_t most_states, bool& gave_up);
+std::set<std::pair<int, int>> pulled_tight(Diagram diagram, std::size_t ends, std::size_t most_states,
+                                           bool& gave_up);
 
 }  // namespace weave::testing

@@ -7,11 +7,14 @@ using namespace weave;
 namespace {
 
 Block block_of(std::vector<std::uint32_t> t) {
-    return make_block(std::move(t), {1}, [&](std::size_t row, std::size_t) {
-               std::vector<Slot> slots{Slot::warp(0)};
-               for (std::size_t k = 0; k < (row == 0 ? 2U : 1U); ++k) slots.push_back(Slot::weft(k));
-               return Stack(std::move(slots));
-           }).value();
+    return make_block(std::move(t), {1},
+                      [&](std::size_t row, std::size_t) {
+                          std::vector<Slot> slots{Slot::warp(0)};
+                          for (std::size_t k = 0; k < (row == 0 ? 2U : 1U); ++k)
+                              slots.push_back(Slot::weft(k));
+                          return Stack(std::move(slots));
+                      })
+        .value();
 }
 
 }  // namespace

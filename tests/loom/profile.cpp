@@ -1,24 +1,26 @@
 // Loom profiles: the shipped ones load and say what was observed; every member is refused when it is wrong.
 
-#include <weave/loom/profile.hpp>
-
-#include <catch2/catch.hpp>
+#include "../support/random.hpp"
 
 #include <weave/core/file.hpp>
 #include <weave/core/json.hpp>
+#include <weave/loom/profile.hpp>
 
-#include "../support/random.hpp"
+#include <catch2/catch.hpp>
 
 using namespace weave;
 using namespace weave::testing;
 
 namespace {
 
-std::string shipped(const std::string& name) { return std::string(WEAVE_SOURCE_DIR) + "/db/looms/" + name + ".json"; }
+std::string shipped(const std::string& name) {
+    return std::string(WEAVE_SOURCE_DIR) + "/db/looms/" + name + ".json";
+}
 
 /// A profile that has every member.
 Json full() {
-    return Json::parse(R"({"format":"weave-loom","version":1,"name":"n","maker":"m","revision":"3","notes":"x",
+    return Json::parse(
+        R"({"format":"weave-loom","version":1,"name":"n","maker":"m","revision":"3","notes":"x",
         "insertion":"rapier","density_ends_per_cm":20,
         "hooks":{"areas":[{"name":"a","hooks":20}],"rule":"repeats","repeats":2,"body":[[0,9]],"cast_out":[[10,10]],
             "constant_on":[[11,11]],"selvedge":[[12,13]],"selvedge_weave":["01","10"],"regulator":[14]},
@@ -97,7 +99,8 @@ TEST_CASE("every member is refused when it has the wrong kind, and what is unkno
         REQUIRE_FALSE(read);
         CHECK_FALSE(read.error().where.empty());
     }
-    for (const char* object : {"", "/hooks", "/hooks/areas/0", "/feeders", "/file", "/limits", "/severities"}) {
+    for (const char* object :
+         {"", "/hooks", "/hooks/areas/0", "/feeders", "/file", "/limits", "/severities"}) {
         Json broken = full();
         broken[Json::json_pointer(object)]["surprise"] = 1;
         INFO(object);
@@ -108,15 +111,34 @@ TEST_CASE("every member is refused when it has the wrong kind, and what is unkno
 }
 
 TEST_CASE("values out of range or at odds with each other are refused") {
-    const std::vector<std::pair<std::string, std::string>> wrong{
-        {"/version", "2"}, {"/format", "\"weave\""}, {"/name", "\"\""}, {"/insertion", "\"needle\""},
-        {"/hooks/areas", "[]"}, {"/hooks/areas/0/hooks", "65537"}, {"/hooks/body", "[[5,4]]"}, {"/hooks/body", "[[0,20]]"},
-        {"/hooks/body", "[[0,10]]"}, {"/hooks/body", "[[0,5],[5,9]]"}, {"/hooks/body", "[]"}, {"/hooks/body", "[[0]]"},
-        {"/hooks/body", "[[-1,3]]"}, {"/hooks/repeats", "11"}, {"/hooks/selvedge_weave", "[\"01\",\"1\"]"},
-        {"/hooks/selvedge_weave", "[\"02\"]"}, {"/hooks/regulator", "[20]"}, {"/hooks/regulator", "[13]"},
-        {"/feeders/count", "65"}, {"/feeders/places", "[15]"}, {"/feeders/places", "[15,15]"}, {"/feeders/per_pick", "3"},
-        {"/file/output", "\"jc6\""}, {"/file/hook_permutation", "[0,1]"}, {"/file/name_limit", "-1"},
-        {"/limits/lift_share", "1.5"}, {"/limits/reed_width_mm", "0"}, {"/severities/float.face", "\"fatal\""}};
+    const std::vector<std::pair<std::string, std::string>> wrong{{"/version", "2"},
+                                                                 {"/format", "\"weave\""},
+                                                                 {"/name", "\"\""},
+                                                                 {"/insertion", "\"needle\""},
+                                                                 {"/hooks/areas", "[]"},
+                                                                 {"/hooks/areas/0/hooks", "65537"},
+                                                                 {"/hooks/body", "[[5,4]]"},
+                                                                 {"/hooks/body", "[[0,20]]"},
+                                                                 {"/hooks/body", "[[0,10]]"},
+                                                                 {"/hooks/body", "[[0,5],[5,9]]"},
+                                                                 {"/hooks/body", "[]"},
+                                                                 {"/hooks/body", "[[0]]"},
+                                                                 {"/hooks/body", "[[-1,3]]"},
+                                                                 {"/hooks/repeats", "11"},
+                                                                 {"/hooks/selvedge_weave", "[\"01\",\"1\"]"},
+                                                                 {"/hooks/selvedge_weave", "[\"02\"]"},
+                                                                 {"/hooks/regulator", "[20]"},
+                                                                 {"/hooks/regulator", "[13]"},
+                                                                 {"/feeders/count", "65"},
+                                                                 {"/feeders/places", "[15]"},
+                                                                 {"/feeders/places", "[15,15]"},
+                                                                 {"/feeders/per_pick", "3"},
+                                                                 {"/file/output", "\"jc6\""},
+                                                                 {"/file/hook_permutation", "[0,1]"},
+                                                                 {"/file/name_limit", "-1"},
+                                                                 {"/limits/lift_share", "1.5"},
+                                                                 {"/limits/reed_width_mm", "0"},
+                                                                 {"/severities/float.face", "\"fatal\""}};
     for (const auto& [place, value] : wrong) {
         Json broken = full();
         broken[Json::json_pointer(place)] = Json::parse(value);
@@ -127,17 +149,21 @@ TEST_CASE("values out of range or at odds with each other are refused") {
 
 TEST_CASE("garbage is refused, never more") {
     const std::string sound = full().dump();
-    for_all([&](Random& random) {
-        std::string text = sound;
-        for (std::size_t k = random.between(1, 4); k > 0; --k) {
-            const std::size_t at = random.between(0, text.size() - 1);
-            if (random.coin()) text[at] = static_cast<char>(random.between(0, 255));
-            else text.erase(at, random.between(1, 20));
-            if (text.empty()) return;
-        }
-        const auto read = read_profile(text);
-        if (!read) CHECK_FALSE(read.error().message.empty());
-    }, property_cases() / 4);
+    for_all(
+        [&](Random& random) {
+            std::string text = sound;
+            for (std::size_t k = random.between(1, 4); k > 0; --k) {
+                const std::size_t at = random.between(0, text.size() - 1);
+                if (random.coin())
+                    text[at] = static_cast<char>(random.between(0, 255));
+                else
+                    text.erase(at, random.between(1, 20));
+                if (text.empty()) return;
+            }
+            const auto read = read_profile(text);
+            if (!read) CHECK_FALSE(read.error().message.empty());
+        },
+        property_cases() / 4);
     CHECK_FALSE(read_profile(""));
     CHECK_FALSE(load_profile("no/such/file.json"));
 }
