@@ -145,7 +145,8 @@ class SliceDrawer {
         if (!casing && m_map.dots == System::warp) draw_directions(path);
     }
 
-    /// Arrow heads on the weft, about every sixth position, in the direction of the shuttle.
+    /// Arrow heads on the weft, about every sixth position, in the direction of the shuttle. Neighbours carry
+    /// them at different places, so that none hides another.
     void draw_directions(const SlicePath& path) {
         const std::size_t steps = path.levels.size() - 1;
         const double way = path.leftwards ? -1 : 1;
@@ -158,7 +159,8 @@ class SliceDrawer {
         if (steps == 0)
             return mark(at(static_cast<double>(path.first) + way * 0.42, static_cast<double>(path.levels[0])),
                         0);
-        for (std::size_t k = std::min<std::size_t>(steps - 1, steps / 2 % 6); k < steps; k += 6) {
+        for (std::size_t k = (steps / 2 + 2 * path.number) % std::min<std::size_t>(steps, 6); k < steps;
+             k += 6) {
             if (m_trim && (path.loose[k] || path.loose[k + 1])) continue;
             const auto curve = halves(step(path, k));
             const Point tip = curve.second[0], before = curve.first[2];
