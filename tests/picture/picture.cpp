@@ -1,12 +1,10 @@
-#include <weave/picture/picture.hpp>
-
-#include <cstdlib>
-
 #include <weave/picture/float_map.hpp>
 #include <weave/picture/grid.hpp>
 #include <weave/picture/layer_map.hpp>
+#include <weave/picture/picture.hpp>
 #include <weave/picture/slice_map.hpp>
 
+#include <cstdlib>
 #include <picture/pictures.hpp>
 #include <support/random.hpp>
 
@@ -15,7 +13,8 @@ using namespace weave::testing;
 
 namespace {
 
-std::string drawn(const Design& design, const Block& block, View view, PictureFormat format, bool trim = false, std::size_t line = 0) {
+std::string drawn(const Design& design, const Block& block, View view, PictureFormat format,
+                  bool trim = false, std::size_t line = 0) {
     auto file = draw(design, cloth_of(block), {view, line, trim}, format);
     if (!file) FAIL(file.error().text());
     return *file;
@@ -26,8 +25,11 @@ Block wide_cloth(std::size_t rows, std::size_t columns) {
     std::vector<Stack> stacks;
     for (int k = 0; k < 12; ++k) stacks.push_back(random_stack(random, 1, 1, 1));
     std::vector<std::uint32_t> cells;
-    for (std::size_t k = 0; k < rows * columns; ++k) cells.push_back(static_cast<std::uint32_t>(random.between(0, 11)));
-    return Block::make(std::vector<std::uint32_t>(rows, 1), std::vector<std::uint32_t>(columns, 1), stacks, cells).value();
+    for (std::size_t k = 0; k < rows * columns; ++k)
+        cells.push_back(static_cast<std::uint32_t>(random.between(0, 11)));
+    return Block::make(std::vector<std::uint32_t>(rows, 1), std::vector<std::uint32_t>(columns, 1), stacks,
+                       cells)
+        .value();
 }
 
 void check_card(const Block& block) {
@@ -52,9 +54,11 @@ TEST_CASE("every view is a whole PNG and a whole SVG") {
     Design turning = coloured_design();
     turning.scene.weft_mode = WeftMode::wraparound;
     Random random(3);
-    const Block blocks[]{layered(), random_block(random), random_block(random, {}, {}, 14), wide_cloth(70, 90), block_of({0, 2}, {0, 1}, {"", "P0", "T0 T1", "T1 P0 T0"})};
+    const Block blocks[]{layered(), random_block(random), random_block(random, {}, {}, 14),
+                         wide_cloth(70, 90), block_of({0, 2}, {0, 1}, {"", "P0", "T0 T1", "T1 P0 T0"})};
     for (const Block& block : blocks) {
-        for (const View view : {View::card, View::face, View::back, View::floats, View::layers, View::weft_slice, View::warp_slice, View::block}) {
+        for (const View view : {View::card, View::face, View::back, View::floats, View::layers,
+                                View::weft_slice, View::warp_slice, View::block}) {
             for (const Design* design : std::initializer_list<const Design*>{&plain, &turning}) {
                 INFO("view " << static_cast<int>(view) << ", " << block.picks() << " x " << block.ends());
                 const std::string png = drawn(*design, block, view, PictureFormat::png);
@@ -80,10 +84,10 @@ TEST_CASE("the XML check of these tests finds what is wrong") {
 
 TEST_CASE("card pictures show the card at every scale") {
     check_card(layered());
-    check_card(wide_cloth(40, 33));     // large squares
-    check_card(wide_cloth(130, 210));   // small squares with stack lines
-    check_card(wide_cloth(300, 410));   // two pixels each
-    check_card(wide_cloth(1500, 1000)); // one pixel each
+    check_card(wide_cloth(40, 33));      // large squares
+    check_card(wide_cloth(130, 210));    // small squares with stack lines
+    check_card(wide_cloth(300, 410));    // two pixels each
+    check_card(wide_cloth(1500, 1000));  // one pixel each
 }
 
 TEST_CASE("cards too large for one pixel each are averaged") {
@@ -96,9 +100,11 @@ TEST_CASE("cards too large for one pixel each are averaged") {
         for (const std::size_t end : {0U, 4U, 8U}) {
             int over = 0, all = 0;
             for (std::size_t i = pick; i < pick + 2; ++i) {
-                for (std::size_t j = end; j < std::min<std::size_t>(end + 2, 9); ++j, ++all) over += card.weft_over(i, j) ? 1 : 0;
+                for (std::size_t j = end; j < std::min<std::size_t>(end + 2, 9); ++j, ++all)
+                    over += card.weft_over(i, j) ? 1 : 0;
             }
-            const Point corner{grid.corner.x + static_cast<double>(end / 2), grid.corner.y + static_cast<double>(grid.height() - 1 - pick / 2)};
+            const Point corner{grid.corner.x + static_cast<double>(end / 2),
+                               grid.corner.y + static_cast<double>(grid.height() - 1 - pick / 2)};
             CHECK(std::abs(pixels.at(corner).red - over * 255 / all) <= 1);
         }
     }
@@ -108,7 +114,8 @@ TEST_CASE("face and back show the outermost yarns, the back mirrored") {
     const Design design = coloured_design();
     for (const Block& block : {layered(), wide_cloth(20, 30), wide_cloth(300, 200), wide_cloth(1000, 1200)}) {
         for (const bool back : {false, true}) {
-            const Pixels pixels = read_pixels(drawn(design, block, back ? View::back : View::face, PictureFormat::png));
+            const Pixels pixels =
+                read_pixels(drawn(design, block, back ? View::back : View::face, PictureFormat::png));
             const Grid grid = face_grid(block, back);
             std::size_t wrong = 0;
             for (std::size_t row = 0; row < block.rows(); ++row) {
@@ -117,7 +124,8 @@ TEST_CASE("face and back show the outermost yarns, the back mirrored") {
                     std::size_t k = back ? 0 : slots.size() - 1;
                     while (slots[k].is_empty()) ++k;
                     const std::size_t end = block.first_end(column) + slots[k].index();
-                    const Colour wanted = slots[k].is_weft() ? design.weft.yarns[0].colour : design.warp.yarns[end % 2].colour;
+                    const Colour wanted =
+                        slots[k].is_weft() ? design.weft.yarns[0].colour : design.warp.yarns[end % 2].colour;
                     wrong += pixels.at(grid.centre(row, column)) != wanted ? 1 : 0;
                 }
             }
@@ -135,7 +143,8 @@ TEST_CASE("trimming looks through loose yarns") {
     const Pixels trimmed = read_pixels(drawn(design, block, View::face, PictureFormat::png, true));
     CHECK(whole.at(grid.centre(0, 0)) == design.weft.yarns[0].colour);    // T2~ lies on top
     CHECK(trimmed.at(grid.centre(0, 0)) == design.warp.yarns[1].colour);  // below it P1
-    CHECK(drawn(design, block, View::block, PictureFormat::png) != drawn(design, block, View::block, PictureFormat::png, true));
+    CHECK(drawn(design, block, View::block, PictureFormat::png) !=
+          drawn(design, block, View::block, PictureFormat::png, true));
 }
 
 TEST_CASE("float lengths agree with counting from every place") {
@@ -152,12 +161,15 @@ TEST_CASE("float lengths agree with counting from every place") {
                 for (std::size_t column = 0; column < block.columns(); ++column) {
                     const Slot yarn = surface.at(row, column);
                     const auto counts = [&](std::size_t i, std::size_t j) {
-                        return i < block.rows() && j < block.columns() && surface.at(i, j).same_system(yarn) && surface.at(i, j).index() == yarn.index();
+                        return i < block.rows() && j < block.columns() &&
+                               surface.at(i, j).same_system(yarn) && surface.at(i, j).index() == yarn.index();
                     };
                     std::int32_t length = 1;
                     const bool weft = yarn.is_weft();
-                    for (std::size_t k = 1; counts(row + (weft ? 0 : k), column + (weft ? k : 0)); ++k) ++length;
-                    for (std::size_t k = 1; counts(row - (weft ? 0 : k), column - (weft ? k : 0)); ++k) ++length;
+                    for (std::size_t k = 1; counts(row + (weft ? 0 : k), column + (weft ? k : 0)); ++k)
+                        ++length;
+                    for (std::size_t k = 1; counts(row - (weft ? 0 : k), column - (weft ? k : 0)); ++k)
+                        ++length;
                     const std::int32_t wanted = yarn.is_empty() ? 0 : weft ? length : -length;
                     REQUIRE(lengths[row * block.columns() + column] == wanted);
                 }
@@ -178,7 +190,8 @@ TEST_CASE("the float picture colours each place by its float, wefts and warps ap
         const auto lengths = float_lengths(Surface(block, colours, grid.mirrored, false));
         for (std::size_t row = 0; row < 200; ++row) {
             for (std::size_t column = 0; column < 150; ++column) {
-                wrong += pixels.at(grid.centre(row, column)) != float_colour(lengths[row * 150 + column]) ? 1 : 0;
+                wrong +=
+                    pixels.at(grid.centre(row, column)) != float_colour(lengths[row * 150 + column]) ? 1 : 0;
             }
         }
     }
@@ -268,7 +281,8 @@ TEST_CASE("views are named as people name them") {
     CHECK(parse_view("weft:3", block)->line == 0);
     CHECK(parse_view("weft:4", block)->line == 1);
     CHECK(parse_view("warp:5", block)->line == 2);
-    for (const char* wrong : {"", "Card", "weft", "weft:", "weft:0", "weft:6", "warp:6", "warp:-1", "warp:1x", "warp:99999999999999999999"}) {
+    for (const char* wrong : {"", "Card", "weft", "weft:", "weft:0", "weft:6", "warp:6", "warp:-1", "warp:1x",
+                              "warp:99999999999999999999"}) {
         INFO(wrong);
         const auto request = parse_view(wrong, block);
         REQUIRE_FALSE(request);

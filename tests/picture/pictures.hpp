@@ -1,16 +1,16 @@
 #pragma once
 
+#include <weave/picture/canvas.hpp>
+#include <weave/picture/picture.hpp>
+
+#include <catch2/catch.hpp>
+#include <png.h>
+
 #include <cmath>
 #include <cstdint>
 #include <memory>
 #include <string>
 #include <vector>
-
-#include <catch2/catch.hpp>
-#include <png.h>
-
-#include <weave/picture/canvas.hpp>
-#include <weave/picture/picture.hpp>
 
 namespace weave::testing {
 
@@ -31,7 +31,8 @@ inline Pixels read_pixels(const std::string& file) {
     image.version = PNG_IMAGE_VERSION;
     REQUIRE(png_image_begin_read_from_memory(&image, file.data(), file.size()) != 0);
     image.format = PNG_FORMAT_RGB;
-    Pixels pixels{image.width, image.height, std::vector<std::uint8_t>(std::size_t{3} * image.width * image.height)};
+    Pixels pixels{image.width, image.height,
+                  std::vector<std::uint8_t>(std::size_t{3} * image.width * image.height)};
     REQUIRE(png_image_finish_read(&image, nullptr, pixels.rgb.data(), 0, nullptr) != 0);
     return pixels;
 }
@@ -60,7 +61,9 @@ inline bool is_well_formed(const std::string& xml) {
     return open.empty() && roots == 1;
 }
 
-inline Evaluation cloth_of(Block block) { return {std::make_shared<const Block>(std::move(block)), {}}; }
+inline Evaluation cloth_of(Block block) {
+    return {std::make_shared<const Block>(std::move(block)), {}};
+}
 
 /// Design and cloth of a few yarns each with its own colour, so that a pixel tells which yarn it shows.
 inline Design coloured_design() {
@@ -74,17 +77,20 @@ inline Design coloured_design() {
     return design;
 }
 
-inline Block block_of(std::vector<std::uint32_t> t, std::vector<std::uint32_t> p, const std::vector<std::string>& stacks) {
+inline Block block_of(std::vector<std::uint32_t> t, std::vector<std::uint32_t> p,
+                      const std::vector<std::string>& stacks) {
     const std::size_t columns = p.size();
-    return make_block(std::move(t), std::move(p), [&](std::size_t i, std::size_t j) {
-               return parse_stack(stacks[i * columns + j]).value();
-           }).value();
+    return make_block(
+               std::move(t), std::move(p),
+               [&](std::size_t i, std::size_t j) { return parse_stack(stacks[i * columns + j]).value(); })
+        .value();
 }
 
 /// Two layers, a stack with a loose weft on top, unequal counts.
 inline Block layered() {
-    return block_of({3, 2}, {2, 1, 2}, {"T0 P0 T1 P1 T2~", "P0 T0 - T1 T2~", "P0 T0 T1 P1 T2~",  //
-                                        "P0 T0 P1 T1", "T1 P0 T0", "T0 P1 T1 P0"});
+    return block_of({3, 2}, {2, 1, 2},
+                    {"T0 P0 T1 P1 T2~", "P0 T0 - T1 T2~", "P0 T0 T1 P1 T2~",  //
+                     "P0 T0 P1 T1", "T1 P0 T0", "T0 P1 T1 P0"});
 }
 
 }  // namespace weave::testing
