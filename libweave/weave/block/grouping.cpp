@@ -304,12 +304,13 @@ CardImage corner_of(const CardImage& card) {
 }
 
 /// Stacks of equal counts that every cell admits although neither system keeps its order over the whole
-/// cloth: layers that change places from region to region. Large ones say more and come first; of those of one
-/// size, the ones with as many ends as picks.
-std::vector<Ranked> even_stacks(const CardImage& card, std::size_t enough) {
-    constexpr std::pair<std::uint32_t, std::uint32_t> usual[] = {{6, 6}, {8, 4}, {6, 4}, {6, 3}, {4, 4}, {6, 2},
-                                                                 {3, 4}, {4, 3}, {3, 3}, {4, 2}, {2, 4}, {2, 3},
-                                                                 {3, 2}, {2, 2}};
+/// cloth: layers that change places from region to region. Where the yarns tell nothing at all, small
+/// stacks are the likelier ones (`small_first`); where they tell something, large ones say more.
+std::vector<Ranked> even_stacks(const CardImage& card, std::size_t enough, bool small_first) {
+    std::array<std::pair<std::uint32_t, std::uint32_t>, 14> usual{{{6, 6}, {8, 4}, {6, 4}, {6, 3}, {4, 4}, {6, 2}, {3, 4},
+                                                                     {4, 3}, {3, 3}, {4, 2}, {2, 4}, {2, 3}, {3, 2},
+                                                                     {2, 2}}};
+    if (small_first) std::reverse(usual.begin(), usual.end());
     const CardImage corner = corner_of(card);
     std::vector<Ranked> found;
     for (const auto& [t, p] : usual) {
@@ -348,7 +349,7 @@ std::vector<Grouping> possible_groupings(const CardImage& card, std::size_t most
     const Readings pick_readings = readings_of(picks, true), end_readings = readings_of(ends, false);
     std::vector<Ranked> ranked = ranked_pairs(pick_readings, end_readings, card.ends());
     const bool nothing_found = is_single(ranked.front().t.counts) && is_single(ranked.front().p.counts);
-    offer_early(ranked, even_stacks(card, nothing_found ? 3 : 2), nothing_found ? 2 : 3);
+    offer_early(ranked, even_stacks(card, nothing_found ? 3 : 2, nothing_found), nothing_found ? 2 : 3);
     std::vector<Grouping> groupings;
     for (const Ranked& candidate : ranked) {
         if (groupings.size() == most) break;
