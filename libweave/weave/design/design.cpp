@@ -11,6 +11,8 @@ template <class... Cases>
 struct Overload : Cases... {
     using Cases::operator()...;
 };
+template <class... Cases>
+Overload(Cases...) -> Overload<Cases...>;  // clang 14 does not deduce this by itself
 
 bool same(const StacksLeaf& a, const StacksLeaf& b) {
     return *a.block == *b.block;
