@@ -1,9 +1,8 @@
 #include <weave/loom/check.hpp>
+#include <weave/loom/check_detail.hpp>
 
 #include <algorithm>
 #include <cstdio>
-
-#include <weave/loom/check_detail.hpp>
 
 namespace weave {
 
@@ -28,8 +27,8 @@ RuleReport::RuleReport(CheckReport& report, const LoomProfile& profile, std::str
 RuleReport::~RuleReport() {
     if (m_found > most_findings_per_rule) {
         const std::size_t more = m_found - most_findings_per_rule;
-        m_report.findings.push_back({m_id, m_severity, {}, {},
-                                     "the same in " + counted(more, "more place") + ", not listed"});
+        m_report.findings.push_back(
+            {m_id, m_severity, {}, {}, "the same in " + counted(more, "more place") + ", not listed"});
     }
     if (m_evaluated && m_found == 0) m_report.passed.push_back(m_id);
 }
@@ -59,12 +58,13 @@ namespace {
 
 using check_detail::Subject;
 
-/// Worst first, then by rule, pick and end; a finding without a place stands after those with one, as it counts the rest.
+/// Worst first, then by rule, pick and end; a finding without a place stands after those with one, as it
+/// counts the rest.
 bool comes_before(const Finding& a, const Finding& b) {
     static constexpr auto none = static_cast<std::size_t>(-1);
     const auto key = [](const Finding& finding) {
-        return std::tuple(-static_cast<int>(finding.severity), std::string_view(finding.rule), finding.pick.value_or(none),
-                          finding.end.value_or(none));
+        return std::tuple(-static_cast<int>(finding.severity), std::string_view(finding.rule),
+                          finding.pick.value_or(none), finding.end.value_or(none));
     };
     return key(a) < key(b);
 }
@@ -79,7 +79,8 @@ std::size_t CheckReport::count(Severity severity) const {
 CheckReport check_for_loom(const Design& design, const Evaluation& cloth, const LoomProfile& profile,
                            const std::optional<TakeUps>& take_ups) {
     const Block& block = *cloth.block;
-    Subject subject{design, cloth, profile, take_ups, block, block.card_image(), pick_table(design, block), {}, false};
+    Subject subject{design, cloth, profile, take_ups, block, block.card_image(), pick_table(design, block),
+                    {},     false};
     subject.turns = profile.insertion == Insertion::shuttle && design.scene.weft_mode == WeftMode::wraparound;
     if (subject.turns) subject.way = weft_way(subject.card, subject.picks);
 

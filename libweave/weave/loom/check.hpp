@@ -1,23 +1,23 @@
 #pragma once
 
+#include <weave/design/design.hpp>
+#include <weave/design/evaluate.hpp>
+#include <weave/loom/profile.hpp>
+
 #include <cstddef>
 #include <optional>
 #include <string>
 #include <vector>
 
-#include <weave/design/design.hpp>
-#include <weave/design/evaluate.hpp>
-#include <weave/loom/profile.hpp>
-
 namespace weave {
 
 /// One thing that validation has to say.
 struct Finding {
-    std::string rule;                 ///< such as `float.face`
+    std::string rule;  ///< such as `float.face`
     Severity severity = Severity::warning;
     std::optional<std::size_t> pick;  ///< from 0; programs print from 1
     std::optional<std::size_t> end;
-    std::string message;              ///< a sentence that a weaver understands
+    std::string message;  ///< a sentence that a weaver understands
 };
 
 /// A rule that could not be judged, and what it lacks.
@@ -44,7 +44,8 @@ struct Rule {
 };
 const std::vector<Rule>& rules();
 
-/// Holds a design to a loom: every rule of rules() is judged, or listed as not evaluated with the reason, never passed silently.
+/// Holds a design to a loom: every rule of rules() is judged, or listed as not evaluated with the reason,
+/// never passed silently.
 CheckReport check_for_loom(const Design& design, const Evaluation& cloth, const LoomProfile& profile,
                            const std::optional<TakeUps>& take_ups = {});
 

@@ -2,14 +2,14 @@
 
 // Shared by the sources of check_for_loom; no part of the library's face.
 
-#include <string>
-#include <string_view>
-#include <vector>
-
 #include <weave/core/text.hpp>
 #include <weave/loom/check.hpp>
 #include <weave/loom/pick_table.hpp>
 #include <weave/loom/weft_way.hpp>
+
+#include <string>
+#include <string_view>
+#include <vector>
 
 namespace weave::check_detail {
 
@@ -20,10 +20,15 @@ inline constexpr std::size_t most_findings_per_rule = 100;
 struct Place {
     std::optional<std::size_t> pick, end;
 };
-inline Place at_pick(std::size_t pick) { return {pick, {}}; }
-inline Place at_end(std::size_t end) { return {{}, end}; }
+inline Place at_pick(std::size_t pick) {
+    return {pick, {}};
+}
+inline Place at_end(std::size_t end) {
+    return {{}, end};
+}
 
-/// Collects what one rule has to say. A rule that neither finds anything nor is said to be not evaluated has passed.
+/// Collects what one rule has to say. A rule that neither finds anything nor is said to be not evaluated has
+/// passed.
 class RuleReport {
   public:
     RuleReport(CheckReport& report, const LoomProfile& profile, std::string_view id);
@@ -54,20 +59,24 @@ struct Subject {
     const Block& block;
     CardImage card;
     std::vector<Pick> picks;
-    WeftWay way;              ///< empty unless `turns`
-    bool turns = false;       ///< the weft turns in the cloth: a shuttle loom, and a design in wraparound
+    WeftWay way;         ///< empty unless `turns`
+    bool turns = false;  ///< the weft turns in the cloth: a shuttle loom, and a design in wraparound
 };
 
-inline std::string person(std::size_t number) { return std::to_string(number + 1); }
+inline std::string person(std::size_t number) {
+    return std::to_string(number + 1);
+}
 /// A share as a percentage with one digit.
 std::string percent(double share);
 
 void check_structure(const Subject& subject, CheckReport& report);  ///< block.*, flips.*
 void check_floats(const Subject& subject, CheckReport& report);     ///< float.*, bind.*
-void check_hooks(const Subject& subject, CheckReport& report);      ///< hooks.*, selvedge.*, picks.limit, name.limit
-void check_lifts(const Subject& subject, CheckReport& report);      ///< lift.*
-void check_feeders(const Subject& subject, CheckReport& report);    ///< feeders.*
-void check_turns(const Subject& subject, CheckReport& report);      ///< turn.*, insertion.match, repeat.doubled
-void check_warp(const Subject& subject, CheckReport& report);       ///< take-up.*, reed.*, warp.density, consumption
+void check_hooks(const Subject& subject,
+                 CheckReport& report);  ///< hooks.*, selvedge.*, picks.limit, name.limit
+void check_lifts(const Subject& subject, CheckReport& report);    ///< lift.*
+void check_feeders(const Subject& subject, CheckReport& report);  ///< feeders.*
+void check_turns(const Subject& subject, CheckReport& report);    ///< turn.*, insertion.match, repeat.doubled
+void check_warp(const Subject& subject,
+                CheckReport& report);  ///< take-up.*, reed.*, warp.density, consumption
 
 }  // namespace weave::check_detail

@@ -1,12 +1,13 @@
 // Rules about the cloth itself: its structure, how far yarns float on a face, and whether each binds.
 //
-// A yarn floats on the face over consecutive columns (a pick) or rows (an end) in which it is the topmost yarn of its stack, on
-// the back where it is the bottommost. With one pick and one end a stack these are the runs of the card image: 1s of a
-// pick are its floats on the face, 0s on the back; 0s of an end are its floats on the face, 1s on the back.
-
-#include <algorithm>
+// A yarn floats on the face over consecutive columns (a pick) or rows (an end) in which it is the topmost
+// yarn of its stack, on the back where it is the bottommost. With one pick and one end a stack these are the
+// runs of the card image: 1s of a pick are its floats on the face, 0s on the back; 0s of an end are its
+// floats on the face, 1s on the back.
 
 #include <weave/loom/check_detail.hpp>
+
+#include <algorithm>
 
 namespace weave::check_detail {
 
@@ -23,11 +24,13 @@ struct Reach {
 
 /// What one stack says of its yarns.
 struct Facts {
-    Slot top, bottom;                         ///< of the yarns that are in the cloth here
-    std::vector<std::uint8_t> wefts, warps;  ///< by number: lies over, under a yarn of the other system; not loose here
+    Slot top, bottom;  ///< of the yarns that are in the cloth here
+    std::vector<std::uint8_t> wefts,
+        warps;  ///< by number: lies over, under a yarn of the other system; not loose here
 };
 
-/// `reach` of each weft; empty: all of them span all ends. Loose yarns bind nothing: they go when the cloth is trimmed.
+/// `reach` of each weft; empty: all of them span all ends. Loose yarns bind nothing: they go when the cloth
+/// is trimmed.
 Facts facts_of(const Stack& stack, const std::vector<Reach>& reach = {}) {
     Facts facts;
     facts.wefts.resize(stack.wefts());
@@ -56,7 +59,8 @@ Facts facts_of(const Stack& stack, const std::vector<Reach>& reach = {}) {
     return facts;
 }
 
-/// The facts of every cell, worked out once for each different stack; anew only where a pick does not span the cell.
+/// The facts of every cell, worked out once for each different stack; anew only where a pick does not span
+/// the cell.
 class Cloth {
   public:
     explicit Cloth(const Subject& subject) : m_block(subject.block), m_spans(subject.block.picks()) {
@@ -82,8 +86,9 @@ class Cloth {
         for (std::size_t pick = m_block.first_pick(row); pick < m_block.first_pick(row + 1); ++pick) {
             const Reach span = m_spans[pick];
             const bool meets = !span.is_empty() && span.low <= last && span.high >= first;
-            reach.push_back(meets ? Reach{std::max(span.low, first) - first, std::min(span.high, last) - first}
-                                  : Reach{1, 0});
+            reach.push_back(meets
+                                ? Reach{std::max(span.low, first) - first, std::min(span.high, last) - first}
+                                : Reach{1, 0});
         }
         m_scratch = facts_of(m_block.stack(row, column), reach);
         return m_scratch;
@@ -133,17 +138,22 @@ Binding binding_of(Cloth& cloth) {
     for (std::size_t row = 0; row < block.rows(); ++row) {
         for (std::size_t column = 0; column < block.columns(); ++column) {
             const Facts& facts = cloth.at(row, column);
-            for (std::size_t k = 0; k < facts.wefts.size(); ++k) binding.picks[block.first_pick(row) + k] |= facts.wefts[k];
-            for (std::size_t k = 0; k < facts.warps.size(); ++k) binding.ends[block.first_end(column) + k] |= facts.warps[k];
+            for (std::size_t k = 0; k < facts.wefts.size(); ++k)
+                binding.picks[block.first_pick(row) + k] |= facts.wefts[k];
+            for (std::size_t k = 0; k < facts.warps.size(); ++k)
+                binding.ends[block.first_end(column) + k] |= facts.warps[k];
         }
     }
     return binding;
 }
 
-bool is_unbound(std::uint8_t flags) { return (flags & is_firm) != 0 && (flags & (is_over | is_under)) != (is_over | is_under); }
+bool is_unbound(std::uint8_t flags) {
+    return (flags & is_firm) != 0 && (flags & (is_over | is_under)) != (is_over | is_under);
+}
 
 std::string unbound(const std::string& yarn, std::uint8_t flags, const char* others, const char* other) {
-    if ((flags & (is_over | is_under)) == 0) return yarn + " crosses no " + other + " that stays in the cloth, so nothing holds it";
+    if ((flags & (is_over | is_under)) == 0)
+        return yarn + " crosses no " + other + " that stays in the cloth, so nothing holds it";
     return yarn + " lies " + ((flags & is_over) != 0 ? "over" : "under") + " all " + others +
            " of the repeat and does not bind; if it is a placeholder or trimmed, mark it as loose";
 }
@@ -166,7 +176,8 @@ void report_binding(const Subject& subject, const Cloth& cloth, const Binding& b
 /// Counts how long the same yarn stays on a face along one line of cells. The line may close at the repeat.
 class Runs {
   public:
-    /// The yarn on the face in the next cell, or nowhere. `found(yarn, first, length)` is told of each run that ends.
+    /// The yarn on the face in the next cell, or nowhere. `found(yarn, first, length)` is told of each run
+    /// that ends.
     template <class Found>
     void step(std::size_t position, std::size_t yarn, Found found) {
         if (position == 0) {
@@ -210,7 +221,11 @@ class Runs {
 class Floats {
   public:
     Floats(const Subject& subject, const Binding& binding, bool face, std::size_t limit, RuleReport& rule)
-        : m_subject(subject), m_binding(binding), m_face(face), m_limit(limit), m_rule(rule),
+        : m_subject(subject),
+          m_binding(binding),
+          m_face(face),
+          m_limit(limit),
+          m_rule(rule),
           m_columns(subject.block.columns()) {}
 
     void look(std::size_t row, std::size_t column, const Facts& facts) {
@@ -241,8 +256,8 @@ class Floats {
         const std::size_t last = (first + length - 1) % block.columns();
         const bool single = block.columns() == block.ends();
         m_rule.find({pick, block.first_end(first)},
-                    sentence("pick " + person(pick), counted(length, single ? "end" : "column of ends"), "end",
-                             block.first_end(first), block.first_end(last + 1) - 1, last < first));
+                    sentence("pick " + person(pick), counted(length, single ? "end" : "column of ends"),
+                             "end", block.first_end(first), block.first_end(last + 1) - 1, last < first));
     }
 
     void warp_float(std::size_t end, std::size_t first, std::size_t length) {
@@ -255,10 +270,11 @@ class Floats {
                              block.first_pick(first), block.first_pick(last + 1) - 1, last < first));
     }
 
-    [[nodiscard]] std::string sentence(const std::string& yarn, const std::string& passed, const std::string& other,
-                                       std::size_t first, std::size_t last, bool through_repeat) const {
-        return yarn + " floats on the " + (m_face ? "face" : "back") + " over " + passed + ", from " + other + " " +
-               person(first) + (through_repeat ? " through the repeat to " : " to ") + person(last) +
+    [[nodiscard]] std::string sentence(const std::string& yarn, const std::string& passed,
+                                       const std::string& other, std::size_t first, std::size_t last,
+                                       bool through_repeat) const {
+        return yarn + " floats on the " + (m_face ? "face" : "back") + " over " + passed + ", from " + other +
+               " " + person(first) + (through_repeat ? " through the repeat to " : " to ") + person(last) +
                "; this loom's limit is " + std::to_string(m_limit);
     }
 
@@ -272,7 +288,8 @@ class Floats {
 };
 
 void report_floats(const Subject& subject, Cloth& cloth, const Binding& binding, CheckReport& report) {
-    RuleReport face_rule(report, subject.profile, "float.face"), back_rule(report, subject.profile, "float.back");
+    RuleReport face_rule(report, subject.profile, "float.face"),
+        back_rule(report, subject.profile, "float.back");
     const LoomLimits& limits = subject.profile.limits;
     const bool no_face = limits.float_face == 0, no_back = limits.float_back == 0;
     if (no_face) face_rule.not_evaluated("the profile sets no limit for floats on the face");
@@ -304,8 +321,9 @@ void check_structure(const Subject& subject, CheckReport& report) {
                 if (stack.wefts() == block.t()[row] && stack.warps() == block.p()[column]) continue;
                 rule.find({block.first_pick(row), block.first_end(column)},
                           "the stack in row " + person(row) + ", column " + person(column) + " holds " +
-                              counted(stack.wefts(), "pick") + " and " + counted(stack.warps(), "end") + " instead of " +
-                              std::to_string(block.t()[row]) + " and " + std::to_string(block.p()[column]));
+                              counted(stack.wefts(), "pick") + " and " + counted(stack.warps(), "end") +
+                              " instead of " + std::to_string(block.t()[row]) + " and " +
+                              std::to_string(block.p()[column]));
             }
         }
         for (const Stack& stack : block.stacks()) {
@@ -317,8 +335,8 @@ void check_structure(const Subject& subject, CheckReport& report) {
         // Numbers of a flip count in its own block; only in the root are they those of the cloth.
         const bool in_cloth = lost.block == subject.design.root;
         rule.find(in_cloth ? Place{lost.flip.pick, lost.flip.end} : Place{},
-                  "the flip of pick " + person(lost.flip.pick) + " and end " + person(lost.flip.end) + " in block '" +
-                      lost.block + "' no longer applies: " + lost.reason);
+                  "the flip of pick " + person(lost.flip.pick) + " and end " + person(lost.flip.end) +
+                      " in block '" + lost.block + "' no longer applies: " + lost.reason);
     }
 }
 

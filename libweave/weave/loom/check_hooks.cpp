@@ -1,8 +1,8 @@
 // Rules about hooks: where ends are tied, what never lifts, the selvedge, and what one file holds.
 
-#include <algorithm>
-
 #include <weave/loom/check_detail.hpp>
+
+#include <algorithm>
 
 namespace weave::check_detail {
 
@@ -10,12 +10,18 @@ namespace {
 
 const char* name_of(HookUse use) {
     switch (use) {
-        case HookUse::cast_out: return "cast out";
-        case HookUse::body: return "a body hook";
-        case HookUse::selvedge: return "a selvedge hook";
-        case HookUse::constant_on: return "always lifted";
-        case HookUse::feeder: return "a feeder's hook";
-        case HookUse::regulator: return "a hook of the take-up";
+        case HookUse::cast_out:
+            return "cast out";
+        case HookUse::body:
+            return "a body hook";
+        case HookUse::selvedge:
+            return "a selvedge hook";
+        case HookUse::constant_on:
+            return "always lifted";
+        case HookUse::feeder:
+            return "a feeder's hook";
+        case HookUse::regulator:
+            return "a hook of the take-up";
     }
     return "";
 }
@@ -32,8 +38,9 @@ void check_fit(const Subject& subject, CheckReport& report) {
     RuleReport rule(report, subject.profile, "hooks.fit");
     const std::size_t most = most_ends(subject.profile), ends = subject.block.ends();
     if (ends > most) {
-        rule.find(at_end(most), "the design has " + counted(ends, "end") + ", but this loom carries at most " +
-                                    std::to_string(most) + "; end " + person(most) + " is the first without a hook");
+        rule.find(at_end(most), "the design has " + counted(ends, "end") +
+                                    ", but this loom carries at most " + std::to_string(most) + "; end " +
+                                    person(most) + " is the first without a hook");
     }
 }
 
@@ -48,11 +55,11 @@ void check_cast_outs(const Subject& subject, CheckReport& report) {
     for (std::size_t end = 0; end < hooks.size(); ++end) {
         for (const std::size_t hook : hooks[end]) {
             if (hook >= uses.size()) {
-                rule.find(at_end(end), "end " + person(end) + " is tied to hook " + person(hook) + ", but the loom has " +
-                                           counted(uses.size(), "hook"));
+                rule.find(at_end(end), "end " + person(end) + " is tied to hook " + person(hook) +
+                                           ", but the loom has " + counted(uses.size(), "hook"));
             } else if (uses[hook] != HookUse::body) {
-                rule.find(at_end(end), "end " + person(end) + " is tied to hook " + person(hook) + ", which is " +
-                                           name_of(uses[hook]));
+                rule.find(at_end(end), "end " + person(end) + " is tied to hook " + person(hook) +
+                                           ", which is " + name_of(uses[hook]));
             }
         }
     }
@@ -71,7 +78,8 @@ std::vector<char> lifts_of(const Subject& subject, const std::vector<std::vector
     return lifted;
 }
 
-/// Reads the lifts hook by hook, as a decoder does: the end that each body hook carries, not the hooks of each end.
+/// Reads the lifts hook by hook, as a decoder does: the end that each body hook carries, not the hooks of
+/// each end.
 void check_read_back(const Subject& subject, CheckReport& report) {
     RuleReport rule(report, subject.profile, "hooks.read-back");
     if (!rule.wanted()) return;
@@ -116,7 +124,8 @@ void check_selvedge_needed(const Subject& subject, CheckReport& report) {
         return rule.not_evaluated("a shuttle's weft turns at the edge, so this loom needs no extra selvedge");
     }
     if (selvedge_hooks(subject.profile) == 0) {
-        rule.find({}, "this loom cuts each pick, but its profile has no selvedge hooks: the edges would fray");
+        rule.find({},
+                  "this loom cuts each pick, but its profile has no selvedge hooks: the edges would fray");
     }
 }
 
@@ -134,21 +143,25 @@ void check_selvedge_binds(const Subject& subject, CheckReport& report) {
     const LoomProfile& profile = subject.profile;
     const std::size_t hooks = selvedge_hooks(profile), picks = subject.block.picks();
     if (hooks == 0) return rule.not_evaluated("the profile has no selvedge hooks");
-    if (profile.selvedge_weave.empty()) return rule.not_evaluated("the profile gives no weave for its selvedge hooks");
+    if (profile.selvedge_weave.empty())
+        return rule.not_evaluated("the profile gives no weave for its selvedge hooks");
     std::size_t place = 0;
     for (const auto& range : profile.selvedge) {
         for (std::size_t hook = range.first; hook <= range.last; ++hook, ++place) {
             if (!varies(picks, [&](std::size_t pick) { return selvedge_lifted(profile, place, pick); })) {
                 rule.find({}, "selvedge hook " + person(hook) + " is " +
-                                  (selvedge_lifted(profile, place, 0) ? "lifted" : "down") + " on every pick of the " +
-                                  counted(picks, "pick") + " of this design, so its end does not bind");
+                                  (selvedge_lifted(profile, place, 0) ? "lifted" : "down") +
+                                  " on every pick of the " + counted(picks, "pick") +
+                                  " of this design, so its end does not bind");
             }
         }
     }
     const std::size_t pattern = std::min(hooks, profile.selvedge_weave.front().size());
     for (std::size_t pick = 0; pick < std::min(picks, profile.selvedge_weave.size()); ++pick) {
         if (!varies(pattern, [&](std::size_t k) { return selvedge_lifted(profile, k, pick); })) {
-            rule.find(at_pick(pick), "pick " + person(pick) + " passes all selvedge ends on one side, so the selvedge does not hold it");
+            rule.find(at_pick(pick),
+                      "pick " + person(pick) +
+                          " passes all selvedge ends on one side, so the selvedge does not hold it");
         }
     }
 }
@@ -160,14 +173,15 @@ void check_picks(const Subject& subject, CheckReport& report) {
     if (subject.block.picks() + extra > most) {
         std::string message = "the design has " + counted(subject.block.picks(), "pick");
         if (extra > 0) message += " and " + std::to_string(extra) + " of lead-in";
-        rule.find(at_pick(most > extra ? most - extra : 0), message + ", but one file of this loom holds at most " + std::to_string(most));
+        rule.find(at_pick(most > extra ? most - extra : 0),
+                  message + ", but one file of this loom holds at most " + std::to_string(most));
     }
 }
 
 /// Characters of a UTF-8 text.
 std::size_t characters(const std::string& text) {
-    return static_cast<std::size_t>(
-        std::count_if(text.begin(), text.end(), [](char c) { return (static_cast<unsigned char>(c) & 0xc0) != 0x80; }));
+    return static_cast<std::size_t>(std::count_if(
+        text.begin(), text.end(), [](char c) { return (static_cast<unsigned char>(c) & 0xc0) != 0x80; }));
 }
 
 void check_name(const Subject& subject, CheckReport& report) {
@@ -177,10 +191,12 @@ void check_name(const Subject& subject, CheckReport& report) {
     if (most == 0) return rule.not_evaluated("the profile sets no limit for names");
     if (characters(title) > most) {
         rule.find({}, "the title '" + title + "' has " + counted(characters(title), "character") +
-                          ", but the file has room for " + std::to_string(most) + ": give the file a shorter name on release");
+                          ", but the file has room for " + std::to_string(most) +
+                          ": give the file a shorter name on release");
     }
     const bool plain = std::all_of(title.begin(), title.end(), [](char c) { return c >= 0x20 && c < 0x7f; });
-    if (!plain) rule.find({}, "the title '" + title + "' has characters that the loom's name field cannot show");
+    if (!plain)
+        rule.find({}, "the title '" + title + "' has characters that the loom's name field cannot show");
 }
 
 }  // namespace

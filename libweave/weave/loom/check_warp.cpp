@@ -1,10 +1,10 @@
 // Rules about the warp and its way through the loom: take-up, reed, density, consumption.
 
+#include <weave/loom/check_detail.hpp>
+
 #include <algorithm>
 #include <cmath>
 #include <cstdio>
-
-#include <weave/loom/check_detail.hpp>
 
 namespace weave::check_detail {
 
@@ -23,21 +23,24 @@ void check_stops(const Subject& subject, CheckReport& report) {
         const Pick& pick = subject.picks[k];
         const bool last_of_row = k + 1 == subject.picks.size() || subject.picks[k + 1].row != pick.row;
         if (pick.take_up == last_of_row) continue;
-        rule.find(at_pick(k), pick.take_up ? "the cloth advances after pick " + person(k) + ", in the middle of row " +
-                                                 person(pick.row) + ", so the picks of this row do not stack"
-                                           : "the cloth does not advance after pick " + person(k) + ", the last of row " +
-                                                 person(pick.row) + ", so the next row falls on top of it");
+        rule.find(at_pick(k),
+                  pick.take_up ? "the cloth advances after pick " + person(k) + ", in the middle of row " +
+                                     person(pick.row) + ", so the picks of this row do not stack"
+                               : "the cloth does not advance after pick " + person(k) + ", the last of row " +
+                                     person(pick.row) + ", so the next row falls on top of it");
     }
 }
 
 void check_regulator(const Subject& subject, CheckReport& report) {
     RuleReport rule(report, subject.profile, "take-up.regulator");
-    const auto stop = std::find_if(subject.picks.begin(), subject.picks.end(), [](const Pick& p) { return !p.take_up; });
+    const auto stop =
+        std::find_if(subject.picks.begin(), subject.picks.end(), [](const Pick& p) { return !p.take_up; });
     if (stop == subject.picks.end() || !subject.profile.regulator_hooks.empty()) return;
     const auto stops = std::count_if(stop, subject.picks.end(), [](const Pick& p) { return !p.take_up; });
-    rule.find(at_pick(static_cast<std::size_t>(stop - subject.picks.begin())),
-              "the cloth has to stand still after " + counted(static_cast<std::size_t>(stops), "pick") +
-                  ", but the profile names no hook that stops the take-up: set it on the loom by the pick table");
+    rule.find(
+        at_pick(static_cast<std::size_t>(stop - subject.picks.begin())),
+        "the cloth has to stand still after " + counted(static_cast<std::size_t>(stops), "pick") +
+            ", but the profile names no hook that stops the take-up: set it on the loom by the pick table");
 }
 
 struct Spread {
@@ -48,12 +51,14 @@ struct Spread {
 void check_beams(const Subject& subject, CheckReport& report) {
     RuleReport rule(report, subject.profile, "take-up.beam");
     const auto limit = subject.profile.limits.take_up_difference;
-    if (!subject.take_ups) return rule.not_evaluated("needs the take-up of each end from a relaxed simulation");
-    if (!limit) return rule.not_evaluated("the profile sets no limit for the spread of take-up within a beam");
+    if (!subject.take_ups)
+        return rule.not_evaluated("needs the take-up of each end from a relaxed simulation");
+    if (!limit)
+        return rule.not_evaluated("the profile sets no limit for the spread of take-up within a beam");
     const TakeUps& take_ups = *subject.take_ups;
     if (take_ups.size() != subject.block.ends()) {
-        return rule.not_evaluated("the take-ups are of " + counted(take_ups.size(), "end") + ", the design has " +
-                                  std::to_string(subject.block.ends()));
+        return rule.not_evaluated("the take-ups are of " + counted(take_ups.size(), "end") +
+                                  ", the design has " + std::to_string(subject.block.ends()));
     }
     if (!std::all_of(take_ups.begin(), take_ups.end(), [](double t) { return std::isfinite(t); })) {
         return rule.not_evaluated("the take-ups are not all numbers");
@@ -70,10 +75,10 @@ void check_beams(const Subject& subject, CheckReport& report) {
         const Spread& spread = spreads[beam];
         const double difference = spread.seen ? take_ups[spread.most] - take_ups[spread.least] : 0;
         if (difference <= *limit) continue;
-        rule.find(at_end(spread.most), "on beam '" + warp.beams[beam].name + "' end " + person(spread.most) + " takes up " +
-                                           percent(take_ups[spread.most]) + " and end " + person(spread.least) + " only " +
-                                           percent(take_ups[spread.least]) + "; this loom's limit is a difference of " +
-                                           percent(*limit));
+        rule.find(at_end(spread.most), "on beam '" + warp.beams[beam].name + "' end " + person(spread.most) +
+                                           " takes up " + percent(take_ups[spread.most]) + " and end " +
+                                           person(spread.least) + " only " + percent(take_ups[spread.least]) +
+                                           "; this loom's limit is a difference of " + percent(*limit));
     }
 }
 
@@ -86,16 +91,19 @@ void check_width(const Subject& subject, CheckReport& report) {
     const std::size_t ends = point ? 2 * subject.block.ends() - 1 : subject.block.ends() * repeats;
     const double width_mm = 10 * static_cast<double>(ends) / subject.design.warp.density_ends_per_cm;
     if (width_mm <= *limit) return;
-    rule.find({}, counted(ends, "end") + " at " + decimal(subject.design.warp.density_ends_per_cm) + " to the centimetre are " +
-                      decimal(width_mm) + " mm wide, but the reed takes " + decimal(*limit) + " mm");
+    rule.find({}, counted(ends, "end") + " at " + decimal(subject.design.warp.density_ends_per_cm) +
+                      " to the centimetre are " + decimal(width_mm) + " mm wide, but the reed takes " +
+                      decimal(*limit) + " mm");
 }
 
 void check_dents(const Subject& subject, CheckReport& report) {
     RuleReport rule(report, subject.profile, "reed.dents");
-    const std::size_t in_dent = subject.design.warp.ends_per_dent, left = in_dent == 0 ? 0 : subject.block.ends() % in_dent;
+    const std::size_t in_dent = subject.design.warp.ends_per_dent,
+                      left = in_dent == 0 ? 0 : subject.block.ends() % in_dent;
     if (in_dent == 0) return rule.not_evaluated("the design does not tell how many ends go through a dent");
     if (left == 0) return;
-    rule.find({}, "with " + counted(in_dent, "end") + " to a dent the last dent holds only " + std::to_string(left));
+    rule.find({}, "with " + counted(in_dent, "end") + " to a dent the last dent holds only " +
+                      std::to_string(left));
 }
 
 void check_density(const Subject& subject, CheckReport& report) {
@@ -104,8 +112,9 @@ void check_density(const Subject& subject, CheckReport& report) {
     if (!harness) return rule.not_evaluated("the profile does not tell the density of the harness");
     const double density = subject.design.warp.density_ends_per_cm;
     if (std::abs(density - *harness) <= 0.01 * *harness) return;
-    rule.find({}, "the design has " + decimal(density) + " ends to the centimetre, the harness " + decimal(*harness) +
-                      ": the cloth comes out " + (density > *harness ? "wider" : "narrower") + " than drawn");
+    rule.find({}, "the design has " + decimal(density) + " ends to the centimetre, the harness " +
+                      decimal(*harness) + ": the cloth comes out " +
+                      (density > *harness ? "wider" : "narrower") + " than drawn");
 }
 
 }  // namespace

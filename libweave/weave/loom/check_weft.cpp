@@ -1,11 +1,11 @@
 // Rules about the weft and the shed: feeders, lifts, and the way of a shuttle's yarn.
 
+#include <weave/loom/check_detail.hpp>
+
 #include <algorithm>
 #include <bit>
 #include <cmath>
 #include <set>
-
-#include <weave/loom/check_detail.hpp>
 
 namespace weave::check_detail {
 
@@ -17,7 +17,8 @@ void check_per_pick(const Subject& subject, CheckReport& report) {
         const std::size_t feeders = subject.picks[k].feeders.size();
         if (feeders <= subject.profile.feeders_per_pick) continue;
         rule.find(at_pick(k), "pick " + person(k) + " takes " + counted(feeders, "feeder") +
-                                  " at once, but this loom inserts " + std::to_string(subject.profile.feeders_per_pick));
+                                  " at once, but this loom inserts " +
+                                  std::to_string(subject.profile.feeders_per_pick));
     }
 }
 
@@ -25,8 +26,10 @@ void check_no_feeder(const Subject& subject, CheckReport& report) {
     RuleReport rule(report, subject.profile, "feeders.none");
     for (std::size_t k = 0; k < subject.picks.size(); ++k) {
         if (!subject.picks[k].feeders.empty() || subject.picks[k].take_up) continue;
-        rule.find(at_pick(k), "pick " + person(k) +
-                                  " has no feeder and the cloth does not advance either: a pick without weft may only take up");
+        rule.find(
+            at_pick(k),
+            "pick " + person(k) +
+                " has no feeder and the cloth does not advance either: a pick without weft may only take up");
     }
 }
 
@@ -60,11 +63,13 @@ void check_balance(const Subject& subject, const std::vector<std::size_t>& lifts
     const auto ends = static_cast<double>(subject.card.ends());
     for (std::size_t k = 0; k < lifts.size() && lifts.size() > 1; ++k) {
         const std::size_t before = k == 0 ? lifts.size() - 1 : k - 1;
-        const double change = std::abs(static_cast<double>(lifts[k]) - static_cast<double>(lifts[before])) / ends;
+        const double change =
+            std::abs(static_cast<double>(lifts[k]) - static_cast<double>(lifts[before])) / ends;
         if (change <= *limit) continue;
-        rule.find(at_pick(k), "from pick " + person(before) + " to pick " + person(k) + " the lifted ends go from " +
-                                  std::to_string(lifts[before]) + " to " + std::to_string(lifts[k]) + ", a change of " +
-                                  percent(change) + "; this loom's limit is " + percent(*limit));
+        rule.find(at_pick(k), "from pick " + person(before) + " to pick " + person(k) +
+                                  " the lifted ends go from " + std::to_string(lifts[before]) + " to " +
+                                  std::to_string(lifts[k]) + ", a change of " + percent(change) +
+                                  "; this loom's limit is " + percent(*limit));
     }
 }
 
@@ -87,25 +92,33 @@ void check_face_down(const Subject& subject, const std::vector<std::size_t>& lif
     for (const std::size_t on_pick : lifts) lifted += on_pick;
     const std::uint64_t all = std::uint64_t{subject.card.picks()} * subject.card.ends();
     if (lifted <= all - lifted) return;
-    rule.find({}, "woven face down, with the card inverted, the loom would lift " + std::to_string(all - lifted) +
-                      " times in a repeat instead of " + std::to_string(lifted));
+    rule.find({}, "woven face down, with the card inverted, the loom would lift " +
+                      std::to_string(all - lifted) + " times in a repeat instead of " +
+                      std::to_string(lifted));
 }
 
-const char* name_of(Side side) { return side == Side::left ? "left" : "right"; }
+const char* name_of(Side side) {
+    return side == Side::left ? "left" : "right";
+}
 
 const char* name_of(Insertion insertion) {
     switch (insertion) {
-        case Insertion::shuttle: return "a shuttle";
-        case Insertion::rapier: return "a rapier";
-        case Insertion::air_jet: return "an air jet";
+        case Insertion::shuttle:
+            return "a shuttle";
+        case Insertion::rapier:
+            return "a rapier";
+        case Insertion::air_jet:
+            return "an air jet";
     }
     return "";
 }
 
 /// Why turns are not judged; empty if they are.
 std::string no_turns(const Subject& subject) {
-    if (subject.profile.insertion != Insertion::shuttle) return "this loom cuts each pick, so its weft has no turns";
-    if (!subject.turns) return "the design is drawn in periodic mode, where every pick runs from edge to edge";
+    if (subject.profile.insertion != Insertion::shuttle)
+        return "this loom cuts each pick, so its weft has no turns";
+    if (!subject.turns)
+        return "the design is drawn in periodic mode, where every pick runs from edge to edge";
     return {};
 }
 
@@ -114,8 +127,9 @@ void check_caught(const Subject& subject, CheckReport& report) {
     if (const std::string reason = no_turns(subject); !reason.empty()) return rule.not_evaluated(reason);
     for (const Turn& turn : subject.way.turns) {
         if (turn.caught_by != CaughtBy::none) continue;
-        rule.find(at_pick(turn.to_pick), "the turn on the " + std::string(name_of(turn.side)) + " from pick " +
-                                             person(turn.from_pick) + " to pick " + person(turn.to_pick) +
+        rule.find(at_pick(turn.to_pick), "the turn on the " + std::string(name_of(turn.side)) +
+                                             " from pick " + person(turn.from_pick) + " to pick " +
+                                             person(turn.to_pick) +
                                              " is caught by no end and no pick: the weft of feeder " +
                                              person(turn.feeder) + " pulls through");
     }
@@ -137,7 +151,8 @@ void check_crossed(const Subject& subject, CheckReport& report) {
     }
 }
 
-/// Where a feeder's next pick does not start where its last one ended. Needs no card, so it is judged in periodic mode, too.
+/// Where a feeder's next pick does not start where its last one ended. Needs no card, so it is judged in
+/// periodic mode, too.
 void check_box(const Subject& subject, CheckReport& report) {
     RuleReport rule(report, subject.profile, "turn.box");
     if (subject.profile.insertion != Insertion::shuttle) {
@@ -146,11 +161,10 @@ void check_box(const Subject& subject, CheckReport& report) {
     const CardImage no_ends(subject.picks.size(), 1);
     for (const MissedBox& missed : weft_way(no_ends, subject.picks).missed_boxes) {
         const bool stands_right = subject.picks[missed.from_pick].direction == Direction::left_to_right;
-        rule.find(at_pick(missed.to_pick), "pick " + person(missed.to_pick) + " starts on the " +
-                                               (stands_right ? "left" : "right") + ", but the shuttle of feeder " +
-                                               person(missed.feeder) + " stands on the " +
-                                               (stands_right ? "right" : "left") + " since pick " +
-                                               person(missed.from_pick));
+        rule.find(at_pick(missed.to_pick),
+                  "pick " + person(missed.to_pick) + " starts on the " + (stands_right ? "left" : "right") +
+                      ", but the shuttle of feeder " + person(missed.feeder) + " stands on the " +
+                      (stands_right ? "right" : "left") + " since pick " + person(missed.from_pick));
     }
 }
 
@@ -161,7 +175,8 @@ void check_cut(const Subject& subject, CheckReport& report) {
     }
     if (subject.profile.insertion == Insertion::shuttle) return;
     rule.find({}, "the design relies on weft that turns inside the cloth, but this loom inserts with " +
-                      std::string(name_of(subject.profile.insertion)) + " and cuts each pick: no loop will hold");
+                      std::string(name_of(subject.profile.insertion)) +
+                      " and cuts each pick: no loop will hold");
 }
 
 void check_insertion(const Subject& subject, CheckReport& report) {
@@ -183,7 +198,8 @@ void check_repeat(const Subject& subject, CheckReport& report) {
     for (const auto& [feeder, picks] : counts) {
         if (picks % 2 == 0) continue;
         rule.find({}, "feeder " + person(feeder) + " makes " + counted(picks, "pick") +
-                          " in a repeat, an odd number: its shuttle ends on the other side, so only two repeats are a whole round");
+                          " in a repeat, an odd number: its shuttle ends on the other side, so only two "
+                          "repeats are a whole round");
     }
 }
 

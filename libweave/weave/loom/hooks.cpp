@@ -22,7 +22,8 @@ std::size_t body_hook(const LoomProfile& profile, std::size_t place) {
 
 void mark(std::vector<HookUse>& uses, const std::vector<HookRange>& ranges, HookUse use) {
     for (const auto& range : ranges) {
-        for (std::size_t hook = range.first; hook <= range.last && hook < uses.size(); ++hook) uses[hook] = use;
+        for (std::size_t hook = range.first; hook <= range.last && hook < uses.size(); ++hook)
+            uses[hook] = use;
     }
 }
 
@@ -37,10 +38,14 @@ void mark(std::vector<HookUse>& uses, const std::vector<std::size_t>& hooks, Hoo
 std::size_t most_ends(const LoomProfile& profile) {
     const std::size_t hooks = hooks_in(profile.body);
     switch (profile.hook_rule) {
-        case HookRule::straight: return hooks;
-        case HookRule::point: return (hooks + 1) / 2;
-        case HookRule::repeats: return profile.repeats == 0 ? 0 : hooks / profile.repeats;
-        case HookRule::list: return profile.hook_of_end.size();
+        case HookRule::straight:
+            return hooks;
+        case HookRule::point:
+            return (hooks + 1) / 2;
+        case HookRule::repeats:
+            return profile.repeats == 0 ? 0 : hooks / profile.repeats;
+        case HookRule::list:
+            return profile.hook_of_end.size();
     }
     return 0;
 }
@@ -48,8 +53,10 @@ std::size_t most_ends(const LoomProfile& profile) {
 std::vector<std::size_t> hooks_of_end(const LoomProfile& profile, std::size_t end, std::size_t ends) {
     if (end >= ends || ends > most_ends(profile)) return {};
     switch (profile.hook_rule) {
-        case HookRule::straight: return {body_hook(profile, end)};
-        case HookRule::list: return {profile.hook_of_end[end]};
+        case HookRule::straight:
+            return {body_hook(profile, end)};
+        case HookRule::list:
+            return {profile.hook_of_end[end]};
         case HookRule::point: {
             const std::size_t mirrored = 2 * (ends - 1) - end;
             if (mirrored == end) return {body_hook(profile, end)};
@@ -57,7 +64,8 @@ std::vector<std::size_t> hooks_of_end(const LoomProfile& profile, std::size_t en
         }
         case HookRule::repeats: {
             std::vector<std::size_t> hooks;
-            for (std::size_t k = 0; k < profile.repeats; ++k) hooks.push_back(body_hook(profile, k * ends + end));
+            for (std::size_t k = 0; k < profile.repeats; ++k)
+                hooks.push_back(body_hook(profile, k * ends + end));
             return hooks;
         }
     }

@@ -13,7 +13,8 @@ class Shuttles {
   public:
     explicit Shuttles(std::size_t feeders) : m_next(feeders, Direction::left_to_right) {}
 
-    /// The direction of a pick: its first feeder decides. All its feeders then stand on the side where it ended.
+    /// The direction of a pick: its first feeder decides. All its feeders then stand on the side where it
+    /// ended.
     Direction throw_pick(const FeederSet& feeders) {
         if (feeders.empty()) return Direction::left_to_right;
         const Direction direction = m_next.at(feeders.front());
@@ -78,10 +79,13 @@ std::string pick_table_csv(const Design& design, const std::vector<Pick>& picks)
         csv += std::to_string(k + 1) + ',' + std::to_string(pick.row + 1) + ',';
         csv += of_feeders(pick, [](std::uint32_t f) { return std::to_string(f + 1); }) + ',';
         csv += field(of_feeders(pick, [&](std::uint32_t f) { return design.weft.feeders.at(f).name; })) + ',';
-        csv += no_weft ? "," : pick.direction == Direction::left_to_right ? "left to right," : "right to left,";
+        csv += no_weft                                      ? ","
+               : pick.direction == Direction::left_to_right ? "left to right,"
+                                                            : "right to left,";
         csv += pick.take_up ? "yes," : "no,";
         csv += field(of_feeders(pick, [&](std::uint32_t f) { return yarn_of_feeder(design, f).name; })) + ',';
-        csv += of_feeders(pick, [&](std::uint32_t f) { return to_text(yarn_of_feeder(design, f).colour); }) + "\r\n";
+        csv += of_feeders(pick, [&](std::uint32_t f) { return to_text(yarn_of_feeder(design, f).colour); }) +
+               "\r\n";
     }
     return csv;
 }

@@ -1,12 +1,12 @@
 #pragma once
 
+#include <weave/block/block.hpp>
+#include <weave/design/design.hpp>
+
 #include <cstddef>
 #include <optional>
 #include <string>
 #include <vector>
-
-#include <weave/block/block.hpp>
-#include <weave/design/design.hpp>
 
 namespace weave {
 
@@ -14,8 +14,8 @@ namespace weave {
 struct Pick {
     std::vector<std::uint32_t> feeders;  ///< indices into WeftPlan::feeders; none, one or two
     Direction direction = Direction::left_to_right;
-    bool take_up = true;                 ///< the cloth advances after this pick
-    std::size_t row = 0;                 ///< of the block, from 0
+    bool take_up = true;  ///< the cloth advances after this pick
+    std::size_t row = 0;  ///< of the block, from 0
 };
 
 /// The weft insertion order: one entry per pick, from the first.

@@ -1,12 +1,11 @@
-#include <weave/loom/profile.hpp>
-
-#include <algorithm>
-#include <array>
-
 #include <weave/core/file.hpp>
 #include <weave/core/json_reader.hpp>
 #include <weave/core/sha256.hpp>
 #include <weave/loom/check.hpp>
+#include <weave/loom/profile.hpp>
+
+#include <algorithm>
+#include <array>
 
 namespace weave {
 
@@ -24,7 +23,9 @@ const std::vector<std::string> output_names{"tiff", "png", "bmp", "jc5", "ep", "
 const std::vector<std::string> encoding_names{"none", "one-hot", "binary", "hooks"};
 const std::vector<std::string> severity_names{"off", "info", "warning", "error"};
 
-std::string numbered(const std::string& key, std::size_t i) { return key + "[" + std::to_string(i) + "]"; }
+std::string numbered(const std::string& key, std::size_t i) {
+    return key + "[" + std::to_string(i) + "]";
+}
 
 template <class Choice>
 Choice choice(JsonReader& reader, const std::string& key, const std::vector<std::string>& names,
@@ -72,8 +73,10 @@ std::vector<HookRange> ranges(JsonReader& reader, const std::string& key) {
     }
     for (std::size_t i = 0; i < list.size(); ++i) {
         const Json& pair = list[i];
-        if (!pair.is_array() || pair.size() != 2 || !is_hook(pair[0]) || !is_hook(pair[1]) || pair[0] > pair[1]) {
-            reader.fail("must be a pair [first, last] of hooks from 0 to " + std::to_string(last_hook), numbered(key, i));
+        if (!pair.is_array() || pair.size() != 2 || !is_hook(pair[0]) || !is_hook(pair[1]) ||
+            pair[0] > pair[1]) {
+            reader.fail("must be a pair [first, last] of hooks from 0 to " + std::to_string(last_hook),
+                        numbered(key, i));
             return {};
         }
         found.push_back({pair[0].get<std::size_t>(), pair[1].get<std::size_t>()});
@@ -87,7 +90,8 @@ std::vector<std::string> selvedge_weave(JsonReader& reader) {
     if (!reader.has(key)) return rows;
     const Json& list = reader.raw(key);
     if (!list.is_array() || list.empty() || list.size() > most_selvedge_rows) {
-        reader.fail("must be a list of 1 to " + std::to_string(most_selvedge_rows) + " texts of 0 and 1", key);
+        reader.fail("must be a list of 1 to " + std::to_string(most_selvedge_rows) + " texts of 0 and 1",
+                    key);
         return rows;
     }
     for (std::size_t i = 0; i < list.size(); ++i) {
@@ -130,7 +134,8 @@ void read_harness(JsonReader& hooks, LoomProfile& profile) {
     }
     if (profile.hook_rule == HookRule::list) {
         if (!hooks.has("hook_of_end")) hooks.fail("is missing: the rule is list", "hook_of_end");
-        if (!profile.body.empty()) hooks.fail("goes without: with the rule list, hook_of_end names the hooks", "body");
+        if (!profile.body.empty())
+            hooks.fail("goes without: with the rule list, hook_of_end names the hooks", "body");
         profile.hook_of_end = numbers(hooks, "hook_of_end", last_hook);
     }
     profile.cast_out = ranges(hooks, "cast_out");
@@ -168,11 +173,13 @@ void read_feeders(JsonReader feeders, LoomProfile& profile) {
         for (std::size_t k = 0; k < needed; ++k) profile.feeder_hooks.push_back(k);
     }
     if (profile.feeder_hooks.size() != needed) {
-        feeders.fail("must have " + std::to_string(needed) + " entries for this count and encoding", "places");
+        feeders.fail("must have " + std::to_string(needed) + " entries for this count and encoding",
+                     "places");
     }
     auto sorted = profile.feeder_hooks;
     std::sort(sorted.begin(), sorted.end());
-    if (std::adjacent_find(sorted.begin(), sorted.end()) != sorted.end()) feeders.fail("names a place twice", "places");
+    if (std::adjacent_find(sorted.begin(), sorted.end()) != sorted.end())
+        feeders.fail("names a place twice", "places");
 }
 
 void read_file_part(JsonReader file, LoomProfile& profile) {
@@ -212,7 +219,8 @@ void read_severities(JsonReader& reader, LoomProfile& profile) {
     std::vector<std::string> named;
     for (auto it = severities.json().begin(); it != severities.json().end(); ++it) named.push_back(it.key());
     for (const std::string& rule : named) {
-        const bool known = std::any_of(rules().begin(), rules().end(), [&](const Rule& r) { return r.id == rule; });
+        const bool known =
+            std::any_of(rules().begin(), rules().end(), [&](const Rule& r) { return r.id == rule; });
         if (!known) return severities.fail("is not a rule", rule);
         profile.severities[rule] = choice<Severity>(severities, rule, severity_names);
     }
@@ -226,10 +234,12 @@ class HookClaims {
     void claim(const std::string& member, std::size_t hook) {
         if (hook >= m_claims.size()) {
             return m_reader.fail("names hook " + std::to_string(hook) + ", but the last hook is " +
-                                     std::to_string(m_claims.size() - 1), member);
+                                     std::to_string(m_claims.size() - 1),
+                                 member);
         }
         if (!m_claims[hook].empty() && m_claims[hook] != member) {
-            return m_reader.fail("claims hook " + std::to_string(hook) + ", which belongs to " + m_claims[hook], member);
+            return m_reader.fail(
+                "claims hook " + std::to_string(hook) + ", which belongs to " + m_claims[hook], member);
         }
         m_claims[hook] = member;
     }
@@ -263,14 +273,16 @@ void check_claims(JsonReader& reader, const LoomProfile& profile) {
     claims.claim("hooks.constant_on", profile.constant_on);
     claims.claim("hooks.selvedge", profile.selvedge);
     claims.claim("hooks.regulator", profile.regulator_hooks);
-    if (profile.feeder_encoding == FeederEncoding::hooks) claims.claim("feeders.places", profile.feeder_hooks);
+    if (profile.feeder_encoding == FeederEncoding::hooks)
+        claims.claim("feeders.places", profile.feeder_hooks);
 }
 
 void read_heading(JsonReader& reader, LoomProfile& profile) {
     if (reader.text("format", {}, 64) != "weave-loom") reader.fail("must be weave-loom", "format");
     const std::int64_t version = reader.integer("version", 1, most_limit);
     if (version > 1) {
-        reader.fail("is " + std::to_string(version) + ", newer than this program, which reads version 1", "version");
+        reader.fail("is " + std::to_string(version) + ", newer than this program, which reads version 1",
+                    "version");
     }
     profile.name = reader.text("name", {}, 256);
     if (profile.name.empty()) reader.fail("must not be empty", "name");

@@ -1,5 +1,9 @@
 #pragma once
 
+#include <weave/block/card_image.hpp>
+#include <weave/core/result.hpp>
+#include <weave/design/scene.hpp>
+
 #include <cstddef>
 #include <cstdint>
 #include <filesystem>
@@ -8,10 +12,6 @@
 #include <string>
 #include <string_view>
 #include <vector>
-
-#include <weave/block/card_image.hpp>
-#include <weave/core/result.hpp>
-#include <weave/design/scene.hpp>
 
 namespace weave {
 
@@ -34,8 +34,8 @@ enum class HookRule : std::uint8_t { straight, point, repeats, list };
 /// What the file for the controller looks like.
 enum class OutputFormat : std::uint8_t { tiff, png, bmp, jc5, ep, raw };
 
-/// How the file tells the loom which feeder a pick takes: not at all (a hand picks it), one function bit a feeder, the
-/// feeder's number in function bits, or one hook a feeder among the hooks.
+/// How the file tells the loom which feeder a pick takes: not at all (a hand picks it), one function bit a
+/// feeder, the feeder's number in function bits, or one hook a feeder among the hooks.
 enum class FeederEncoding : std::uint8_t { none, one_hot, binary, hooks };
 
 /// What a hook does on this loom.
@@ -46,68 +46,77 @@ inline constexpr std::size_t most_hooks = 65536;
 
 /// Limits that validation holds a design to. Absent means: this loom does not limit it.
 struct LoomLimits {
-    std::size_t float_face = 0, float_back = 0;  ///< longest float on a face, in crossed yarns of the other system; 0: no limit
-    std::optional<double> lift_difference;       ///< largest change of the share of lifted ends between picks, 0 … 1
-    std::optional<double> lift_share;            ///< largest share of ends lifted on one pick, 0 … 1
-    std::size_t picks = 0;                       ///< most picks in one file; 0: no limit
-    std::optional<double> take_up_difference;    ///< largest spread of take-up within a beam, as a share
-    std::optional<double> reed_width_mm;         ///< widest cloth in the reed
+    std::size_t float_face = 0,
+                float_back =
+                    0;  ///< longest float on a face, in crossed yarns of the other system; 0: no limit
+    std::optional<double>
+        lift_difference;               ///< largest change of the share of lifted ends between picks, 0 … 1
+    std::optional<double> lift_share;  ///< largest share of ends lifted on one pick, 0 … 1
+    std::size_t picks = 0;             ///< most picks in one file; 0: no limit
+    std::optional<double> take_up_difference;  ///< largest spread of take-up within a beam, as a share
+    std::optional<double> reed_width_mm;       ///< widest cloth in the reed
 };
 
-/// One loom with its harness and controller, as one validated, versioned JSON file (see PROFILE.md beside this file).
+/// One loom with its harness and controller, as one validated, versioned JSON file (see PROFILE.md beside
+/// this file).
 struct LoomProfile {
     std::string name, maker;
-    std::string version;                         ///< of this profile, as its keeper counts (member `revision`)
-    std::string notes;                           ///< what is known about this loom, and what is not
+    std::string version;  ///< of this profile, as its keeper counts (member `revision`)
+    std::string notes;    ///< what is known about this loom, and what is not
     Insertion insertion = Insertion::shuttle;
 
-    std::vector<HookArea> areas;                 ///< ordered; their sum is total_hooks
+    std::vector<HookArea> areas;  ///< ordered; their sum is total_hooks
     std::size_t total_hooks = 0;
     HookRule hook_rule = HookRule::straight;
-    std::vector<HookRange> body;                 ///< hooks that carry ends, in the order of the ends
-    std::size_t repeats = 1;                     ///< for HookRule::repeats: how often an end's column comes again
-    std::vector<std::size_t> hook_of_end;        ///< for HookRule::list
+    std::vector<HookRange> body;           ///< hooks that carry ends, in the order of the ends
+    std::size_t repeats = 1;               ///< for HookRule::repeats: how often an end's column comes again
+    std::vector<std::size_t> hook_of_end;  ///< for HookRule::list
     std::vector<HookRange> cast_out, constant_on, selvedge;
-    std::vector<std::string> selvedge_weave;     ///< one text of 0 and 1 per pick, 1 = lifted; repeats over hooks and picks
+    std::vector<std::string>
+        selvedge_weave;  ///< one text of 0 and 1 per pick, 1 = lifted; repeats over hooks and picks
 
     std::size_t feeders = 1;
     FeederEncoding feeder_encoding = FeederEncoding::none;
-    std::vector<std::size_t> feeder_hooks;       ///< hooks: the hook of each feeder; one_hot, binary: the function bits
+    std::vector<std::size_t>
+        feeder_hooks;  ///< hooks: the hook of each feeder; one_hot, binary: the function bits
     std::size_t feeders_per_pick = 1;
-    std::vector<std::size_t> regulator_hooks;    ///< hooks that stop the take-up when lifted
+    std::vector<std::size_t> regulator_hooks;  ///< hooks that stop the take-up when lifted
 
     OutputFormat output = OutputFormat::tiff;
-    bool lifted_is_one = true;                   ///< polarity of a bit in the file
+    bool lifted_is_one = true;  ///< polarity of a bit in the file
     bool least_bit_first = true;
     bool pick_1_at_bottom = true, end_1_at_left = true;
     std::size_t name_limit = 8;
     std::size_t lead_in_picks = 0;
-    std::vector<std::size_t> hook_permutation;   ///< for raw files: place in the file of each hook; empty: as counted
+    std::vector<std::size_t>
+        hook_permutation;  ///< for raw files: place in the file of each hook; empty: as counted
 
-    std::optional<double> density_ends_per_cm;   ///< of the harness
+    std::optional<double> density_ends_per_cm;  ///< of the harness
     LoomLimits limits;
     std::map<std::string, Severity> severities;  ///< rules that this loom judges otherwise than by default
 
-    std::string sha256;                          ///< of the canonical bytes of the file that it was read from
+    std::string sha256;  ///< of the canonical bytes of the file that it was read from
 };
 
-/// Reads and checks a profile: every member known, ranges inside the hooks and not overlapping, body large enough for at least
-/// one end. Errors name the member.
+/// Reads and checks a profile: every member known, ranges inside the hooks and not overlapping, body large
+/// enough for at least one end. Errors name the member.
 Result<LoomProfile> read_profile(std::string_view text);
 Result<LoomProfile> load_profile(const std::filesystem::path& path);
 
-/// How many ends this loom can carry: all body hooks (straight), half of them and the tip (point), their share of each
-/// repeat (repeats), or as many as are listed (list).
+/// How many ends this loom can carry: all body hooks (straight), half of them and the tip (point), their
+/// share of each repeat (repeats), or as many as are listed (list).
 std::size_t most_ends(const LoomProfile& profile);
 
-/// The hooks (from 0) that lift end `end` of a design with `ends` ends, none where it does not fit. Straight and list: one.
-/// Point: the end's own and its mirror image's; the last end is the tip and stands once. Repeats: one in each repeat.
+/// The hooks (from 0) that lift end `end` of a design with `ends` ends, none where it does not fit. Straight
+/// and list: one. Point: the end's own and its mirror image's; the last end is the tip and stands once.
+/// Repeats: one in each repeat.
 std::vector<std::size_t> hooks_of_end(const LoomProfile& profile, std::size_t end, std::size_t ends);
 
 /// What each hook is for; whatever the profile does not name is cast out.
 std::vector<HookUse> hook_uses(const LoomProfile& profile);
 
-/// Whether a selvedge hook is lifted on a pick. `place` counts the selvedge hooks from the first, `pick` from 0.
+/// Whether a selvedge hook is lifted on a pick. `place` counts the selvedge hooks from the first, `pick` from
+/// 0.
 bool selvedge_lifted(const LoomProfile& profile, std::size_t place, std::size_t pick);
 
 }  // namespace weave

@@ -1,21 +1,24 @@
 // Where the loops of a shuttle's weft come to rest.
 //
-// Seen from above, ends and picks are straight lines that cross in a grid, pick n at place n of the insertion order. On each side a
-// feeder's yarn makes an arc outside the cloth from one of its picks, a, to its next, b. Tension pulls the arc inwards, end by
-// end. It slips past an end when a and b lie on the same side of it (both over or both under): nothing holds it there. The
-// outermost end for which they differ catches it.
+// Seen from above, ends and picks are straight lines that cross in a grid, pick n at place n of the insertion
+// order. On each side a feeder's yarn makes an arc outside the cloth from one of its picks, a, to its next,
+// b. Tension pulls the arc inwards, end by end. It slips past an end when a and b lie on the same side of it
+// (both over or both under): nothing holds it there. The outermost end for which they differ catches it.
 //
-// Another feeder's pick c between a and b, as far as it is still in the cloth at that end, has to let the loop pass as well.
-// The loop crosses c (the bight, between a and b), c crosses the end, and the end crosses the bight: a triangle. One yarn of
-// the three can pass the crossing of the other two unless each lies over the next in a ring; then c holds the loop.
-// Whether the bight lies over c is settled outside the cloth, where c's own yarn leaves:
+// Another feeder's pick c between a and b, as far as it is still in the cloth at that end, has to let the
+// loop pass as well. The loop crosses c (the bight, between a and b), c crosses the end, and the end crosses
+// the bight: a triangle. One yarn of the three can pass the crossing of the other two unless each lies over
+// the next in a ring; then c holds the loop. Whether the bight lies over c is settled outside the cloth,
+// where c's own yarn leaves:
 //   - c turns there to a pick outside a … b: the arcs cross once, and the one formed later lies above;
-//   - c is the feeder's first or last pick and its tail leaves there: it was laid before the loop closed, so the loop is above;
-//   - c turns to a pick d that also lies in a … b: the arcs do not cross. The loop may slide over both or under both, so what
+//   - c is the feeder's first or last pick and its tail leaves there: it was laid before the loop closed, so
+//   the loop is above;
+//   - c turns to a pick d that also lies in a … b: the arcs do not cross. The loop may slide over both or
+//   under both, so what
 //     counts is the way on which it comes further.
-// As loops are pulled in their picks vanish outside them and hold others no longer; the reach of every loop only grows with
-// that, so the state of rest is the least fixed point, whatever the order. tests/loom/weft_way.cpp holds this rule against
-// a reducer of crossing diagrams that knows nothing of it.
+// As loops are pulled in their picks vanish outside them and hold others no longer; the reach of every loop
+// only grows with that, so the state of rest is the least fixed point, whatever the order.
+// tests/loom/weft_way.cpp holds this rule against a reducer of crossing diagrams that knows nothing of it.
 
 #include <weave/loom/weft_way.hpp>
 
@@ -30,7 +33,8 @@ namespace {
 
 constexpr std::size_t nowhere = static_cast<std::size_t>(-1);
 
-/// One feeder's yarn in one pick. `depth` is, per side, how many ends its turn there has slipped past; `turn` the turn there.
+/// One feeder's yarn in one pick. `depth` is, per side, how many ends its turn there has slipped past; `turn`
+/// the turn there.
 struct Strand {
     std::uint32_t feeder = 0;
     std::size_t pick = 0;
@@ -40,24 +44,32 @@ struct Strand {
 
 /// What may hold a loop besides ends: one strand with a settled crossing, or two that turn into each other.
 struct Obstacle {
-    std::size_t strand = nowhere, partner = nowhere;  ///< indices of strands; partner: nested, the loop may choose
+    std::size_t strand = nowhere,
+                partner = nowhere;  ///< indices of strands; partner: nested, the loop may choose
     bool loop_above = true;
 };
 
 struct Loop {
     Turn turn;
-    std::size_t from = 0, to = 0;   ///< strands
-    std::size_t catching_depth = 0; ///< of the outermost end that differs between the two picks; all ends if there is none
+    std::size_t from = 0, to = 0;  ///< strands
+    std::size_t catching_depth =
+        0;  ///< of the outermost end that differs between the two picks; all ends if there is none
     std::size_t depth = 0;
-    std::size_t holder = nowhere;   ///< strand that holds it at `depth`
+    std::size_t holder = nowhere;  ///< strand that holds it at `depth`
     std::vector<Obstacle> obstacles;
 };
 
-std::size_t index(Side side) { return static_cast<std::size_t>(side); }
+std::size_t index(Side side) {
+    return static_cast<std::size_t>(side);
+}
 
 /// Side on which a pick starts or ends.
-Side start_of(Direction direction) { return direction == Direction::left_to_right ? Side::left : Side::right; }
-Side end_of(Direction direction) { return direction == Direction::left_to_right ? Side::right : Side::left; }
+Side start_of(Direction direction) {
+    return direction == Direction::left_to_right ? Side::left : Side::right;
+}
+Side end_of(Direction direction) {
+    return direction == Direction::left_to_right ? Side::right : Side::left;
+}
 
 /// First (from the left) or last set bit of a row of bytes within the ends `low` … `high`, or nowhere.
 template <class ByteAt>
@@ -130,7 +142,9 @@ class Loops {
         m_loops.push_back(std::move(loop));
     }
 
-    std::size_t depth_of(Side side, std::size_t end) const { return side == Side::left ? end : m_ends - 1 - end; }
+    std::size_t depth_of(Side side, std::size_t end) const {
+        return side == Side::left ? end : m_ends - 1 - end;
+    }
 
     std::size_t depth_of_difference(const Turn& turn) const {
         const auto a = m_card.row(turn.from_pick), b = m_card.row(turn.to_pick);
@@ -157,14 +171,16 @@ class Loops {
         const std::size_t turn = m_strands[s].turn[index(loop.turn.side)];
         if (turn == nowhere) return loop.obstacles.push_back({s, nowhere, true});
         const Loop& other = m_loops[turn];
-        // Two feeders in one pick lie side by side and need not cross, so the ends of the range count as inside.
+        // Two feeders in one pick lie side by side and need not cross, so the ends of the range count as
+        // inside.
         const bool nested =
             other.turn.from_pick >= loop.turn.from_pick && other.turn.to_pick <= loop.turn.to_pick;
         if (!nested) return loop.obstacles.push_back({s, nowhere, loop.turn.to_pick > other.turn.to_pick});
         const std::size_t partner = s == other.from ? other.to : other.from;
-        const bool partner_counts = m_strands[partner].pick != loop.turn.from_pick &&
-                                    m_strands[partner].pick != loop.turn.to_pick;
-        if (s == other.from || !partner_counts) loop.obstacles.push_back({s, partner_counts ? partner : s, true});
+        const bool partner_counts =
+            m_strands[partner].pick != loop.turn.from_pick && m_strands[partner].pick != loop.turn.to_pick;
+        if (s == other.from || !partner_counts)
+            loop.obstacles.push_back({s, partner_counts ? partner : s, true});
     }
 
     /// Ends at which a strand is still in the cloth: first … last, empty where first > last.
@@ -174,7 +190,8 @@ class Loops {
         return {left, m_ends - 1 - right};
     }
 
-    /// The depth from `from` on, short of the catching end, at which a strand holds a loop that lies above (below) it.
+    /// The depth from `from` on, short of the catching end, at which a strand holds a loop that lies above
+    /// (below) it.
     std::size_t held_at(const Loop& loop, std::size_t strand, bool loop_above) const {
         auto [low, high] = presence(m_strands[strand]);
         if (low > high || loop.catching_depth <= loop.depth) return m_ends;

@@ -1,12 +1,12 @@
 #pragma once
 
+#include <weave/block/card_image.hpp>
+#include <weave/loom/pick_table.hpp>
+
 #include <cstddef>
 #include <cstdint>
 #include <optional>
 #include <vector>
-
-#include <weave/block/card_image.hpp>
-#include <weave/loom/pick_table.hpp>
 
 namespace weave {
 
@@ -16,15 +16,15 @@ enum class CaughtBy : std::uint8_t { end, pick, none };
 /// Where the yarn of one feeder turns between two consecutive picks of that feeder (paper, section 4.2).
 struct Turn {
     std::uint32_t feeder = 0;
-    std::size_t from_pick = 0, to_pick = 0;   ///< from 0
+    std::size_t from_pick = 0, to_pick = 0;  ///< from 0
     Side side = Side::left;
     CaughtBy caught_by = CaughtBy::none;
-    std::size_t end = 0;                      ///< the end that catches the loop, or at which `pick` does; unless none
-    std::size_t pick = 0;                     ///< the pick that catches it, where caught_by is pick
+    std::size_t end = 0;   ///< the end that catches the loop, or at which `pick` does; unless none
+    std::size_t pick = 0;  ///< the pick that catches it, where caught_by is pick
 };
 
-/// The part of the ends that one feeder's yarn spans in one pick: from `first` to `last` inclusive. A pick whose two turns cross,
-/// or that has no end at all, is `crossed` and runs from edge to edge in pictures.
+/// The part of the ends that one feeder's yarn spans in one pick: from `first` to `last` inclusive. A pick
+/// whose two turns cross, or that has no end at all, is `crossed` and runs from edge to edge in pictures.
 struct PickSpan {
     std::uint32_t feeder = 0;
     std::size_t pick = 0, first = 0, last = 0;
@@ -44,9 +44,9 @@ struct WeftWay {
     std::vector<MissedBox> missed_boxes;
 };
 
-/// Where the loops are caught on a shuttle loom. Loops are pulled inwards until an end between their two picks holds them, or
-/// another feeder's pick that lies between; where two turns of different feeders cross outside the cloth the later one
-/// lies above. Beyond its turns no pick stays in the fabric.
+/// Where the loops are caught on a shuttle loom. Loops are pulled inwards until an end between their two
+/// picks holds them, or another feeder's pick that lies between; where two turns of different feeders cross
+/// outside the cloth the later one lies above. Beyond its turns no pick stays in the fabric.
 WeftWay weft_way(const CardImage& card, const std::vector<Pick>& picks);
 
 }  // namespace weave

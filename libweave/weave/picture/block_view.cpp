@@ -1,17 +1,17 @@
-#include <algorithm>
-#include <cmath>
-#include <numbers>
-
 #include <weave/picture/slice_map.hpp>
 #include <weave/picture/space.hpp>
 #include <weave/picture/views.hpp>
+
+#include <algorithm>
+#include <cmath>
+#include <numbers>
 
 namespace weave {
 
 namespace {
 
 constexpr double overhang = 0.72, base_level = -1.1;
-constexpr std::size_t most_shown = 12;         ///< rows and columns
+constexpr std::size_t most_shown = 12;  ///< rows and columns
 constexpr std::size_t most_shown_slots = 1500;
 constexpr double box_width = 30, box_height = 17, cell_gap = 14;
 
@@ -23,7 +23,9 @@ struct Shown {
 Shown shown_part(const Block& block) {
     const std::size_t levels = std::clamp<std::size_t>(block.height(), 1, SliceMap::most_levels);
     std::size_t side = most_shown;
-    while (side > 2 && std::min(side, block.rows()) * std::min(side, block.columns()) * levels > most_shown_slots) --side;
+    while (side > 2 &&
+           std::min(side, block.rows()) * std::min(side, block.columns()) * levels > most_shown_slots)
+        --side;
     return {std::min(side, block.rows()), std::min(side, block.columns()), levels};
 }
 
@@ -31,11 +33,17 @@ Shown shown_part(const Block& block) {
 class Schematic {
   public:
     Schematic(const Subject& subject, const YarnColours& colours, const WeftRuns& runs, const Shown& shown)
-        : m_subject(subject), m_runs(runs), m_shown(shown),
-          m_view(shown.rows * shown.columns <= 16 ? 84 : shown.rows * shown.columns <= 64 ? 62 : 48),
+        : m_subject(subject),
+          m_colours(colours),
+          m_runs(runs),
+          m_shown(shown),
+          m_scale(shown.rows * shown.columns <= 16   ? 84
+                  : shown.rows * shown.columns <= 64 ? 62
+                                                     : 48),
+          m_view(m_scale),
           m_pieces(shown.rows * shown.columns <= 36 ? 6 : 4) {
-        for (std::size_t column = 0; column < shown.columns; ++column) add_line(colours, View::warp_slice, column);
-        for (std::size_t row = 0; row < shown.rows; ++row) add_line(colours, View::weft_slice, row);
+        for (std::size_t column = 0; column < shown.columns; ++column) add_line(View::warp_slice, column);
+        for (std::size_t row = 0; row < shown.rows; ++row) add_line(View::weft_slice, row);
         if (runs.wraparound()) add_turns();
     }
 
@@ -61,8 +69,15 @@ class Schematic {
         draw_base(canvas);
         draw_tubes(canvas, m_view, m_tubes);
         for (const Label& label : m_labels) {
-            canvas.text(m_view.on_screen(label.place), label.text,
-                        {.size = 12, .colour = label.colour, .anchor = Anchor::middle, .bold = true, .centred = true});
+            const Point middle = m_view.on_screen(label.place);
+            const double half = Canvas::text_width(label.text, 12, true) / 2 + 2;
+            canvas.rectangle({middle.x - half, middle.y - 7, 2 * half, 14}, {0xff, 0xff, 0xff}, 0.8);
+            canvas.text(middle, label.text,
+                        {.size = 12,
+                         .colour = label.colour,
+                         .anchor = Anchor::middle,
+                         .bold = true,
+                         .centred = true});
         }
         draw_axes(canvas);
     }
@@ -75,16 +90,17 @@ class Schematic {
     };
 
     /// Along a yarn: `along` counts stacks, `aside` is how far it has stepped out of its line.
-    [[nodiscard]] static Place place_on(bool warp, std::size_t line, double along, double aside, double level) {
+    [[nodiscard]] static Place place_on(bool warp, std::size_t line, double along, double aside,
+                                        double level) {
         const double across = static_cast<double>(line) + aside;
         return warp ? Place{along, across, level} : Place{across, along, level};
     }
 
-    void add_line(const YarnColours& colours, View view, std::size_t line) {
+    void add_line(View view, std::size_t line) {
         Subject subject = m_subject;
         subject.request.view = view;
         subject.request.line = line;
-        const SliceMap map = slice_map(subject, colours, m_runs);
+        const SliceMap map = slice_map(subject, m_colours, m_runs);
         const bool warp = view == View::warp_slice;
         const std::size_t shown = warp ? m_shown.rows : m_shown.columns;
         for (const SlicePath& path : map.paths) {
@@ -93,15 +109,13 @@ class Schematic {
         }
     }
 
-    [[nodiscard]] double radius() const { return m_view_scale() * 0.088; }
-    [[nodiscard]] double m_view_scale() const {
-        const Point a = m_view.on_screen({0, 0, 0}), b = m_view.on_screen({0, 1, 0});
-        return std::abs(b.x - a.x) / 0.825;
-    }
+    [[nodiscard]] double radius() const { return m_scale * 0.088; }
 
-    void add_path(const SliceMap& map, const SlicePath& path, bool warp, std::size_t line, std::size_t shown) {
+    void add_path(const SliceMap& map, const SlicePath& path, bool warp, std::size_t line,
+                  std::size_t shown) {
         const std::size_t last = std::min(path.last(), shown - 1);
-        for (std::size_t position = path.first; position < last; ++position) add_step(map, path, warp, line, position);
+        for (std::size_t position = path.first; position < last; ++position)
+            add_step(map, path, warp, line, position);
         const std::size_t from = path.first, to = last - path.first;
         if (!turns_at(path, warp, Side::left)) {
             add_end(path, warp, line, static_cast<double>(from), -1, 0);
@@ -124,42 +138,53 @@ class Schematic {
         m_tubes.push_back({std::move(places), colour, loose ? radius() * 0.8 : radius(), 0});
     }
 
-    /// The yarn from one stack to the next: level along its line, then smoothly to the next level, then level again.
-    void add_step(const SliceMap& map, const SlicePath& path, bool warp, std::size_t line, std::size_t position) {
+    /// The yarn from one stack to the next: level along its line, then smoothly to the next level, then level
+    /// again.
+    void add_step(const SliceMap& map, const SlicePath& path, bool warp, std::size_t line,
+                  std::size_t position) {
         const std::size_t k = position - path.first;
         const auto low = static_cast<double>(path.levels[k]), high = static_cast<double>(path.levels[k + 1]);
         const double aside = swaps(map, path, k) ? path.shift * 0.5 : 0;
         const auto at = [&](double t) {
-            const double rise = std::clamp((t - 0.12) / 0.76, 0.0, 1.0), smooth = rise * rise * (3 - 2 * rise);
+            const double rise = std::clamp((t - 0.12) / 0.76, 0.0, 1.0),
+                         smooth = rise * rise * (3 - 2 * rise);
             const double bow = std::sin(std::numbers::pi * t);
-            return place_on(warp, line, static_cast<double>(position) + t, aside * bow * bow, low + (high - low) * smooth);
+            return place_on(warp, line, static_cast<double>(position) + t, aside * bow * bow,
+                            low + (high - low) * smooth);
         };
         for (std::size_t piece = 0; piece < m_pieces; ++piece) {
             std::vector<Place> places;
             for (int sample = 0; sample <= 4; ++sample) {
-                places.push_back(at((static_cast<double>(piece) + sample / 4.0) / static_cast<double>(m_pieces)));
+                places.push_back(
+                    at((static_cast<double>(piece) + sample / 4.0) / static_cast<double>(m_pieces)));
             }
             const bool first_half = 2 * piece < m_pieces;
-            add_tube(path, std::move(places), path.loose[first_half ? k : k + 1], path.levels[first_half ? k : k + 1]);
+            add_tube(path, std::move(places), path.loose[first_half ? k : k + 1],
+                     path.levels[first_half ? k : k + 1]);
         }
     }
 
     /// The stub beyond the first or last stack, with the yarn's number.
     void add_end(const SlicePath& path, bool warp, std::size_t line, double from, double way, std::size_t k) {
         // A yarn without a turn runs to the edge even when its last stack lies further in.
-        const double edge = way < 0 ? -overhang : static_cast<double>(warp ? m_shown.rows : m_shown.columns) - 1 + overhang;
+        const double edge =
+            way < 0 ? -overhang : static_cast<double>(warp ? m_shown.rows : m_shown.columns) - 1 + overhang;
         const auto level = static_cast<double>(path.levels[k]);
         const auto pieces = std::max(2.0, std::round(std::abs(edge - from) * 4));
         for (double piece = 0; piece < pieces; ++piece) {
             std::vector<Place> places;
             for (int sample = 0; sample <= 2; ++sample) {
-                places.push_back(place_on(warp, line, from + (edge - from) * (piece + sample / 2.0) / pieces, 0, level));
+                places.push_back(
+                    place_on(warp, line, from + (edge - from) * (piece + sample / 2.0) / pieces, 0, level));
             }
             add_tube(path, std::move(places), path.loose[k], path.levels[k]);
         }
         if ((path.loose[k] && m_subject.request.trim) || path.levels[k] >= m_shown.levels) return;
-        m_labels.push_back({place_on(warp, line, edge + way * 0.24, 0, level), std::to_string(path.number + 1),
-                            mix(path.colour, {0, 0, 0}, 0.4)});
+        // The far ends of a thick block lie behind its yarns, where numbers would only be in the way.
+        const bool near = warp == (way < 0);
+        if (!near && m_shown.levels > 3) return;
+        m_labels.push_back({place_on(warp, line, edge + way * 0.24, 0, level),
+                            std::to_string(path.number + 1), mix(path.colour, {0, 0, 0}, 0.4)});
     }
 
     /// Level and row of a pick at a column, if it lies in the shown part.
@@ -167,7 +192,8 @@ class Schematic {
         const Block& block = m_subject.block;
         const std::size_t row = block.row_of_pick(pick);
         if (row >= m_shown.rows || column >= m_shown.columns) return std::nullopt;
-        const std::size_t level = block.stack(row, column).positions(System::weft)[pick - block.first_pick(row)];
+        const std::size_t level =
+            block.stack(row, column).positions(System::weft)[pick - block.first_pick(row)];
         if (level >= m_shown.levels) return std::nullopt;
         return Place{static_cast<double>(row), static_cast<double>(column), static_cast<double>(level)};
     }
@@ -179,15 +205,20 @@ class Schematic {
             const auto a = place_of(turn.from_pick, column), b = place_of(turn.to_pick, column);
             if (!a || !b) continue;
             const double out = turn.side == Side::right ? 1 : -1, reach = 0.5 + 0.07 * std::abs(a->z - b->z);
-            const YarnColours colours(m_subject);
             SlicePath path;
-            path.colour = colours.drawn_pick(turn.from_pick, turn.from_pick - m_subject.block.first_pick(static_cast<std::size_t>(a->x)));
+            path.colour = m_colours.drawn_pick(
+                turn.from_pick, turn.from_pick - m_subject.block.first_pick(static_cast<std::size_t>(a->x)));
             if (turn.caught_by == CaughtBy::none) path.colour = mix(path.colour, {0, 0, 0}, 0.6);
+            m_labels.push_back({{(a->x + b->x) / 2, a->y + out * (reach + 0.4), (a->z + b->z) / 2},
+                                std::to_string(turn.from_pick + 1) + "→" + std::to_string(turn.to_pick + 1),
+                                mix(path.colour, {0, 0, 0}, 0.4)});
             for (int piece = 0; piece < 8; ++piece) {
                 std::vector<Place> places;
                 for (int sample = 0; sample <= 3; ++sample) {
-                    const double angle = std::numbers::pi * (piece + sample / 3.0) / 8, share = (1 - std::cos(angle)) / 2;
-                    places.push_back({a->x + (b->x - a->x) * share, a->y + out * reach * std::sin(angle), a->z + (b->z - a->z) * share});
+                    const double angle = std::numbers::pi * (piece + sample / 3.0) / 8,
+                                 share = (1 - std::cos(angle)) / 2;
+                    places.push_back({a->x + (b->x - a->x) * share, a->y + out * reach * std::sin(angle),
+                                      a->z + (b->z - a->z) * share});
                 }
                 add_tube(path, std::move(places), false, 0);
             }
@@ -195,20 +226,24 @@ class Schematic {
     }
 
     void draw_base(Canvas& canvas) const {
-        const double x = static_cast<double>(m_shown.rows) - 0.5, y = static_cast<double>(m_shown.columns) - 0.5;
+        const double x = static_cast<double>(m_shown.rows) - 0.5,
+                     y = static_cast<double>(m_shown.columns) - 0.5;
         const auto ground = [&](double px, double py) { return m_view.on_screen({px, py, base_level}); };
         const Point corners[]{ground(-0.5, -0.5), ground(x, -0.5), ground(x, y), ground(-0.5, y)};
         canvas.polygon(corners, {0xf3, 0xf5, 0xf7});
         std::vector<Point> lines;
-        for (double row = -0.5; row <= x; ++row) lines.insert(lines.end(), {ground(row, -0.5), ground(row, y)});
-        for (double column = -0.5; column <= y; ++column) lines.insert(lines.end(), {ground(-0.5, column), ground(x, column)});
+        for (double row = -0.5; row <= x; ++row)
+            lines.insert(lines.end(), {ground(row, -0.5), ground(row, y)});
+        for (double column = -0.5; column <= y; ++column)
+            lines.insert(lines.end(), {ground(-0.5, column), ground(x, column)});
         canvas.lines(lines, {.colour = {0xc4, 0xcb, 0xd2}, .width = 1, .round = false});
         const auto mark = [&](Place tail, Place tip, const char* name) {
             const Point from = m_view.on_screen(tail), to = m_view.on_screen(tip);
             const Point shaft[]{from, to};
             canvas.polyline(shaft, {.colour = accent, .width = 2});
             canvas.arrow_head(to, {to.x - from.x, to.y - from.y}, 9, accent);
-            canvas.text({from.x - 5, from.y + 3}, name, {.size = 11, .colour = accent, .anchor = Anchor::end, .bold = true, .centred = true});
+            canvas.text({from.x - 5, from.y + 3}, name,
+                        {.size = 11, .colour = accent, .anchor = Anchor::end, .bold = true, .centred = true});
         };
         mark({0, -0.95, base_level}, {0, -0.55, base_level}, "pick 1");
         mark({-0.95, 0, base_level}, {-0.55, 0, base_level}, "end 1");
@@ -231,8 +266,10 @@ class Schematic {
     }
 
     const Subject& m_subject;
+    const YarnColours& m_colours;
     const WeftRuns& m_runs;
     Shown m_shown;
+    double m_scale;  ///< pixels of one stack
     Viewpoint m_view;
     std::size_t m_pieces;
     std::vector<Tube> m_tubes;
@@ -240,34 +277,49 @@ class Schematic {
     Point m_bottom_left;
 };
 
-/// Small blocks are also written out, as in the paper: the stacks of row 0 at the bottom, every stack from its bottom up.
+/// Small blocks are also written out, as in the paper: the stacks of row 0 at the bottom, every stack from
+/// its bottom up.
 bool is_written(const Block& block) {
-    return block.rows() <= 4 && block.columns() <= 4 && block.height() <= 8 && block.picks() <= 100 && block.ends() <= 100;
+    return block.rows() <= 4 && block.columns() <= 4 && block.height() <= 8 && block.picks() <= 100 &&
+           block.ends() <= 100;
 }
 
 Point written_size(const Block& block) {
-    return {static_cast<double>(block.columns()) * (box_width + cell_gap) + 44,
-            static_cast<double>(block.rows()) * (box_height * static_cast<double>(block.height()) + cell_gap) + 48};
+    return {
+        static_cast<double>(block.columns()) * (box_width + cell_gap) + 44,
+        static_cast<double>(block.rows()) * (box_height * static_cast<double>(block.height()) + cell_gap) +
+            48};
 }
 
 void draw_written(Canvas& canvas, const Block& block, Point corner) {
     canvas.text({corner.x, corner.y + 10}, "Stacks", {.size = 12, .bold = true});
-    canvas.text({corner.x, corner.y + 25}, "bottom up, numbered from 0 as in the file", {.size = 10, .colour = faint_ink});
+    canvas.text({corner.x, corner.y + 25}, "bottom up, numbered from 0 as in the file",
+                {.size = 10, .colour = faint_ink});
     const double high = box_height * static_cast<double>(block.height());
     for (std::size_t row = 0; row < block.rows(); ++row) {
-        const double bottom = corner.y + 48 + static_cast<double>(block.rows() - row) * (high + cell_gap) - cell_gap;
+        const double bottom =
+            corner.y + 48 + static_cast<double>(block.rows() - row) * (high + cell_gap) - cell_gap;
         for (std::size_t column = 0; column < block.columns(); ++column) {
             const double left = corner.x + static_cast<double>(column) * (box_width + cell_gap);
             const auto slots = block.stack(row, column).slots();
             for (std::size_t k = 0; k < block.height(); ++k) {
                 const Slot slot = k < slots.size() ? slots[k] : Slot{};
-                const Rectangle box{left, bottom - static_cast<double>(k + 1) * box_height, box_width, box_height};
-                const Colour fill = slot.is_empty() ? Colour{0xff, 0xff, 0xff} : mix(slot.is_weft() ? paper_weft : paper_warp, {0xff, 0xff, 0xff}, 0.55);
+                const Rectangle box{left, bottom - static_cast<double>(k + 1) * box_height, box_width,
+                                    box_height};
+                const Colour fill =
+                    slot.is_empty() ? Colour{0xff, 0xff, 0xff}
+                                    : mix(slot.is_weft() ? paper_weft : paper_warp, {0xff, 0xff, 0xff}, 0.55);
                 canvas.rectangle(box, fill);
-                canvas.outline({box.x + 0.5, box.y + 0.5, box.width, box.height}, {.colour = {0x70, 0x76, 0x7d}, .width = 1, .round = false});
-                const std::string word = slot.is_empty() ? "E" : to_text(Stack({slot}), block.first_pick(row), block.first_end(column));
+                canvas.outline({box.x + 0.5, box.y + 0.5, box.width, box.height},
+                               {.colour = {0x70, 0x76, 0x7d}, .width = 1, .round = false});
+                const std::string word =
+                    slot.is_empty() ? "E"
+                                    : to_text(Stack({slot}), block.first_pick(row), block.first_end(column));
                 canvas.text({box.x + box_width / 2 + 0.5, box.y + box_height / 2 + 0.5}, word,
-                            {.size = 10.5, .colour = slot.is_empty() ? Colour{0xb0, 0xb4, 0xb8} : ink, .anchor = Anchor::middle, .centred = true});
+                            {.size = 10.5,
+                             .colour = slot.is_empty() ? Colour{0xb0, 0xb4, 0xb8} : ink,
+                             .anchor = Anchor::middle,
+                             .centred = true});
             }
         }
     }
@@ -275,13 +327,20 @@ void draw_written(Canvas& canvas, const Block& block, Point corner) {
 
 PageText block_words(const Subject& subject, const Shown& shown, const WeftRuns& runs) {
     const Block& block = subject.block;
-    PageText text = words_of(subject, std::string("block, schematic of the stacks, face up, weft ") + (runs.wraparound() ? "wraparound" : "periodic"));
+    PageText text = words_of(subject, std::string("block, schematic of the stacks, face up, weft ") +
+                                          (runs.wraparound() ? "wraparound" : "periodic"));
     if (shown.rows < block.rows() || shown.columns < block.columns() || shown.levels < block.height()) {
-        text.notes.push_back("Shown: the first " + std::to_string(shown.rows) + " of " + std::to_string(block.rows()) + " rows and " +
-                             std::to_string(shown.columns) + " of " + std::to_string(block.columns()) + " columns" +
-                             (shown.levels < block.height() ? ", the lowest " + std::to_string(shown.levels) + " of " + std::to_string(block.height()) + " levels" : "") + ".");
+        text.notes.push_back("Shown: the first " + std::to_string(shown.rows) + " of " +
+                             std::to_string(block.rows()) + " rows and " + std::to_string(shown.columns) +
+                             " of " + std::to_string(block.columns()) + " columns" +
+                             (shown.levels < block.height()
+                                  ? ", the lowest " + std::to_string(shown.levels) + " of " +
+                                        std::to_string(block.height()) + " levels"
+                                  : "") +
+                             ".");
     }
-    text.notes.emplace_back("Numbers at the yarns count picks and ends from 1, as on the card. Ground squares are stacks.");
+    text.notes.emplace_back(
+        "Numbers at the yarns count picks and ends from 1, as on the card. Ground squares are stacks.");
     const auto loose = [](const Stack& stack) { return std::ranges::any_of(stack.slots(), &Slot::is_loose); };
     if (subject.request.trim) {
         text.notes.emplace_back("Trimmed: yarns that are loose on purpose are left out.");
@@ -302,9 +361,12 @@ Result<std::string> draw_block(const Subject& subject) {
     const bool written = is_written(subject.block);
     const Point table = written ? written_size(subject.block) : Point{};
     const double table_width = written ? std::max(table.x, 230.0) + 24 : 0;
-    WEAVE_TRY(Page page, Page::open(subject.format, block_words(subject, shown, runs), size.x + table_width, std::max(size.y, table.y)));
+    WEAVE_TRY(Page page, Page::open(subject.format, block_words(subject, shown, runs), size.x + table_width,
+                                    std::max(size.y, table.y)));
     schematic.draw(page.canvas);
-    if (written) draw_written(page.canvas, subject.block, {Page::margin + size.x + 24, Page::body_top + std::max(0.0, (size.y - table.y) / 2)});
+    if (written)
+        draw_written(page.canvas, subject.block,
+                     {Page::margin + size.x + 24, Page::body_top + std::max(0.0, (size.y - table.y) / 2)});
     return std::move(page.canvas).finish();
 }
 

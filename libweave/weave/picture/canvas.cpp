@@ -1,13 +1,13 @@
 #include <weave/picture/canvas.hpp>
 #include <weave/picture/encode_png.hpp>
 
+#include <cairo-svg.h>
+#include <cairo.h>
+
 #include <algorithm>
 #include <cmath>
 #include <map>
 #include <numbers>
-
-#include <cairo-svg.h>
-#include <cairo.h>
 
 namespace weave {
 
@@ -64,8 +64,9 @@ std::size_t digits_at(std::string_view text, std::size_t at) {
     return end - at;
 }
 
-/// cairo counts `surface` and `image` names through the whole process; here they count from 1 in every file, so that equal
-/// pictures are equal files. A name always follows a quote or '#', which picture data never contain.
+/// cairo counts `surface` and `image` names through the whole process; here they count from 1 in every file,
+/// so that equal pictures are equal files. A name always follows a quote or '#', which picture data never
+/// contain.
 std::string with_own_numbers(const std::string& svg) {
     std::map<std::string, std::string, std::less<>> names;
     std::string out;
@@ -92,7 +93,11 @@ std::string with_own_numbers(const std::string& svg) {
 /// Bytes of the UTF-8 character at `at`, or 0 where there is none.
 std::size_t character_size(std::string_view text, std::size_t at) {
     const auto lead = static_cast<std::uint8_t>(text[at]);
-    const std::size_t size = lead < 0x80 ? 1 : lead >> 5 == 6 ? 2 : lead >> 4 == 14 ? 3 : lead >> 3 == 30 ? 4 : 0;
+    const std::size_t size = lead < 0x80       ? 1
+                             : lead >> 5 == 6  ? 2
+                             : lead >> 4 == 14 ? 3
+                             : lead >> 3 == 30 ? 4
+                                               : 0;
     if (size == 0 || at + size > text.size()) return 0;
     std::uint32_t code = size == 1 ? lead : lead & (0x7FU >> size);
     for (std::size_t k = 1; k < size; ++k) {
@@ -207,8 +212,8 @@ void Canvas::curve(std::span<const Point> points, const Stroke& stroke) {
     if (points.size() < 4) return;
     cairo_move_to(m_state->cairo, points[0].x, points[0].y);
     for (std::size_t k = 1; k + 2 < points.size(); k += 3) {
-        cairo_curve_to(m_state->cairo, points[k].x, points[k].y, points[k + 1].x, points[k + 1].y, points[k + 2].x,
-                       points[k + 2].y);
+        cairo_curve_to(m_state->cairo, points[k].x, points[k].y, points[k + 1].x, points[k + 1].y,
+                       points[k + 2].x, points[k + 2].y);
     }
     stroke_path(m_state->cairo, stroke);
 }
@@ -264,7 +269,8 @@ void Canvas::arrow_head(Point tip, Point direction, double length, Colour fill) 
     const double norm = std::hypot(direction.x, direction.y);
     if (norm == 0) return;
     const double ux = direction.x / norm * length, uy = direction.y / norm * length;
-    const Point corners[]{tip, {tip.x - ux - uy * 0.5, tip.y - uy + ux * 0.5}, {tip.x - ux + uy * 0.5, tip.y - uy - ux * 0.5}};
+    const Point corners[]{
+        tip, {tip.x - ux - uy * 0.5, tip.y - uy + ux * 0.5}, {tip.x - ux + uy * 0.5, tip.y - uy - ux * 0.5}};
     polygon(corners, fill);
 }
 
@@ -326,12 +332,15 @@ void Canvas::clip(const Rectangle& place) {
     cairo_clip(m_state->cairo);
 }
 
-void Canvas::unclip() { cairo_restore(m_state->cairo); }
+void Canvas::unclip() {
+    cairo_restore(m_state->cairo);
+}
 
 Result<std::string> Canvas::finish() && {
     if (!m_state->trouble) return std::move(m_state->trouble).error();
     cairo_status_t status = cairo_status(m_state->cairo);
-    if (status == CAIRO_STATUS_SUCCESS && m_state->format == PictureFormat::svg) cairo_surface_finish(m_state->surface);
+    if (status == CAIRO_STATUS_SUCCESS && m_state->format == PictureFormat::svg)
+        cairo_surface_finish(m_state->surface);
     cairo_surface_flush(m_state->surface);
     if (status == CAIRO_STATUS_SUCCESS) status = cairo_surface_status(m_state->surface);
     if (status != CAIRO_STATUS_SUCCESS) {

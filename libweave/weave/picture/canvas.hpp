@@ -1,5 +1,9 @@
 #pragma once
 
+#include <weave/core/colour.hpp>
+#include <weave/core/result.hpp>
+#include <weave/picture/picture.hpp>
+
 #include <cstddef>
 #include <cstdint>
 #include <functional>
@@ -8,10 +12,6 @@
 #include <string>
 #include <string_view>
 #include <vector>
-
-#include <weave/core/colour.hpp>
-#include <weave/core/result.hpp>
-#include <weave/picture/picture.hpp>
 
 namespace weave {
 
@@ -29,7 +29,7 @@ struct Stroke {
     Colour colour;
     double width = 1;
     double alpha = 1;
-    bool round = true;         ///< round caps and joins; otherwise lines end square where they end
+    bool round = true;           ///< round caps and joins; otherwise lines end square where they end
     std::vector<double> dash{};  ///< lengths of line and gap; empty: a whole line
 };
 
@@ -44,7 +44,8 @@ struct TextStyle {
     double angle = 0;      ///< radians, clockwise on the screen
 };
 
-/// A picture in the making, as PNG or SVG, over cairo. Drawing never fails by itself: finish() reports what went wrong.
+/// A picture in the making, as PNG or SVG, over cairo. Drawing never fails by itself: finish() reports what
+/// went wrong.
 class Canvas {
   public:
     /// No picture has a longer side, in pixels.
@@ -73,7 +74,8 @@ class Canvas {
     void arrow_head(Point tip, Point direction, double length, Colour fill);
     /// Characters that are not UTF-8 come out as question marks, long text is cut with an ellipsis.
     void text(Point at, std::string_view text, const TextStyle& style = {});
-    /// Single pixels from a whole-numbered place on: `fill(row, pixels)` writes the colours (0xrrggbb) of one row, from the top.
+    /// Single pixels from a whole-numbered place on: `fill(row, pixels)` writes the colours (0xrrggbb) of one
+    /// row, from the top.
     void pixels(std::size_t x, std::size_t y, std::size_t width, std::size_t height,
                 const std::function<void(std::size_t, std::span<std::uint32_t>)>& fill);
     /// Only what lies in this place is drawn, until unclip().

@@ -1,8 +1,8 @@
-#include <bit>
-#include <vector>
-
 #include <weave/picture/grid.hpp>
 #include <weave/picture/views.hpp>
+
+#include <bit>
+#include <vector>
 
 namespace weave {
 
@@ -41,7 +41,8 @@ void fill_row(const CardImage& card, const Grid& grid, std::size_t y, std::span<
 /// Lines between picks and ends, stronger ones where the stacks meet.
 void draw_stack_grid(Canvas& canvas, const Block& block, const Grid& grid) {
     if (grid.cell < 4) return;
-    const double right = grid.x_of(static_cast<double>(grid.columns)), top = grid.y_of(static_cast<double>(grid.rows));
+    const double right = grid.x_of(static_cast<double>(grid.columns)),
+                 top = grid.y_of(static_cast<double>(grid.rows));
     const double left = grid.x_of(0), bottom = grid.y_of(0);
     std::vector<Point> thin, strong;
     const bool stacked = block.picks() > block.rows() || block.ends() > block.columns();
@@ -57,12 +58,14 @@ void draw_stack_grid(Canvas& canvas, const Block& block, const Grid& grid) {
         for (std::size_t pick = 1; pick < grid.rows; ++pick) across(thin, static_cast<double>(pick));
         for (std::size_t end = 1; end < grid.columns; ++end) along(thin, static_cast<double>(end));
     }
-    for (std::size_t row = 1; stacked && row < block.rows(); ++row) across(strong, static_cast<double>(block.first_pick(row)));
+    for (std::size_t row = 1; stacked && row < block.rows(); ++row)
+        across(strong, static_cast<double>(block.first_pick(row)));
     for (std::size_t column = 1; stacked && column < block.columns(); ++column) {
         along(strong, static_cast<double>(block.first_end(column)));
     }
     canvas.lines(thin, {.colour = {0xa8, 0xa8, 0xa8}, .width = 1, .round = false});
-    canvas.lines(strong, {.colour = {0x4a, 0xa3, 0xdf}, .width = grid.cell >= 10 ? 2.0 : 1.0, .round = false});
+    canvas.lines(strong,
+                 {.colour = {0x4a, 0xa3, 0xdf}, .width = grid.cell >= 10 ? 2.0 : 1.0, .round = false});
 }
 
 /// Runs of lifted ends as rectangles: a small card stays a drawing in SVG.
@@ -91,18 +94,22 @@ Result<std::string> draw_card(const Subject& subject) {
     PageText text = words_of(subject, "card image, face up");
     text.legend = {{"", {{lifted, "end lifted (warp over weft)"}, {weft_over, "weft over warp"}}}};
     text.notes = scale_notes(grid, "grey is the share of wefts that lie over");
-    text.notes.push_back("Origin bottom left: picks are woven upwards, ends count from the left." +
-                         std::string(grid.cell >= 4 && (block.picks() > block.rows() || block.ends() > block.columns())
-                                         ? " Blue lines part the stacks."
-                                         : ""));
-    WEAVE_TRY(Page page, Page::open(subject.format, text, grid_left + static_cast<double>(grid.width()) + grid_right,
-                                    grid_top + static_cast<double>(grid.height()) + grid_bottom));
+    text.notes.push_back(
+        "Origin bottom left: picks are woven upwards, ends count from the left." +
+        std::string(grid.cell >= 4 && (block.picks() > block.rows() || block.ends() > block.columns())
+                        ? " Blue lines part the stacks."
+                        : ""));
+    WEAVE_TRY(Page page,
+              Page::open(subject.format, text, grid_left + static_cast<double>(grid.width()) + grid_right,
+                         grid_top + static_cast<double>(grid.height()) + grid_bottom));
     const CardImage card = block.card_image();
     if (grid.cell >= 4) {
         draw_runs(page.canvas, card, grid);
     } else {
-        page.canvas.pixels(static_cast<std::size_t>(grid.corner.x), static_cast<std::size_t>(grid.corner.y), grid.width(),
-                           grid.height(), [&](std::size_t y, std::span<std::uint32_t> row) { fill_row(card, grid, y, row); });
+        page.canvas.pixels(static_cast<std::size_t>(grid.corner.x), static_cast<std::size_t>(grid.corner.y),
+                           grid.width(), grid.height(), [&](std::size_t y, std::span<std::uint32_t> row) {
+                               fill_row(card, grid, y, row);
+                           });
     }
     draw_stack_grid(page.canvas, block, grid);
     draw_rulers(page.canvas, grid, card_numbers(block));

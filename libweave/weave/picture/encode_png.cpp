@@ -1,11 +1,11 @@
 #include <weave/picture/encode_png.hpp>
 
+#include <png.h>
+
 #include <array>
 #include <limits>
 #include <optional>
 #include <vector>
-
-#include <png.h>
 
 namespace weave {
 

@@ -1,9 +1,9 @@
+#include <weave/picture/float_map.hpp>
+#include <weave/picture/views.hpp>
+
 #include <algorithm>
 #include <array>
 #include <cstdlib>
-
-#include <weave/picture/float_map.hpp>
-#include <weave/picture/views.hpp>
 
 namespace weave {
 
@@ -13,10 +13,22 @@ namespace {
 constexpr std::array<std::int32_t, 8> bins{1, 2, 3, 4, 6, 9, 15, INT32_MAX};
 constexpr std::array<const char*, 8> bin_names{"1", "2", "3", "4", "5–6", "7–9", "10–15", "over 15"};
 /// Lightness falls evenly from step to step in both; blue and orange stay apart for colour-blind eyes.
-constexpr std::array<Colour, 8> weft_scale{{{0xe3, 0xee, 0xf9}, {0xc2, 0xd9, 0xee}, {0x99, 0xc2, 0xe2}, {0x68, 0xa8, 0xd3},
-                                            {0x3f, 0x89, 0xc0}, {0x22, 0x69, 0xa4}, {0x0f, 0x49, 0x80}, {0x06, 0x2a, 0x54}}};
-constexpr std::array<Colour, 8> warp_scale{{{0xfe, 0xed, 0xd6}, {0xfd, 0xd6, 0xa6}, {0xfb, 0xb8, 0x6b}, {0xf3, 0x95, 0x37},
-                                            {0xdd, 0x73, 0x12}, {0xb5, 0x55, 0x08}, {0x85, 0x3a, 0x05}, {0x52, 0x22, 0x03}}};
+constexpr std::array<Colour, 8> weft_scale{{{0xe3, 0xee, 0xf9},
+                                            {0xc2, 0xd9, 0xee},
+                                            {0x99, 0xc2, 0xe2},
+                                            {0x68, 0xa8, 0xd3},
+                                            {0x3f, 0x89, 0xc0},
+                                            {0x22, 0x69, 0xa4},
+                                            {0x0f, 0x49, 0x80},
+                                            {0x06, 0x2a, 0x54}}};
+constexpr std::array<Colour, 8> warp_scale{{{0xfe, 0xed, 0xd6},
+                                            {0xfd, 0xd6, 0xa6},
+                                            {0xfb, 0xb8, 0x6b},
+                                            {0xf3, 0x95, 0x37},
+                                            {0xdd, 0x73, 0x12},
+                                            {0xb5, 0x55, 0x08},
+                                            {0x85, 0x3a, 0x05},
+                                            {0x52, 0x22, 0x03}}};
 constexpr Colour nothing{0xff, 0xff, 0xff};
 constexpr double panel_gap = 36, panel_title = 22;
 
@@ -48,7 +60,8 @@ void draw_directions(Canvas& canvas, const Grid& grid, const std::vector<std::in
 }
 
 /// The longest float of the places that share a pixel.
-std::int32_t longest(const std::vector<std::int32_t>& lengths, const Grid& grid, std::size_t row, std::size_t column) {
+std::int32_t longest(const std::vector<std::int32_t>& lengths, const Grid& grid, std::size_t row,
+                     std::size_t column) {
     std::int32_t most = 0;
     for (std::size_t i = row; i < std::min(row + grid.step, grid.rows); ++i) {
         for (std::size_t j = column; j < std::min(column + grid.step, grid.columns); ++j) {
@@ -71,10 +84,12 @@ void draw_shapes(Canvas& canvas, const Grid& grid, const std::vector<std::int32_
             const std::size_t shape = shape_of(lengths[row * grid.columns + column]);
             while (after < grid.columns && shape_of(lengths[row * grid.columns + after]) == shape) ++after;
             const Rectangle first = grid.box(row, column), last = grid.box(row, after - 1);
-            shapes[shape].push_back({std::min(first.x, last.x), first.y, std::abs(first.x - last.x) + side, side});
+            shapes[shape].push_back(
+                {std::min(first.x, last.x), first.y, std::abs(first.x - last.x) + side, side});
         }
     }
-    for (std::size_t k = 0; k < 16; ++k) canvas.rectangles(shapes[k], k < 8 ? weft_scale[k] : warp_scale[k - 8]);
+    for (std::size_t k = 0; k < 16; ++k)
+        canvas.rectangles(shapes[k], k < 8 ? weft_scale[k] : warp_scale[k - 8]);
 }
 
 void draw_panel(Canvas& canvas, const Subject& subject, const YarnColours& colours, const Grid& grid) {
@@ -92,10 +107,11 @@ void draw_panel(Canvas& canvas, const Subject& subject, const YarnColours& colou
         draw_shapes(canvas, grid, lengths);
         draw_directions(canvas, grid, lengths);
     } else {
-        canvas.pixels(static_cast<std::size_t>(grid.corner.x), static_cast<std::size_t>(grid.corner.y), grid.width(),
-                      grid.height(), [&](std::size_t y, std::span<std::uint32_t> pixels) {
+        canvas.pixels(static_cast<std::size_t>(grid.corner.x), static_cast<std::size_t>(grid.corner.y),
+                      grid.width(), grid.height(), [&](std::size_t y, std::span<std::uint32_t> pixels) {
                           for (std::size_t x = 0; x < pixels.size(); ++x) {
-                              pixels[x] = pixel_of(float_colour(longest(lengths, grid, grid.row_at(y), grid.column_at(x))));
+                              pixels[x] = pixel_of(
+                                  float_colour(longest(lengths, grid, grid.row_at(y), grid.column_at(x))));
                           }
                       });
     }
@@ -164,11 +180,14 @@ Result<std::string> draw_floats(const Subject& subject) {
         text.legend[1].swatches.push_back({warp_scale[k], bin_names[k]});
     }
     text.notes = scale_notes(grids.face, "in the colour of the longest float");
-    text.notes.push_back("Lengths count stacks over which one yarn stays on the surface; floats end at the edges of the picture.");
+    text.notes.push_back(
+        "Lengths count stacks over which one yarn stays on the surface; floats end at the edges of the "
+        "picture.");
     if (subject.request.trim) text.notes.push_back("Trimmed: yarns that are loose on purpose are left out.");
     const YarnColours colours(subject);
-    WEAVE_TRY(Page page, Page::open(subject.format, text, 2 * panel_width(grids.face) + panel_gap,
-                                    panel_title + grid_top + static_cast<double>(grids.face.height()) + grid_bottom));
+    WEAVE_TRY(Page page,
+              Page::open(subject.format, text, 2 * panel_width(grids.face) + panel_gap,
+                         panel_title + grid_top + static_cast<double>(grids.face.height()) + grid_bottom));
     draw_panel(page.canvas, subject, colours, grids.face);
     draw_panel(page.canvas, subject, colours, grids.back);
     return std::move(page.canvas).finish();

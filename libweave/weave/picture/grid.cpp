@@ -9,21 +9,25 @@ namespace {
 /// The smallest of 1, 5, 10, 50, 100 … whose marks are at least `least` pixels apart.
 std::size_t ruler_step(double pixels_each, double least) {
     std::size_t step = 1;
-    for (bool five = true; static_cast<double>(step) * pixels_each < least; five = !five) step *= five ? 5 : 2;
+    for (bool five = true; static_cast<double>(step) * pixels_each < least; five = !five)
+        step *= five ? 5 : 2;
     return step;
 }
 
-double pixels_each(const Grid& grid) { return static_cast<double>(grid.cell) / static_cast<double>(grid.step); }
+double pixels_each(const Grid& grid) {
+    return static_cast<double>(grid.cell) / static_cast<double>(grid.step);
+}
 
-/// Calls mark(line, number, labelled) for the lines of a ruler: 1, then every step-th number or the first after it.
+/// Calls mark(line, number) for the lines of a ruler: 1, 5, 10 and so on where every line is one yarn, else
+/// the first yarn of every line, or every few lines, that has room for its number.
 template <class Mark>
-void rule(std::size_t lines, std::size_t step, const std::function<std::size_t(std::size_t)>& number_of, Mark mark) {
-    std::size_t next = 1;
+void rule(std::size_t lines, double pixels, double least,
+          const std::function<std::size_t(std::size_t)>& number_of, Mark mark) {
+    const std::size_t step = ruler_step(pixels / static_cast<double>(std::max<std::size_t>(lines, 1)), least);
+    const bool one_each = number_of(lines) == lines;
     for (std::size_t line = 0; line < lines; ++line) {
-        const std::size_t number = number_of(line) + 1;
-        if (number < next) continue;
-        mark(line, number);
-        next = (number / step + 1) * step;
+        const std::size_t place = one_each ? line + 1 : line;
+        if (line == 0 || place % step == 0) mark(line, number_of(line) + 1);
     }
 }
 
@@ -36,13 +40,15 @@ void draw_pick_arrow(Canvas& canvas, const Grid& grid) {
     const Point shaft[]{{tail, y}, {tip - 4, y}};
     canvas.polyline(shaft, {.colour = accent, .width = 2});
     canvas.arrow_head({tip, y}, {1, 0}, 8, accent);
-    canvas.text({tail - 4, y}, "pick 1", {.size = 11, .colour = accent, .anchor = Anchor::end, .bold = true, .centred = true});
+    canvas.text({tail - 4, y}, "pick 1",
+                {.size = 11, .colour = accent, .anchor = Anchor::end, .bold = true, .centred = true});
     const double end_x = grid.mirrored ? x - first : x + first;
     const Point stem[]{{end_x, bottom + 40}, {end_x, bottom + 30}};
     canvas.polyline(stem, {.colour = accent, .width = 2});
     canvas.arrow_head({end_x, bottom + 24}, {0, -1}, 8, accent);
-    canvas.text({grid.mirrored ? end_x + 8 : end_x - 8, bottom + 53}, "end 1",
-                {.size = 11, .colour = accent, .anchor = grid.mirrored ? Anchor::end : Anchor::start, .bold = true});
+    canvas.text(
+        {grid.mirrored ? end_x + 8 : end_x - 8, bottom + 53}, "end 1",
+        {.size = 11, .colour = accent, .anchor = grid.mirrored ? Anchor::end : Anchor::start, .bold = true});
 }
 
 }  // namespace
@@ -53,7 +59,8 @@ double Grid::x_of(double column) const {
 }
 
 double Grid::y_of(double row) const {
-    return corner.y + static_cast<double>(height()) - row * static_cast<double>(cell) / static_cast<double>(step);
+    return corner.y + static_cast<double>(height()) -
+           row * static_cast<double>(cell) / static_cast<double>(step);
 }
 
 Point Grid::centre(std::size_t row, std::size_t column) const {
@@ -76,7 +83,9 @@ Grid make_grid(std::size_t rows, std::size_t columns, std::size_t largest_cell, 
     return grid;
 }
 
-Grid card_grid(const Block& block) { return make_grid(block.picks(), block.ends(), 28, 900); }
+Grid card_grid(const Block& block) {
+    return make_grid(block.picks(), block.ends(), 28, 900);
+}
 
 Grid face_grid(const Block& block, bool back) {
     Grid grid = make_grid(block.rows(), block.columns(), 40, 960);
@@ -97,31 +106,32 @@ GridNumbers stack_numbers(const Block& block) {
 void draw_rulers(Canvas& canvas, const Grid& grid, const GridNumbers& numbers) {
     const double bottom = grid.corner.y + static_cast<double>(grid.height()), left = grid.corner.x;
     const double width = static_cast<double>(grid.width()), height = static_cast<double>(grid.height());
-    canvas.outline({left - 0.5, grid.corner.y - 0.5, width + 1, height + 1}, {.colour = ink, .width = 1, .round = false});
-    const std::size_t last_pick = numbers.pick_of_row(grid.rows), last_end = numbers.end_of_column(grid.columns);
-    const double a_pick = height / static_cast<double>(std::max<std::size_t>(last_pick, 1));
-    const double an_end = width / static_cast<double>(std::max<std::size_t>(last_end, 1));
+    canvas.outline({left - 0.5, grid.corner.y - 0.5, width + 1, height + 1},
+                   {.colour = ink, .width = 1, .round = false});
     const Stroke tick{.colour = faint_ink, .width = 1, .round = false};
-    rule(grid.rows, ruler_step(a_pick, 15), numbers.pick_of_row, [&](std::size_t row, std::size_t number) {
+    rule(grid.rows, height, 15, numbers.pick_of_row, [&](std::size_t row, std::size_t number) {
         const double y = grid.centre(row, 0).y;
         const Point mark[]{{left - 5, y}, {left - 1, y}};
         canvas.polyline(mark, tick);
-        canvas.text({left - 7, y}, std::to_string(number), {.size = 10, .anchor = Anchor::end, .centred = true});
+        canvas.text({left - 7, y}, std::to_string(number),
+                    {.size = 10, .anchor = Anchor::end, .centred = true});
     });
-    const double digits = static_cast<double>(std::to_string(last_end).size());
-    rule(grid.columns, ruler_step(an_end, 8 + 7 * digits), numbers.end_of_column, [&](std::size_t column, std::size_t number) {
-        const double x = grid.centre(0, column).x;
-        const Point mark[]{{x, bottom + 1}, {x, bottom + 5}};
-        canvas.polyline(mark, tick);
-        canvas.text({x, bottom + 16}, std::to_string(number), {.size = 10, .anchor = Anchor::middle});
-    });
+    const auto digits = static_cast<double>(std::to_string(numbers.end_of_column(grid.columns)).size());
+    rule(grid.columns, width, 8 + 7 * digits, numbers.end_of_column,
+         [&](std::size_t column, std::size_t number) {
+             const double x = grid.centre(0, column).x;
+             const Point mark[]{{x, bottom + 1}, {x, bottom + 5}};
+             canvas.polyline(mark, tick);
+             canvas.text({x, bottom + 16}, std::to_string(number), {.size = 10, .anchor = Anchor::middle});
+         });
     draw_pick_arrow(canvas, grid);
 }
 
 std::vector<std::string> scale_notes(const Grid& grid, const char* how) {
     if (grid.step == 1) return {};
     const std::string side = std::to_string(grid.step);
-    return {"Too large for one pixel each: every pixel stands for " + side + " × " + side + " places, " + how + "."};
+    return {"Too large for one pixel each: every pixel stands for " + side + " × " + side + " places, " +
+            how + "."};
 }
 
 }  // namespace weave

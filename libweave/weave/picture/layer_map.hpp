@@ -1,10 +1,10 @@
 #pragma once
 
+#include <weave/picture/grid.hpp>
+
 #include <cstddef>
 #include <optional>
 #include <vector>
-
-#include <weave/picture/grid.hpp>
 
 namespace weave {
 
@@ -14,9 +14,10 @@ enum class LayerPixel : std::uint8_t { none, lifted, weft_over };
 /// How many layers a block has: the most yarns of one system in a stack.
 std::size_t layer_count(const Block& block);
 
-/// Layer `layer` (0 is the top one) of a stack: its weft and its warp, counted from the top of each system, and which of
-/// them lies over the other. Where a stack has fewer yarns of one system, these are spread over its layers evenly, so every
-/// weft level of an angle interlock meets the one warp. None where the stack has no such layer.
+/// Layer `layer` (0 is the top one) of a stack: its weft and its warp, counted from the top of each system,
+/// and which of them lies over the other. Where a stack has fewer yarns of one system, these are spread over
+/// its layers evenly, so every weft level of an angle interlock meets the one warp. None where the stack has
+/// no such layer.
 LayerPixel layer_pixel(const Stack& stack, std::size_t layer);
 
 /// The small cards of the layers view, in reading order; at most `most_layers`.

@@ -1,7 +1,7 @@
-#include <algorithm>
-
 #include <weave/picture/layer_map.hpp>
 #include <weave/picture/views.hpp>
+
+#include <algorithm>
 
 namespace weave {
 
@@ -15,7 +15,8 @@ Colour colour_of(LayerPixel pixel) {
 }
 
 /// Height in the stack of the yarn that stands for `layer`, or none.
-std::optional<std::size_t> height_of(const Stack& stack, System system, std::size_t layer, std::size_t layers) {
+std::optional<std::size_t> height_of(const Stack& stack, System system, std::size_t layer,
+                                     std::size_t layers) {
     const std::size_t yarns = system == System::weft ? stack.wefts() : stack.warps();
     if (yarns == 0) return std::nullopt;
     std::size_t above = layer * yarns / layers;  // yarns of the system that lie higher
@@ -39,9 +40,10 @@ std::size_t panels_across(std::size_t panels, double width) {
     return std::min(std::max(fitting, square), panels);
 }
 
-void draw_layer(Canvas& canvas, const Block& block, const Grid& grid, const std::vector<LayerPixel>& of_stack) {
-    canvas.pixels(static_cast<std::size_t>(grid.corner.x), static_cast<std::size_t>(grid.corner.y), grid.width(), grid.height(),
-                  [&](std::size_t y, std::span<std::uint32_t> pixels) {
+void draw_layer(Canvas& canvas, const Block& block, const Grid& grid,
+                const std::vector<LayerPixel>& of_stack) {
+    canvas.pixels(static_cast<std::size_t>(grid.corner.x), static_cast<std::size_t>(grid.corner.y),
+                  grid.width(), grid.height(), [&](std::size_t y, std::span<std::uint32_t> pixels) {
                       const auto cells = block.cells(grid.row_at(y));
                       for (std::size_t x = 0; x < pixels.size(); ++x) {
                           pixels[x] = pixel_of(colour_of(of_stack[cells[grid.column_at(x)]]));
@@ -73,7 +75,8 @@ std::size_t layer_count(const Block& block) {
 LayerPixel layer_pixel(const Stack& stack, std::size_t layer) {
     const std::size_t layers = std::max(stack.wefts(), stack.warps());
     if (layer >= layers) return LayerPixel::none;
-    const auto weft = height_of(stack, System::weft, layer, layers), warp = height_of(stack, System::warp, layer, layers);
+    const auto weft = height_of(stack, System::weft, layer, layers),
+               warp = height_of(stack, System::warp, layer, layers);
     if (!weft || !warp) return LayerPixel::none;
     return *weft > *warp ? LayerPixel::weft_over : LayerPixel::lifted;
 }
@@ -104,10 +107,12 @@ Result<std::string> draw_layers(const Subject& subject) {
     text.notes = scale_notes(grids[0], "of which it shows the first");
     text.notes.push_back("Layer k: the k-th weft and the k-th warp of each stack, counted from the top.");
     if (layer_count(block) > grids.size()) {
-        text.notes.push_back("Shown: the top " + std::to_string(grids.size()) + " of " + std::to_string(layer_count(block)) + " layers.");
+        text.notes.push_back("Shown: the top " + std::to_string(grids.size()) + " of " +
+                             std::to_string(layer_count(block)) + " layers.");
     }
     const Point size = panel_size(grids[0]);
-    const std::size_t across = panels_across(grids.size(), size.x), down = (grids.size() + across - 1) / across;
+    const std::size_t across = panels_across(grids.size(), size.x),
+                      down = (grids.size() + across - 1) / across;
     const double width = static_cast<double>(across) * (size.x + gutter) - gutter;
     const double height = static_cast<double>(down) * (size.y + gutter / 2) - gutter / 2;
     WEAVE_TRY(Page page, Page::open(subject.format, text, width, height));
@@ -115,7 +120,10 @@ Result<std::string> draw_layers(const Subject& subject) {
         std::vector<LayerPixel> of_stack;
         for (const Stack& stack : block.stacks()) of_stack.push_back(layer_pixel(stack, k));
         const std::string name = "Layer " + std::to_string(k + 1) +
-                                 (grids.size() == 1 ? " (the only one)" : k == 0 ? " (top)" : k + 1 == layer_count(block) ? " (bottom)" : "");
+                                 (grids.size() == 1             ? " (the only one)"
+                                  : k == 0                      ? " (top)"
+                                  : k + 1 == layer_count(block) ? " (bottom)"
+                                                                : "");
         page.canvas.text({grids[k].corner.x, grids[k].corner.y - 9}, name, {.size = 12, .bold = true});
         draw_layer(page.canvas, block, grids[k], of_stack);
     }

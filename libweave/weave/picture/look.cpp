@@ -9,16 +9,22 @@ namespace {
 /// Shades that tell apart the yarns of one stack: the colour itself, darker, lighter, darkest, lightest.
 Colour shade(Colour colour, std::size_t index) {
     switch (index % 5) {
-        case 1: return mix(colour, {0x40, 0x18, 0x00}, 0.42);
-        case 2: return mix(colour, {0xff, 0xff, 0xff}, 0.38);
-        case 3: return mix(colour, {0x20, 0x08, 0x00}, 0.68);
-        case 4: return mix(colour, {0xff, 0xf0, 0x60}, 0.5);
-        default: return colour;
+        case 1:
+            return mix(colour, {0x40, 0x18, 0x00}, 0.42);
+        case 2:
+            return mix(colour, {0xff, 0xff, 0xff}, 0.38);
+        case 3:
+            return mix(colour, {0x20, 0x08, 0x00}, 0.68);
+        case 4:
+            return mix(colour, {0xff, 0xf0, 0x60}, 0.5);
+        default:
+            return colour;
     }
 }
 
 Colour grey_shade(std::size_t index) {
-    constexpr Colour greys[]{paper_weft, {0x5f, 0x64, 0x6b}, {0xae, 0xb3, 0xb9}, {0x45, 0x49, 0x50}, {0xc2, 0xc6, 0xcb}};
+    constexpr Colour greys[]{
+        paper_weft, {0x5f, 0x64, 0x6b}, {0xae, 0xb3, 0xb9}, {0x45, 0x49, 0x50}, {0xc2, 0xc6, 0xcb}};
     return greys[index % 5];
 }
 
@@ -66,7 +72,8 @@ Slot Surface::seen(const Stack& stack, std::size_t row, bool all_woven) const {
     for (std::size_t k = 0; k < slots.size(); ++k) {
         const Slot slot = slots[m_back ? k : slots.size() - 1 - k];
         if (slot.is_empty() || (m_trim && slot.is_loose())) continue;
-        if (slot.is_weft() && !all_woven && !m_colours.has_weft(m_block.first_pick(row) + slot.index())) continue;
+        if (slot.is_weft() && !all_woven && !m_colours.has_weft(m_block.first_pick(row) + slot.index()))
+            continue;
         return slot;
     }
     return {};

@@ -1,11 +1,11 @@
 #pragma once
 
+#include <weave/loom/pick_table.hpp>
+#include <weave/picture/page.hpp>
+
 #include <cstddef>
 #include <optional>
 #include <vector>
-
-#include <weave/loom/pick_table.hpp>
-#include <weave/picture/page.hpp>
 
 namespace weave {
 
@@ -20,8 +20,8 @@ class YarnColours {
     [[nodiscard]] Colour of_end(std::size_t end) const { return m_ends[end]; }
     [[nodiscard]] Colour of_pick(std::size_t pick) const { return m_picks[pick]; }
     [[nodiscard]] bool has_weft(std::size_t pick) const { return m_woven[pick]; }
-    /// For drawings that explain: the paper's colours, in shades that tell apart the yarns of one stack, unless the
-    /// design has colours of its own for this system.
+    /// For drawings that explain: the paper's colours, in shades that tell apart the yarns of one stack,
+    /// unless the design has colours of its own for this system.
     [[nodiscard]] Colour drawn_end(std::size_t end, std::size_t index) const;
     [[nodiscard]] Colour drawn_pick(std::size_t pick, std::size_t index) const;
     [[nodiscard]] const std::vector<Pick>& picks() const { return m_table; }
@@ -48,8 +48,8 @@ class Surface {
     const Block& m_block;
     const YarnColours& m_colours;
     bool m_back, m_trim;
-    std::vector<Slot> m_of_stack;       ///< for each stack of the block's table, where all wefts are woven
-    std::vector<bool> m_row_is_woven;   ///< rows all of whose picks bring weft
+    std::vector<Slot> m_of_stack;      ///< for each stack of the block's table, where all wefts are woven
+    std::vector<bool> m_row_is_woven;  ///< rows all of whose picks bring weft
 };
 
 }  // namespace weave

@@ -31,7 +31,8 @@ std::vector<LegendRow> broken(const std::vector<LegendRow>& legend, double width
     return rows;
 }
 
-void draw_legend(Canvas& canvas, const std::vector<LegendRow>& rows, double left, double label_width, double top) {
+void draw_legend(Canvas& canvas, const std::vector<LegendRow>& rows, double left, double label_width,
+                 double top) {
     for (const LegendRow& row : rows) {
         const double middle = top + swatch_side / 2;
         canvas.text({left, middle}, row.label, {.size = small_size, .centred = true});
@@ -55,13 +56,16 @@ Result<Page> Page::open(PictureFormat format, const PageText& text, double body_
     for (const std::string& note : text.notes) width = std::max(width, Canvas::text_width(note, small_size));
     double label_width = 0;
     for (const LegendRow& row : text.legend) {
-        if (!row.label.empty()) label_width = std::max(label_width, Canvas::text_width(row.label, small_size) + 12);
+        if (!row.label.empty())
+            label_width = std::max(label_width, Canvas::text_width(row.label, small_size) + 12);
     }
     const std::vector<LegendRow> legend = broken(text.legend, width - label_width);
-    const double words = row_height * static_cast<double>(legend.size()) + 17 * static_cast<double>(text.notes.size());
+    const double words =
+        row_height * static_cast<double>(legend.size()) + 17 * static_cast<double>(text.notes.size());
     const double bottom = body_top + body_height + (words > 0 ? 18 + words : 0);
     WEAVE_TRY(Canvas canvas, Canvas::make(format, width + 2 * margin, bottom + margin));
-    canvas.text({margin, margin + 15}, text.title, {.size = title_size, .colour = {0x11, 0x11, 0x11}, .bold = true});
+    canvas.text({margin, margin + 15}, text.title,
+                {.size = title_size, .colour = {0x11, 0x11, 0x11}, .bold = true});
     canvas.text({margin, margin + 34}, text.subtitle, {.size = small_size, .colour = {0x60, 0x60, 0x60}});
     double y = body_top + body_height + 18;
     draw_legend(canvas, legend, margin, label_width, y);
@@ -77,8 +81,9 @@ PageText words_of(const Subject& subject, const std::string& view) {
     const Block& block = subject.block;
     PageText text;
     text.title = printable(subject.design.title.empty() ? subject.design.root : subject.design.title, 80);
-    text.subtitle = view + "  ·  " + std::to_string(block.picks()) + (block.picks() == 1 ? " pick × " : " picks × ") +
-                    std::to_string(block.ends()) + (block.ends() == 1 ? " end" : " ends");
+    text.subtitle = view + "  ·  " + std::to_string(block.picks()) +
+                    (block.picks() == 1 ? " pick × " : " picks × ") + std::to_string(block.ends()) +
+                    (block.ends() == 1 ? " end" : " ends");
     return text;
 }
 

@@ -1,9 +1,9 @@
 #pragma once
 
+#include <weave/picture/canvas.hpp>
+
 #include <string>
 #include <vector>
-
-#include <weave/picture/canvas.hpp>
 
 namespace weave {
 
@@ -39,7 +39,8 @@ struct Page {
     /// White rim of every page, and where its body begins, in pixels.
     static constexpr double margin = 24, body_top = 74;
     /// Body of this size; the page is made wide enough for its words.
-    static Result<Page> open(PictureFormat format, const PageText& text, double body_width, double body_height);
+    static Result<Page> open(PictureFormat format, const PageText& text, double body_width,
+                             double body_height);
     Canvas canvas;
     Rectangle body;
 };

@@ -1,19 +1,18 @@
 #include <weave/picture/picture.hpp>
+#include <weave/picture/views.hpp>
 
 #include <charconv>
 #include <new>
 #include <utility>
-
-#include <weave/picture/views.hpp>
 
 namespace weave {
 
 namespace {
 
 /// Views without a number.
-constexpr std::pair<std::string_view, View> plain_views[]{
-    {"card", View::card},     {"face", View::face},     {"back", View::back},
-    {"floats", View::floats}, {"layers", View::layers}, {"block", View::block}};
+constexpr std::pair<std::string_view, View> plain_views[]{{"card", View::card},     {"face", View::face},
+                                                          {"back", View::back},     {"floats", View::floats},
+                                                          {"layers", View::layers}, {"block", View::block}};
 
 /// The row (or column) of the pick (or end) that people call `text`.
 Result<std::size_t> line_of(std::string_view text, const Block& block, System system) {
@@ -23,8 +22,9 @@ Result<std::size_t> line_of(std::string_view text, const Block& block, System sy
     const auto [end, code] = std::from_chars(text.data(), text.data() + text.size(), number);
     if (code != std::errc{} || end != text.data() + text.size() || number < 1 || number > count) {
         return Error{ErrorCode::usage,
-                     std::string("a ") + (weft ? "weft" : "warp") + " slice needs the number of " + (weft ? "a pick" : "an end") +
-                         " from 1 to " + std::to_string(count) + ", not '" + std::string(text.substr(0, 40)) + "'",
+                     std::string("a ") + (weft ? "weft" : "warp") + " slice needs the number of " +
+                         (weft ? "a pick" : "an end") + " from 1 to " + std::to_string(count) + ", not '" +
+                         std::string(text.substr(0, 40)) + "'",
                      {}};
     }
     return weft ? block.row_of_pick(number - 1) : block.column_of_end(number - 1);
@@ -32,14 +32,20 @@ Result<std::size_t> line_of(std::string_view text, const Block& block, System sy
 
 Result<std::string> draw_view(const Subject& subject) {
     switch (subject.request.view) {
-        case View::card: return draw_card(subject);
+        case View::card:
+            return draw_card(subject);
         case View::face:
-        case View::back: return draw_surface(subject);
-        case View::floats: return draw_floats(subject);
-        case View::layers: return draw_layers(subject);
+        case View::back:
+            return draw_surface(subject);
+        case View::floats:
+            return draw_floats(subject);
+        case View::layers:
+            return draw_layers(subject);
         case View::weft_slice:
-        case View::warp_slice: return draw_slice(subject);
-        case View::block: return draw_block(subject);
+        case View::warp_slice:
+            return draw_slice(subject);
+        case View::block:
+            return draw_block(subject);
     }
     return invalid("there is no such view");
 }
@@ -57,7 +63,8 @@ Result<PictureRequest> parse_view(std::string_view text, const Block& block) {
         const std::string_view start = weft ? "weft:" : "warp:";
         if (!text.starts_with(start)) continue;
         request.view = weft ? View::weft_slice : View::warp_slice;
-        WEAVE_TRY(request.line, line_of(text.substr(start.size()), block, weft ? System::weft : System::warp));
+        WEAVE_TRY(request.line,
+                  line_of(text.substr(start.size()), block, weft ? System::weft : System::warp));
         return request;
     }
     return Error{ErrorCode::usage,
@@ -66,14 +73,16 @@ Result<PictureRequest> parse_view(std::string_view text, const Block& block) {
                  {}};
 }
 
-Result<std::string> draw(const Design& design, const Evaluation& cloth, const PictureRequest& request, PictureFormat format) {
+Result<std::string> draw(const Design& design, const Evaluation& cloth, const PictureRequest& request,
+                         PictureFormat format) {
     if (!cloth.block) return invalid("there is no cloth to draw");
     const Block& block = *cloth.block;
     if ((request.view == View::weft_slice && request.line >= block.rows()) ||
         (request.view == View::warp_slice && request.line >= block.columns())) {
         return Error{ErrorCode::usage,
-                     "the cloth has " + std::to_string(block.rows()) + " rows and " + std::to_string(block.columns()) +
-                         " columns of stacks, so there is no slice " + std::to_string(request.line + 1),
+                     "the cloth has " + std::to_string(block.rows()) + " rows and " +
+                         std::to_string(block.columns()) + " columns of stacks, so there is no slice " +
+                         std::to_string(request.line + 1),
                      {}};
     }
     try {

@@ -1,14 +1,14 @@
 #pragma once
 
+#include <weave/design/design.hpp>
+#include <weave/design/evaluate.hpp>
+
 #include <cstddef>
 #include <cstdint>
 #include <optional>
 #include <string>
 #include <string_view>
 #include <vector>
-
-#include <weave/design/design.hpp>
-#include <weave/design/evaluate.hpp>
 
 namespace weave {
 
@@ -21,13 +21,15 @@ struct PictureRequest {
     bool trim = false;  ///< leave out yarns that are loose on purpose
 };
 
-/// `card`, `face`, `back`, `floats`, `layers`, `weft:N`, `warp:N` (N from 1, a pick or an end: the slice of its row or column), `block`.
+/// `card`, `face`, `back`, `floats`, `layers`, `weft:N`, `warp:N` (N from 1, a pick or an end: the slice of
+/// its row or column), `block`.
 Result<PictureRequest> parse_view(std::string_view text, const Block& block);
 
 enum class PictureFormat : std::uint8_t { png, svg };
 
-/// A finished picture file. Large cloths are drawn at a smaller scale; past a stated limit the card and face views fall to one pixel a crossing
-/// and views that number yarns show the first part and say so in the picture.
+/// A finished picture file. Large cloths are drawn at a smaller scale; past a stated limit the card and face
+/// views fall to one pixel a crossing and views that number yarns show the first part and say so in the
+/// picture.
 Result<std::string> draw(const Design& design, const Evaluation& cloth, const PictureRequest& request,
                          PictureFormat format);
 

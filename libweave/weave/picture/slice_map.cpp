@@ -90,7 +90,8 @@ SliceMap slice_map(const Subject& subject, const YarnColours& colours, const Wef
         }
     }
     std::erase_if(map.paths, [&](const SlicePath& path) {
-        return path.levels.empty() || std::ranges::all_of(path.levels, [&](std::size_t level) { return level >= map.levels; });
+        return path.levels.empty() ||
+               std::ranges::all_of(path.levels, [&](std::size_t level) { return level >= map.levels; });
     });
     return map;
 }

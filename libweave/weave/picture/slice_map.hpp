@@ -1,11 +1,11 @@
 #pragma once
 
+#include <weave/picture/look.hpp>
+#include <weave/picture/weft_runs.hpp>
+
 #include <cstddef>
 #include <string>
 #include <vector>
-
-#include <weave/picture/look.hpp>
-#include <weave/picture/weft_runs.hpp>
 
 namespace weave {
 
@@ -19,9 +19,9 @@ struct SliceDot {
 
 /// A yarn that runs along a slice.
 struct SlicePath {
-    std::size_t number = 0;   ///< on the card, from 0
+    std::size_t number = 0;  ///< on the card, from 0
     Colour colour;
-    std::size_t first = 0;    ///< position of the first level
+    std::size_t first = 0;  ///< position of the first level
     std::vector<std::size_t> levels;
     std::vector<bool> loose;  ///< for each level
     double shift = 0;         ///< -0.5 … 0.5: how yarns that swap levels step aside from one another
@@ -40,7 +40,8 @@ struct SliceMap {
     std::vector<SlicePath> paths;  ///< yarns above the levels shown, and picks without weft, are left out
 };
 
-/// The slice that the request names. With `trim` loose dots are not listed; loose stretches of paths are left to the drawer.
+/// The slice that the request names. With `trim` loose dots are not listed; loose stretches of paths are left
+/// to the drawer.
 SliceMap slice_map(const Subject& subject, const YarnColours& colours, const WeftRuns& runs);
 
 /// Whether a path exchanges places with another one between its levels k and k+1, so that their lines cross.

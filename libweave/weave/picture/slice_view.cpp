@@ -1,8 +1,8 @@
-#include <algorithm>
-#include <cmath>
-
 #include <weave/picture/slice_map.hpp>
 #include <weave/picture/views.hpp>
+
+#include <algorithm>
+#include <cmath>
 
 namespace weave {
 
@@ -20,7 +20,8 @@ class SliceDrawer {
     void draw() {
         draw_grid();
         const double rim = dot_radius + 6;
-        const Point low = at(-1.9, -0.5), high = at(static_cast<double>(m_map.positions) + 0.9, static_cast<double>(m_map.levels) - 0.5);
+        const Point low = at(-1.9, -0.5), high = at(static_cast<double>(m_map.positions) + 0.9,
+                                                    static_cast<double>(m_map.levels) - 0.5);
         m_canvas.clip({low.x, high.y - rim, high.x - low.x, low.y - high.y + 2 * rim});
         for (const SlicePath& path : m_map.paths) draw_path(path, true);
         if (turning()) draw_turns();
@@ -37,10 +38,13 @@ class SliceDrawer {
     };
 
     [[nodiscard]] bool turning() const { return m_map.dots == System::warp && m_runs.wraparound(); }
-    [[nodiscard]] Point at(double position, double level) const { return slice_point(m_map, position, level); }
+    [[nodiscard]] Point at(double position, double level) const {
+        return slice_point(m_map, position, level);
+    }
 
     void draw_grid() {
-        const auto positions = static_cast<double>(m_map.positions), levels = static_cast<double>(m_map.levels);
+        const auto positions = static_cast<double>(m_map.positions),
+                   levels = static_cast<double>(m_map.levels);
         std::vector<Point> lines;
         for (std::size_t k = 0; k < m_map.levels; ++k) {
             const auto level = static_cast<double>(k);
@@ -51,7 +55,8 @@ class SliceDrawer {
             lines.insert(lines.end(), {at(position, -0.4), at(position, levels - 0.6)});
             Point name = at(position, 0);
             name.y += 34;
-            m_canvas.text(name, std::to_string(k + 1), {.size = 10, .colour = faint_ink, .anchor = Anchor::middle});
+            m_canvas.text(name, std::to_string(k + 1),
+                          {.size = 10, .colour = faint_ink, .anchor = Anchor::middle});
         }
         m_canvas.lines(lines, {.colour = grid_ink, .width = 1, .round = false});
         const bool rows = m_map.dots == System::weft;
@@ -60,7 +65,8 @@ class SliceDrawer {
         const Point axis[]{{from.x, from.y}, {from.x + 22, from.y}};
         m_canvas.polyline(axis, {.colour = accent, .width = 2});
         m_canvas.arrow_head({axis[1].x + 6, from.y}, {1, 0}, 8, accent);
-        m_canvas.text({axis[1].x + 12, from.y}, rows ? "rows, from pick 1 (along the warp)" : "columns, from end 1 (along the weft)",
+        m_canvas.text({axis[1].x + 12, from.y},
+                      rows ? "rows, from pick 1 (along the warp)" : "columns, from end 1 (along the weft)",
                       {.size = 11, .colour = accent, .bold = true, .centred = true});
         const Point corner{at(0, 0).x - 96, at(0, 0).y};
         const Point height[]{corner, {corner.x, corner.y - 16}};
@@ -73,7 +79,8 @@ class SliceDrawer {
     [[nodiscard]] std::array<Point, 4> step(const SlicePath& path, std::size_t k) const {
         const Point a = at(static_cast<double>(path.first + k), static_cast<double>(path.levels[k]));
         const Point b = at(static_cast<double>(path.first + k + 1), static_cast<double>(path.levels[k + 1]));
-        const double reach = (b.x - a.x) * 0.5, aside = swaps(m_map, path, k) ? path.shift * (b.x - a.x) * 0.55 : 0;
+        const double reach = (b.x - a.x) * 0.5,
+                     aside = swaps(m_map, path, k) ? path.shift * (b.x - a.x) * 0.55 : 0;
         return {a, {a.x + reach + aside, a.y}, {b.x - reach + aside, b.y}, b};
     }
 
@@ -105,8 +112,10 @@ class SliceDrawer {
     [[nodiscard]] std::vector<Piece> pieces_of(const SlicePath& path) const {
         std::vector<Piece> pieces;
         const auto first = static_cast<double>(path.first), last = static_cast<double>(path.last());
-        const auto low = static_cast<double>(path.levels.front()), high = static_cast<double>(path.levels.back());
-        if (reaches(path, false)) append(pieces, straight(at(-overhang, low), at(first, low)), path.loose.front());
+        const auto low = static_cast<double>(path.levels.front()),
+                   high = static_cast<double>(path.levels.back());
+        if (reaches(path, false))
+            append(pieces, straight(at(-overhang, low), at(first, low)), path.loose.front());
         for (std::size_t k = 0; k + 1 < path.levels.size(); ++k) {
             const auto [here, next] = halves(step(path, k));
             append(pieces, here, path.loose[k]);
@@ -136,17 +145,24 @@ class SliceDrawer {
         if (!casing && m_map.dots == System::warp) draw_directions(path);
     }
 
-    /// Arrow heads on the weft, about every sixth position, in the direction of the shuttle.
+    /// Arrow heads on the weft, about every sixth position, in the direction of the shuttle. Neighbours carry
+    /// them at different places, so that none hides another.
     void draw_directions(const SlicePath& path) {
         const std::size_t steps = path.levels.size() - 1;
         const double way = path.leftwards ? -1 : 1;
         const auto mark = [&](Point point, double slope) {
             const double norm = std::hypot(1.0, slope);
             const Point ahead{way / norm, way * slope / norm};
-            m_canvas.arrow_head({point.x + ahead.x * 7, point.y + ahead.y * 7}, ahead, 14, mix(path.colour, {0, 0, 0}, 0.62));
+            m_canvas.arrow_head({point.x + ahead.x * 10, point.y + ahead.y * 10}, ahead, 21,
+                                {0xff, 0xff, 0xff});  // a rim, so that it reads on dark yarns too
+            m_canvas.arrow_head({point.x + ahead.x * 7, point.y + ahead.y * 7}, ahead, 14,
+                                mix(path.colour, {0, 0, 0}, 0.62));
         };
-        if (steps == 0) return mark(at(static_cast<double>(path.first) + way * 0.42, static_cast<double>(path.levels[0])), 0);
-        for (std::size_t k = std::min<std::size_t>(steps - 1, steps / 2 % 6); k < steps; k += 6) {
+        if (steps == 0)
+            return mark(at(static_cast<double>(path.first) + way * 0.42, static_cast<double>(path.levels[0])),
+                        0);
+        for (std::size_t k = (steps / 2 + 2 * path.number) % std::min<std::size_t>(steps, 6); k < steps;
+             k += 6) {
             if (m_trim && (path.loose[k] || path.loose[k + 1])) continue;
             const auto curve = halves(step(path, k));
             const Point tip = curve.second[0], before = curve.first[2];
@@ -156,12 +172,18 @@ class SliceDrawer {
 
     void draw_dot(const SliceDot& dot) {
         const Point centre = at(static_cast<double>(dot.position), static_cast<double>(dot.level));
-        const Colour rim = mix(dot.colour, {0, 0, 0}, 0.45), fill = dot.loose ? mix(dot.colour, {0xff, 0xff, 0xff}, 0.7) : dot.colour;
+        const Colour rim = mix(dot.colour, {0, 0, 0}, 0.45),
+                     fill = dot.loose ? mix(dot.colour, {0xff, 0xff, 0xff}, 0.7) : dot.colour;
         m_canvas.circle(centre, dot_radius, fill);
-        m_canvas.ring(centre, dot_radius, {.colour = rim, .width = 1.3, .dash = dot.loose ? std::vector<double>{2.5, 3} : std::vector<double>{}});
+        m_canvas.ring(centre, dot_radius,
+                      {.colour = rim,
+                       .width = 1.3,
+                       .dash = dot.loose ? std::vector<double>{2.5, 3} : std::vector<double>{}});
         const std::string number = std::to_string(dot.number + 1);
         const double size = number.size() <= 2 ? 10.5 : number.size() == 3 ? 8.5 : 6.5;
-        m_canvas.text(centre, number, {.size = size, .colour = ink_on(fill), .anchor = Anchor::middle, .bold = true, .centred = true});
+        m_canvas.text(
+            centre, number,
+            {.size = size, .colour = ink_on(fill), .anchor = Anchor::middle, .bold = true, .centred = true});
     }
 
     void draw_names(const SlicePath& path) {
@@ -172,9 +194,21 @@ class SliceDrawer {
             m_canvas.text(at(position, static_cast<double>(level)), number,
                           {.size = 11, .colour = dark, .anchor = anchor, .bold = true, .centred = true});
         };
+        // Where a pick turns at both ends its number stands on the yarn itself.
+        if (!reaches(path, false) && !reaches(path, true) && path.levels.front() < m_map.levels) {
+            const Point middle =
+                at(static_cast<double>(path.first) + 0.2, static_cast<double>(path.levels.front()));
+            const double half = Canvas::text_width(number, 11, true) / 2 + 2;
+            m_canvas.rectangle({middle.x - half, middle.y - 7, 2 * half, 14}, {0xff, 0xff, 0xff}, 0.9);
+            m_canvas.text(
+                middle, number,
+                {.size = 11, .colour = dark, .anchor = Anchor::middle, .bold = true, .centred = true});
+        }
         const double edge = static_cast<double>(m_map.positions) - 1;
-        if (reaches(path, false) && !(m_trim && path.loose.front())) name(-overhang - 0.14, path.levels.front(), Anchor::end);
-        if (reaches(path, true) && !(m_trim && path.loose.back())) name(edge + overhang + 0.14, path.levels.back(), Anchor::start);
+        if (reaches(path, false) && !(m_trim && path.loose.front()))
+            name(-overhang - 0.14, path.levels.front(), Anchor::end);
+        if (reaches(path, true) && !(m_trim && path.loose.back()))
+            name(edge + overhang + 0.14, path.levels.back(), Anchor::start);
     }
 
     [[nodiscard]] const SlicePath* path_of(std::size_t pick) const {
@@ -195,8 +229,9 @@ class SliceDrawer {
     }
 
     [[nodiscard]] Point end_of(const SlicePath& path, Side side) const {
-        return side == Side::right ? at(static_cast<double>(path.last()), static_cast<double>(path.levels.back()))
-                                   : at(static_cast<double>(path.first), static_cast<double>(path.levels.front()));
+        return side == Side::right
+                   ? at(static_cast<double>(path.last()), static_cast<double>(path.levels.back()))
+                   : at(static_cast<double>(path.first), static_cast<double>(path.levels.front()));
     }
 
     /// Whether the side on which a path ends lies within the shown part.
@@ -211,7 +246,8 @@ class SliceDrawer {
         const Point arc[]{a, {reach, a.y}, {reach, b.y}, b};
         const bool caught = turn.caught_by != CaughtBy::none;
         const Colour colour = caught ? from.colour : uncaught_ink;
-        m_canvas.curve(arc, {.colour = mix(colour, {0, 0, 0}, 0.45), .width = path_width + 1.6,
+        m_canvas.curve(arc, {.colour = mix(colour, {0, 0, 0}, 0.45),
+                             .width = path_width + 1.6,
                              .dash = caught ? std::vector<double>{} : std::vector<double>{3, 8}});
         if (caught) m_canvas.curve(arc, {.colour = colour, .width = path_width});
         const Point middle{(a.x + b.x + 6 * reach) / 8, (a.y + b.y) / 2};
@@ -219,7 +255,8 @@ class SliceDrawer {
         m_canvas.arrow_head({middle.x, middle.y + down * 7}, {0, down}, 14, mix(colour, {0, 0, 0}, 0.62));
     }
 
-    /// A turn whose other pick lies in another row: the yarn leaves the slice, with the number of where it goes or comes from.
+    /// A turn whose other pick lies in another row: the yarn leaves the slice, with the number of where it
+    /// goes or comes from.
     void draw_way_out(const Turn& turn, const SlicePath& path, bool leaves) {
         if (!is_shown(turn)) return;
         const Point a = end_of(path, turn.side);
@@ -229,7 +266,10 @@ class SliceDrawer {
         if (leaves) m_canvas.arrow_head({a.x + out * 32, a.y}, {out, 0}, 9, mix(path.colour, {0, 0, 0}, 0.5));
         const std::size_t other = (leaves ? turn.to_pick : turn.from_pick) + 1;
         m_canvas.text({a.x + out * 35, a.y}, (leaves ? "to " : "from ") + std::to_string(other),
-                      {.size = 10, .colour = faint_ink, .anchor = out > 0 ? Anchor::start : Anchor::end, .centred = true});
+                      {.size = 10,
+                       .colour = faint_ink,
+                       .anchor = out > 0 ? Anchor::start : Anchor::end,
+                       .centred = true});
     }
 
     Canvas& m_canvas;
@@ -249,24 +289,32 @@ PageText slice_words(const Subject& subject, const SliceMap& map, const WeftRuns
     const bool warps_run = map.dots == System::weft;
     const std::string place = std::to_string(line + 1);
     PageText text = words_of(
-        subject, warps_run ? "warp slice, column " + place + ": " + range("end", "ends", block.first_end(line), block.first_end(line + 1))
-                           : "weft slice, row " + place + ": " + range("pick", "picks", block.first_pick(line), block.first_pick(line + 1)) +
+        subject, warps_run ? "warp slice, column " + place + ": " +
+                                 range("end", "ends", block.first_end(line), block.first_end(line + 1))
+                           : "weft slice, row " + place + ": " +
+                                 range("pick", "picks", block.first_pick(line), block.first_pick(line + 1)) +
                                  (runs.wraparound() ? ", wraparound" : ", periodic"));
     if (map.positions < map.all_positions || map.levels < map.all_levels) {
-        text.notes.push_back("Shown: the first " + std::to_string(map.positions) + " of " + std::to_string(map.all_positions) +
-                             (warps_run ? " rows" : " columns") + ", the lowest " + std::to_string(map.levels) + " of " +
+        text.notes.push_back("Shown: the first " + std::to_string(map.positions) + " of " +
+                             std::to_string(map.all_positions) + (warps_run ? " rows" : " columns") +
+                             ", the lowest " + std::to_string(map.levels) + " of " +
                              std::to_string(map.all_levels) + " levels.");
     }
-    text.notes.push_back(warps_run ? "Dots: wefts with their pick numbers. Lines: warps with their end numbers."
-                                   : "Dots: warps with their end numbers. Lines: wefts with their pick numbers; arrows show the way of the shuttle.");
-    const auto loose = [](const SlicePath& path) { return std::ranges::find(path.loose, true) != path.loose.end(); };
+    text.notes.push_back(warps_run
+                             ? "Dots: wefts with their pick numbers. Lines: warps with their end numbers."
+                             : "Dots: warps with their end numbers. Lines: wefts with their pick numbers; "
+                               "arrows show the way of the shuttle.");
+    const auto loose = [](const SlicePath& path) {
+        return std::ranges::find(path.loose, true) != path.loose.end();
+    };
     if (subject.request.trim) {
         text.notes.emplace_back("Trimmed: yarns that are loose on purpose are left out.");
     } else if (std::ranges::any_of(map.paths, loose) || std::ranges::any_of(map.dot_list, &SliceDot::loose)) {
         text.notes.emplace_back("Dotted: loose on purpose.");
     }
     const auto uncaught = [](const Turn& turn) { return turn.caught_by == CaughtBy::none; };
-    if (!warps_run && std::ranges::any_of(runs.turns(), uncaught)) text.notes.emplace_back("Black dotted turns are not caught.");
+    if (!warps_run && std::ranges::any_of(runs.turns(), uncaught))
+        text.notes.emplace_back("Black dotted turns are not caught.");
     return text;
 }
 
@@ -276,8 +324,10 @@ Result<std::string> draw_slice(const Subject& subject) {
     const YarnColours colours(subject);
     const WeftRuns runs(subject, colours);
     const SliceMap map = slice_map(subject, colours, runs);
-    const Point origin = slice_point(map, 0, 0), far = slice_point(map, static_cast<double>(map.positions), static_cast<double>(map.levels));
-    WEAVE_TRY(Page page, Page::open(subject.format, slice_words(subject, map, runs), far.x + 40 - Page::margin, origin.y - Page::body_top + 58));
+    const Point origin = slice_point(map, 0, 0),
+                far = slice_point(map, static_cast<double>(map.positions), static_cast<double>(map.levels));
+    WEAVE_TRY(Page page, Page::open(subject.format, slice_words(subject, map, runs),
+                                    far.x + 40 - Page::margin, origin.y - Page::body_top + 58));
     SliceDrawer(page.canvas, map, runs, subject.request.trim).draw();
     return std::move(page.canvas).finish();
 }

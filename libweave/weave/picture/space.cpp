@@ -26,7 +26,8 @@ Point Viewpoint::on_screen(Place place) const {
     const double right = place.y * std::cos(turn) + place.x * std::sin(turn);
     const double away = place.x * std::cos(turn) - place.y * std::sin(turn);
     const double height = place.z * m_level;
-    return {m_origin.x + m_scale * right, m_origin.y - m_scale * (away * std::sin(tilt) + height * std::cos(tilt))};
+    return {m_origin.x + m_scale * right,
+            m_origin.y - m_scale * (away * std::sin(tilt) + height * std::cos(tilt))};
 }
 
 double Viewpoint::distance(Place place) const {
@@ -41,13 +42,17 @@ void draw_tubes(Canvas& canvas, const Viewpoint& view, std::vector<Tube> tubes) 
         std::vector<Point> points;
         for (const Place place : tube.places) points.push_back(view.on_screen(place));
         const double width = 2 * tube.radius;
-        canvas.polyline(points, {.colour = mix(tube.colour, {0, 0, 0}, 0.62), .width = width + 2, .round = false});
+        canvas.polyline(points,
+                        {.colour = mix(tube.colour, {0, 0, 0}, 0.62), .width = width + 2, .round = false});
         points = lengthened(std::move(points), 0.7);
-        canvas.polyline(points, {.colour = mix(tube.colour, {0, 0, 0}, 0.18), .width = width, .round = false});
+        canvas.polyline(points,
+                        {.colour = mix(tube.colour, {0, 0, 0}, 0.18), .width = width, .round = false});
         for (Point& point : points) point.y -= tube.radius * 0.18;
         canvas.polyline(points, {.colour = tube.colour, .width = width * 0.62, .round = false});
         for (Point& point : points) point.y -= tube.radius * 0.14;
-        canvas.polyline(points, {.colour = mix(tube.colour, {0xff, 0xff, 0xff}, 0.42), .width = width * 0.24, .round = false});
+        canvas.polyline(
+            points,
+            {.colour = mix(tube.colour, {0xff, 0xff, 0xff}, 0.42), .width = width * 0.24, .round = false});
     }
 }
 

@@ -1,8 +1,8 @@
 #pragma once
 
-#include <vector>
-
 #include <weave/picture/canvas.hpp>
+
+#include <vector>
 
 namespace weave {
 
@@ -11,7 +11,8 @@ struct Place {
     double x = 0, y = 0, z = 0;
 };
 
-/// Looks at a block from the front left and above, without perspective: x runs to the back right, y to the front right.
+/// Looks at a block from the front left and above, without perspective: x runs to the back right, y to the
+/// front right.
 class Viewpoint {
   public:
     /// Pixels of one stack, and the share of it that one level is high.
@@ -30,8 +31,8 @@ class Viewpoint {
 struct Tube {
     std::vector<Place> places;  ///< two or more
     Colour colour;
-    double radius = 6;          ///< pixels
-    double distance = 0;        ///< set by draw_tubes
+    double radius = 6;    ///< pixels
+    double distance = 0;  ///< set by draw_tubes
 };
 
 /// Draws tubes with nearer ones over farther ones, with dark rims and a light along the top.

@@ -1,9 +1,9 @@
-#include <algorithm>
-#include <array>
-
 #include <weave/picture/grid.hpp>
 #include <weave/picture/look.hpp>
 #include <weave/picture/views.hpp>
+
+#include <algorithm>
+#include <array>
 
 namespace weave {
 
@@ -36,16 +36,19 @@ void draw_flat(Canvas& canvas, const Surface& surface, const Grid& grid) {
         const std::size_t row = grid.row_at(y);
         for (std::size_t x = 0; x < pixels.size(); x += grid.cell) {
             const std::size_t column = grid.column_at(x);
-            const std::uint32_t pixel = grid.step == 1 ? pixel_at(surface, row, column) : mean_pixel(surface, grid, row, column);
+            const std::uint32_t pixel =
+                grid.step == 1 ? pixel_at(surface, row, column) : mean_pixel(surface, grid, row, column);
             std::fill_n(pixels.begin() + static_cast<std::ptrdiff_t>(x), grid.cell, pixel);
         }
     };
-    canvas.pixels(static_cast<std::size_t>(grid.corner.x), static_cast<std::size_t>(grid.corner.y), grid.width(),
-                  grid.height(), fill);
+    canvas.pixels(static_cast<std::size_t>(grid.corner.x), static_cast<std::size_t>(grid.corner.y),
+                  grid.width(), grid.height(), fill);
 }
 
-/// One float: the places along its yarn where it lies on top, drawn as one rounded piece that dips under at both ends.
-void draw_float(Canvas& canvas, const Grid& grid, const Rectangle& first, const Rectangle& last, bool along_x, Colour colour) {
+/// One float: the places along its yarn where it lies on top, drawn as one rounded piece that dips under at
+/// both ends.
+void draw_float(Canvas& canvas, const Grid& grid, const Rectangle& first, const Rectangle& last, bool along_x,
+                Colour colour) {
     const auto side = static_cast<double>(grid.cell);
     const double rim = std::max(0.5, side * 0.07), dip = rim * 1.6;
     Rectangle place{std::min(first.x, last.x), std::min(first.y, last.y), std::abs(first.x - last.x) + side,
@@ -59,7 +62,8 @@ void draw_float(Canvas& canvas, const Grid& grid, const Rectangle& first, const 
 }
 
 void draw_yarns(Canvas& canvas, const Surface& surface, const Grid& grid) {
-    const Rectangle all{grid.corner.x, grid.corner.y, static_cast<double>(grid.width()), static_cast<double>(grid.height())};
+    const Rectangle all{grid.corner.x, grid.corner.y, static_cast<double>(grid.width()),
+                        static_cast<double>(grid.height())};
     canvas.clip(all);
     canvas.rectangle(all, gap);
     for (std::size_t row = 0; row < grid.rows; ++row) {
@@ -68,8 +72,10 @@ void draw_yarns(Canvas& canvas, const Surface& surface, const Grid& grid) {
             std::size_t after = column + 1;
             if (yarn.is_weft()) {
                 while (after < grid.columns && surface.at(row, after).is_weft() &&
-                       surface.at(row, after).index() == yarn.index()) ++after;
-                draw_float(canvas, grid, grid.box(row, column), grid.box(row, after - 1), true, *surface.colour(row, column));
+                       surface.at(row, after).index() == yarn.index())
+                    ++after;
+                draw_float(canvas, grid, grid.box(row, column), grid.box(row, after - 1), true,
+                           *surface.colour(row, column));
             }
             column = after;
         }
@@ -80,8 +86,10 @@ void draw_yarns(Canvas& canvas, const Surface& surface, const Grid& grid) {
             std::size_t after = row + 1;
             if (yarn.is_warp()) {
                 while (after < grid.rows && surface.at(after, column).is_warp() &&
-                       surface.at(after, column).index() == yarn.index()) ++after;
-                draw_float(canvas, grid, grid.box(row, column), grid.box(after - 1, column), false, *surface.colour(row, column));
+                       surface.at(after, column).index() == yarn.index())
+                    ++after;
+                draw_float(canvas, grid, grid.box(row, column), grid.box(after - 1, column), false,
+                           *surface.colour(row, column));
             }
             row = after;
         }
@@ -122,16 +130,19 @@ Result<std::string> draw_surface(const Subject& subject) {
     const YarnColours colours(subject);
     const Surface surface(subject.block, colours, back, subject.request.trim);
     const Grid grid = face_grid(subject.block, back);
-    PageText text = words_of(subject, back ? "back, colour and weave, seen from behind (left and right change places)"
-                                           : "face, colour and weave");
+    PageText text =
+        words_of(subject, back ? "back, colour and weave, seen from behind (left and right change places)"
+                               : "face, colour and weave");
     text.legend = colours_of(surface, grid);
     text.notes = scale_notes(grid, "in their mean colour");
     if (subject.block.height() > 2) {
-        text.notes.push_back(std::string("Each place shows the ") + (back ? "lowest" : "topmost") + " yarn of its stack.");
+        text.notes.push_back(std::string("Each place shows the ") + (back ? "lowest" : "topmost") +
+                             " yarn of its stack.");
     }
     if (subject.request.trim) text.notes.push_back("Trimmed: yarns that are loose on purpose are left out.");
-    WEAVE_TRY(Page page, Page::open(subject.format, text, grid_left + static_cast<double>(grid.width()) + grid_right,
-                                    grid_top + static_cast<double>(grid.height()) + grid_bottom));
+    WEAVE_TRY(Page page,
+              Page::open(subject.format, text, grid_left + static_cast<double>(grid.width()) + grid_right,
+                         grid_top + static_cast<double>(grid.height()) + grid_bottom));
     if (grid.cell >= yarn_look) {
         draw_yarns(page.canvas, surface, grid);
     } else {

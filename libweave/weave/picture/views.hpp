@@ -1,8 +1,8 @@
 #pragma once
 
-#include <string>
-
 #include <weave/picture/page.hpp>
+
+#include <string>
 
 namespace weave {
 

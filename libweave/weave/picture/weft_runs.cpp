@@ -18,9 +18,12 @@ WeftRuns::WeftRuns(const Subject& subject, const YarnColours& colours)
     for (const PickSpan& span : m_way.spans) {
         if (span.pick >= m_runs.size()) continue;
         Run& run = m_runs[span.pick];
-        const std::size_t first = span.crossed ? 0 : m_block.column_of_end(std::min(span.first, m_block.ends() - 1));
-        const std::size_t end = span.crossed ? last : m_block.column_of_end(std::min(span.last, m_block.ends() - 1));
-        run.first = met[span.pick] ? std::min(run.first, first) : first;  // two feeders in one pick: both together
+        const std::size_t first =
+            span.crossed ? 0 : m_block.column_of_end(std::min(span.first, m_block.ends() - 1));
+        const std::size_t end =
+            span.crossed ? last : m_block.column_of_end(std::min(span.last, m_block.ends() - 1));
+        run.first =
+            met[span.pick] ? std::min(run.first, first) : first;  // two feeders in one pick: both together
         run.last = met[span.pick] ? std::max(run.last, end) : end;
         met[span.pick] = true;
     }

@@ -1,10 +1,10 @@
 #pragma once
 
-#include <cstddef>
-#include <vector>
-
 #include <weave/loom/weft_way.hpp>
 #include <weave/picture/look.hpp>
+
+#include <cstddef>
+#include <vector>
 
 namespace weave {
 
@@ -21,7 +21,8 @@ class WeftRuns {
     [[nodiscard]] const Run& of_pick(std::size_t pick) const { return m_runs[pick]; }
     [[nodiscard]] bool wraparound() const { return m_wraparound; }
     [[nodiscard]] const std::vector<Turn>& turns() const { return m_way.turns; }
-    /// The column round whose end (or at which) a turn lies; at the edge of the cloth where nothing catches it.
+    /// The column round whose end (or at which) a turn lies; at the edge of the cloth where nothing catches
+    /// it.
     [[nodiscard]] std::size_t column_of(const Turn& turn) const;
 
   private:

@@ -46,10 +46,11 @@ Stack baby_shoe(std::size_t, std::size_t j) {
 /// Outside the shoe the wefts lie loose between the loose ends: the turns pull them in to the edge.
 Stack baby_outside(std::size_t wefts) { return cell(wefts, {loose_at(0), loose_at(wefts)}, lowest(wefts)); }
 
-/// At the tips both layers are woven as one.
+/// At the tips both layers are woven as one: both ends bind all four wefts, and no two wefts share a shed, or the turn
+/// between them would pull out.
 Stack baby_seam(std::size_t, std::size_t j) {
-    const Below even = 0b0011U, odd = 0b1100U;
-    return cell(4, {End{j % 2 == 0 ? even : odd}, End{j % 2 == 0 ? odd : even}});
+    if (j % 2 == 0) return cell(4, {End{0b0011U}, End{0b0111U}});
+    return cell(4, {End{0b1000U}, End{0b1010U}});
 }
 
 /// The middle where the top end weaves with wefts `first` and `second`; the other half's top wefts lie idle inside the shoe.

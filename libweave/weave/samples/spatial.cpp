@@ -1,3 +1,4 @@
+#include <algorithm>
 #include <array>
 
 #include <weave/samples/build.hpp>
@@ -64,8 +65,12 @@ constexpr std::size_t tl013_rows = 16, tl013_columns = 8, zigzag_end = 2, upper_
 constexpr std::array<std::size_t, 8> leaning_zigzag{1, 2, 4, 4, 5, 3, 3, 2};
 constexpr std::array<std::size_t, 8> upright_zigzag{1, 2, 3, 4, 5, 4, 3, 2};
 
-/// Every other end starts half a zigzag later, so that the ends cross like the struts of a girder.
-constexpr std::size_t zigzag_step(std::size_t row, std::size_t column) { return (row + 4 * (column % 2)) % 8; }
+/// Neighbouring ends are half a zigzag apart, so that they cross like the struts of a girder, and each pair starts an eighth
+/// later, so that in every row some end keeps the wefts of the two sections apart.
+constexpr std::size_t zigzag_step(std::size_t row, std::size_t column) {
+    constexpr std::array<std::size_t, 8> start{0, 4, 1, 5, 2, 6, 3, 7};
+    return (row + start[column % 8]) % 8;
+}
 
 Stack tl013_stack(std::size_t i, std::size_t j) {
     const bool up = (i + j) % 2 == 0;
@@ -127,10 +132,11 @@ Stack pocket_stack(std::size_t i, std::size_t j) {
     return cell(2, {at((j + 5 - i) % 5 == 0 ? 1 : 0), at(satin < 2 ? 1 : 2)});
 }
 
-/// Every end goes over both wefts or under both, so the seam is one cloth.
+/// The back ends go over both wefts and under both, so the seam is one cloth; the front ends keep the two picks of a row in
+/// different sheds, or the turn between them would not be caught.
 Stack seam_stack(std::size_t i, std::size_t j) {
-    const bool up = (i + j) % 2 == 0;
-    return cell(2, {at(up ? 0 : 2), at(up ? 2 : 0)});
+    static constexpr std::array<std::size_t, 4> front{1, 2, 0, 2};
+    return cell(2, {at((i + j) % 2 == 0 ? 2 : 0), at(front[(i + j) % 4])});
 }
 
 }  // namespace
@@ -166,37 +172,32 @@ Design pocket() {
 
 namespace {
 
-/// Ten wefts a row: 0 to 2 the bottom flange, 3 to 6 the web, 7 to 9 the top flange. Eleven ends a column: four bind the
-/// bottom flange, three stand in the height of the web, four bind the top flange.
+/// Ten wefts a row: 0 to 2 the bottom flange, 3 to 6 the web, 7 to 9 the top flange. Thirteen ends a column: four bind the
+/// bottom flange, five stand in the height of the web, four bind the top flange. All is woven layer to layer.
 constexpr std::size_t beam_wefts = 10, flange_wefts = 3, top_flange = 7;
+constexpr std::size_t flange_ends = 4, web_ends = 5, beam_ends = 2 * flange_ends + web_ends;
 
-std::array<End, 11> flange_ends(std::size_t i, std::size_t j) {
-    // Layer to layer: end k binds levels k - 1 and k of its flange.
-    const auto height = [&](std::size_t k) {
-        return (i + j) % 2 == 0 ? std::min(k + 1, flange_wefts) : std::max<std::size_t>(k, 1) - 1;
-    };
-    std::array<End, 11> ends;
-    for (std::size_t k = 0; k < 4; ++k) {
-        ends[k] = at(height(k));
-        ends[7 + k] = at(top_flange + height(k));
+std::array<End, beam_ends> beam_column(std::size_t i, std::size_t j) {
+    const bool up = (i + j) % 2 == 0;
+    std::array<End, beam_ends> ends;
+    for (std::size_t k = 0; k < flange_ends; ++k) {
+        const std::size_t height = up ? std::min(k + 1, flange_wefts) : std::max<std::size_t>(k, 1) - 1;
+        ends[k] = at(height);
+        ends[flange_ends + web_ends + k] = at(top_flange + height);
     }
+    // The outermost ends of the web take in the inmost weft of a flange each. Whichever way the ends stand, one of every
+    // column lies between any two wefts of the web, so each turn of its shuttle is caught by the first column it meets.
+    for (std::size_t k = 0; k < web_ends; ++k) ends[flange_ends + k] = at(flange_wefts + k + (up ? 1 : 0) - (up ? 0 : 1));
     return ends;
 }
 
+Stack web_stack(std::size_t i, std::size_t j) { return cell(beam_wefts, beam_column(i, j)); }
+
 /// Beside the web all web picks lie between the flanges, under the same placeholder ends, so that nothing holds them there.
 Stack flange_stack(std::size_t i, std::size_t j) {
-    std::array<End, 11> ends = flange_ends(i, j);
-    for (std::size_t k = 4; k < 7; ++k) ends[k] = loose_at(top_flange);
+    std::array<End, beam_ends> ends = beam_column(i, j);
+    for (std::size_t k = 0; k < web_ends; ++k) ends[flange_ends + k] = loose_at(top_flange);
     return cell(beam_wefts, ends, lowest(top_flange) & ~lowest(flange_wefts));
-}
-
-/// In the web the ends of the middle go on a slant from under the top weft of the bottom flange to over the bottom weft of the
-/// top flange. With twelve ends in twelve different steps each height has its end in every row: every turn is caught.
-Stack web_stack(std::size_t i, std::size_t j) {
-    static constexpr std::array<std::size_t, 12> height{2, 3, 4, 5, 6, 7, 8, 7, 6, 5, 4, 3};
-    std::array<End, 11> ends = flange_ends(i, j);
-    for (std::size_t k = 0; k < 3; ++k) ends[4 + k] = at(height[(i + 3 * j + 4 * k) % 12]);
-    return cell(beam_wefts, ends);
 }
 
 }  // namespace
@@ -211,23 +212,27 @@ Design i_beam() {
                           yarn("carbon warp", "#e08a2c", 0.25, 200, 26000, 1.5),
                           yarn("carbon weft", "#8f959b", 0.25, 200, 26000, 1.5));
     design.warp.beams = {{"flanges"}, {"web"}};
-    design.warp.beam_order.once = {0, 0, 0, 0, 1, 1, 1, 0, 0, 0, 0};
+    design.warp.beam_order.once = {0, 0, 0, 0, 1, 1, 1, 1, 1, 0, 0, 0, 0};
     design.warp.colours = {colour("#7d3c98")};
     design.warp.density_ends_per_cm = 40;
-    design.warp.ends_per_dent = 11;
+    design.warp.ends_per_dent = 13;
     design.weft.density_picks_per_cm = 4;
     design.weft.feeders = {{"bottom flange", 0}, {"web", 0}, {"top flange", 0}};
     design.weft.feeder_order = {{0}, {0}, {0}, {1}, {1}, {1}, {1}, {2}, {2}, {2}};
-    add(design, "flange-repeat", stacks(2, 2, 10, 11, flange_stack));
-    add(design, "web", stacks(12, 4, 10, 11, web_stack));
-    add(design, "flanges", tiled("flange-repeat", 6, 4));
+    add(design, "flange-repeat", stacks(2, 2, beam_wefts, beam_ends, flange_stack));
+    add(design, "web-repeat", stacks(2, 2, beam_wefts, beam_ends, web_stack));
+    add(design, "web", tiled("web-repeat", 2, 2));
+    add(design, "flanges", tiled("flange-repeat", 2, 4));
     add(design, "left-half", attached("flanges", "web", Face::plus_y));
     add(design, "beam", attached("left-half", "flanges", Face::plus_y));
     std::vector<std::uint32_t>& colours = design.warp.colour_order.once;
     colours.clear();
     for (std::size_t column = 0; column < 20; ++column) {
         const bool web = column >= 8 && column < 12;
-        for (std::size_t end = 0; end < 11; ++end) colours.push_back(!web && end >= 4 && end < 7 ? 1 : 0);
+        for (std::size_t end = 0; end < beam_ends; ++end) {
+            const bool placeholder = !web && end >= flange_ends && end < flange_ends + web_ends;
+            colours.push_back(placeholder ? 1 : 0);
+        }
     }
     design.scene.weft_mode = WeftMode::wraparound;
     design.scene.boundary_y = Boundary::free;

@@ -1,0 +1,144 @@
+#include <weave/io/bitmap.hpp>
+#include <weave/io/raster.hpp>
+
+#include <algorithm>
+#include <cctype>
+
+namespace weave {
+
+namespace {
+
+constexpr Colour black{0, 0, 0}, white{255, 255, 255};
+
+std::string reading_text(const BitmapReading& reading) {
+    return std::string("weave card image; pick 1 = ") + (reading.pick_1_at_bottom ? "bottom" : "top") +
+           " row; end 1 = " + (reading.end_1_at_left ? "left" : "right") +
+           " column; lifted end = " + (reading.black_is_lifted ? "black" : "white") + "; seen from the face";
+}
+
+/// Fills one packed row of the picture, 1 = white, from the pick that it shows.
+void fill_row(const CardImage& card, const BitmapReading& reading, std::size_t row_from_top,
+              std::span<std::uint8_t> packed) {
+    const std::size_t pick = reading.pick_1_at_bottom ? card.picks() - 1 - row_from_top : row_from_top;
+    const auto bits = card.row(pick);
+    if (reading.end_1_at_left) {
+        std::copy(bits.begin(), bits.end(), packed.begin());
+    } else {
+        std::fill(packed.begin(), packed.end(), std::uint8_t{0});
+        for (std::size_t end = 0; end < card.ends(); ++end) {
+            const std::size_t x = card.ends() - 1 - end;
+            if (card.weft_over(pick, end)) packed[x / 8] |= static_cast<std::uint8_t>(0x80 >> x % 8);
+        }
+    }
+    if (reading.black_is_lifted) return;
+    for (std::uint8_t& byte : packed) byte = static_cast<std::uint8_t>(~byte);
+    const std::size_t padding = packed.size() * 8 - card.ends();
+    packed.back() &= static_cast<std::uint8_t>(0xff << padding);
+}
+
+/// Puts one row of a picture into the card; an error at the first pixel that is neither black nor white.
+Status take_row(CardImage& card, const BitmapReading& reading, std::size_t row_from_top,
+                std::span<const Colour> pixels) {
+    const std::size_t pick = reading.pick_1_at_bottom ? card.picks() - 1 - row_from_top : row_from_top;
+    const auto row = card.row(pick);
+    for (std::size_t x = 0; x < pixels.size(); ++x) {
+        const bool is_white = pixels[x] == white;
+        if (!is_white && pixels[x] != black) {
+            return bad_input("a card image is black and white only, but the pixel in column " +
+                             std::to_string(x + 1) + " from the left and row " +
+                             std::to_string(row_from_top + 1) + " from the top is " + to_text(pixels[x]));
+        }
+        if (is_white != reading.black_is_lifted) continue;
+        const std::size_t end = reading.end_1_at_left ? x : card.ends() - 1 - x;
+        row[end / 8] |= static_cast<std::uint8_t>(0x80 >> end % 8);
+    }
+    return {};
+}
+
+bool starts_with(std::string_view bytes, std::string_view magic) {
+    return bytes.substr(0, magic.size()) == magic;
+}
+
+Status decode(std::string_view bytes, RasterSink& sink) {
+    if (starts_with(bytes, "\x89PNG\r\n\x1a\n")) return decode_png(bytes, sink);
+    if (starts_with(bytes, std::string_view("II*\0", 4)) ||
+        starts_with(bytes, std::string_view("MM\0*", 4))) {
+        return decode_tiff(bytes, sink);
+    }
+    if (starts_with(bytes, "BM")) return decode_bmp(bytes, sink);
+    return bad_input("is neither a PNG, a TIFF nor a BMP picture");
+}
+
+}  // namespace
+
+Result<BitmapFormat> bitmap_format_of(const std::filesystem::path& path) {
+    std::string extension = path.extension().string();
+    std::transform(extension.begin(), extension.end(), extension.begin(),
+                   [](unsigned char c) { return static_cast<char>(std::tolower(c)); });
+    if (extension == ".png") return BitmapFormat::png;
+    if (extension == ".tif" || extension == ".tiff") return BitmapFormat::tiff;
+    if (extension == ".bmp") return BitmapFormat::bmp;
+    return Error{ErrorCode::usage, "a card image's name ends in .png, .tif, .tiff or .bmp", path.string()};
+}
+
+Result<std::string> write_bitmap(const CardImage& card, BitmapFormat format, const BitmapReading& reading) {
+    WEAVE_CHECK_OK(check_card_size(card.picks(), card.ends()));
+    const BilevelRaster raster{
+        card.ends(), card.picks(),
+        [&](std::size_t row, std::span<std::uint8_t> packed) { fill_row(card, reading, row, packed); },
+        reading_text(reading)};
+    switch (format) {
+        case BitmapFormat::png:
+            return encode_png(raster);
+        case BitmapFormat::tiff:
+            return encode_tiff(raster);
+        case BitmapFormat::bmp:
+            return encode_bmp(raster);
+    }
+    return bad_input("is not a bitmap format");
+}
+
+Result<CardFromBitmap> read_bitmap(std::string_view bytes, const BitmapReading& reading) {
+    CardFromBitmap read;
+    RasterSink sink;
+    sink.start = [&](std::size_t width, std::size_t height) -> Status {
+        WEAVE_CHECK_OK(check_card_size(height, width));
+        read.card = CardImage(height, width);
+        return {};
+    };
+    sink.row = [&](std::size_t row, std::span<const Colour> pixels) {
+        return take_row(read.card, reading, row, pixels);
+    };
+    WEAVE_CHECK_OK(decode(bytes, sink));
+    read.warnings = std::move(sink.warnings);
+    if (!sink.reading.empty() && sink.reading != reading_text(reading)) {
+        read.warnings.push_back("the file says '" + sink.reading + "', but is read as '" +
+                                reading_text(reading) + "'");
+    }
+    return read;
+}
+
+Result<ColourImage> read_colour_image(std::string_view bytes) {
+    ColourImage image;
+    RasterSink sink;
+    sink.start = [&](std::size_t width, std::size_t height) -> Status {
+        WEAVE_CHECK_OK(check_card_size(height, width));
+        image.rows = height, image.columns = width;
+        return {};
+    };
+    // Memory grows with the rows that really come: a few bytes may claim a huge picture.
+    sink.row = [&](std::size_t, std::span<const Colour> pixels) -> Status {
+        image.pixels.insert(image.pixels.end(), pixels.begin(), pixels.end());
+        return {};
+    };
+    WEAVE_CHECK_OK(decode(bytes, sink));
+    for (std::size_t low = 0, high = image.rows - 1; low < high; ++low, --high) {
+        const auto row = [&](std::size_t i) {
+            return image.pixels.begin() + static_cast<std::ptrdiff_t>(i * image.columns);
+        };
+        std::swap_ranges(row(low), row(low + 1), row(high));
+    }
+    return image;
+}
+
+}  // namespace weave

@@ -1,0 +1,208 @@
+#include <weave/io/bitmap.hpp>
+
+#include <catch2/catch.hpp>
+
+#include <support/random.hpp>
+
+using namespace weave;
+using weave::testing::for_all;
+using weave::testing::Random;
+
+namespace {
+
+CardImage random_card(Random& random, std::size_t most = 40) {
+    CardImage card(random.between(1, most), random.between(1, most));
+    for (std::size_t pick = 0; pick < card.picks(); ++pick) {
+        for (std::size_t end = 0; end < card.ends(); ++end) card.set(pick, end, random.coin());
+    }
+    return card;
+}
+
+constexpr BitmapFormat formats[] = {BitmapFormat::png, BitmapFormat::tiff, BitmapFormat::bmp};
+
+unsigned byte_at(const std::string& bytes, std::size_t at) {
+    return static_cast<unsigned char>(bytes[at]);
+}
+
+std::size_t little(const std::string& bytes, std::size_t at, std::size_t count) {
+    std::size_t value = 0;
+    for (std::size_t k = 0; k < count; ++k) value |= std::size_t{byte_at(bytes, at + k)} << 8 * k;
+    return value;
+}
+
+/// Value of a tag in the first directory of a little-endian TIFF with short or long values.
+std::size_t tiff_tag(const std::string& bytes, std::size_t tag) {
+    const std::size_t directory = little(bytes, 4, 4);
+    for (std::size_t k = 0; k < little(bytes, directory, 2); ++k) {
+        const std::size_t entry = directory + 2 + 12 * k;
+        if (little(bytes, entry, 2) == tag)
+            return little(bytes, entry + 8, little(bytes, entry + 2, 2) == 3 ? 2 : 4);
+    }
+    return 0xdead;
+}
+
+/// An L: end 1 lifted on all three picks, end 2 lifted on pick 1 only. Asymmetric in both directions.
+CardImage letter_l() {
+    CardImage card(3, 2);
+    for (std::size_t pick = 0; pick < 3; ++pick) card.set(pick, 1, true);
+    card.set(0, 1, false);
+    return card;
+}
+
+/// A BMP by hand, rows as they are stored.
+std::string bmp(int width, int height, int bits, const std::vector<Colour>& palette,
+                const std::string& rows) {
+    std::string out = "BM";
+    const auto put = [&](long value, int count) {
+        for (int k = 0; k < count; ++k) out.push_back(static_cast<char>(value >> 8 * k & 0xff));
+    };
+    put(0, 8);
+    put(54 + 4 * static_cast<long>(palette.size()), 4);
+    put(40, 4), put(width, 4), put(height, 4), put(1, 2), put(bits, 2), put(0, 4), put(0, 4), put(0, 8);
+    put(static_cast<long>(palette.size()), 4), put(0, 4);
+    for (const Colour c : palette) put(c.blue | c.green << 8 | c.red << 16, 4);
+    return out + rows;
+}
+
+}  // namespace
+
+TEST_CASE("a card survives every format in every reading, bit for bit") {
+    for_all([](Random& random) {
+        const CardImage card = random_card(random);
+        const BitmapReading reading{random.coin(), random.coin(), random.coin()};
+        const BitmapFormat format = formats[random.between(0, 2)];
+        const Result<std::string> bytes = write_bitmap(card, format, reading);
+        REQUIRE(bytes);
+        const Result<CardFromBitmap> back = read_bitmap(*bytes, reading);
+        REQUIRE(back);
+        REQUIRE(back->card == card);
+        REQUIRE(back->warnings.empty());
+    });
+}
+
+TEST_CASE("the default reading: bottom row is pick 1, left column end 1, black a lifted end") {
+    for (const BitmapFormat format : formats) {
+        const Result<ColourImage> image = read_colour_image(*write_bitmap(letter_l(), format));
+        REQUIRE(image);
+        REQUIRE(image->rows == 3);
+        REQUIRE(image->columns == 2);
+        const Colour black{0, 0, 0}, white{255, 255, 255};
+        const std::vector<Colour> expected{black, black, black,
+                                           white, black, white};  // from the bottom row up
+        CHECK(image->pixels == expected);
+    }
+}
+
+TEST_CASE("a TIFF is of the kind that a TC2 takes") {
+    CardImage card(2394, 1320);
+    card.set(0, 0, true);
+    const std::string bytes = *write_bitmap(card, BitmapFormat::tiff);
+    CHECK(bytes.substr(0, 4) == std::string("II*\0", 4));
+    CHECK(tiff_tag(bytes, 256) == 1320);
+    CHECK(tiff_tag(bytes, 257) == 2394);
+    CHECK(tiff_tag(bytes, 258) == 1);     // BitsPerSample
+    CHECK(tiff_tag(bytes, 259) == 1);     // no compression
+    CHECK(tiff_tag(bytes, 262) == 0);     // WhiteIsZero
+    CHECK(tiff_tag(bytes, 274) == 1);     // Orientation
+    CHECK(tiff_tag(bytes, 277) == 1);     // SamplesPerPixel
+    CHECK(tiff_tag(bytes, 278) == 2394);  // one strip
+    CHECK(tiff_tag(bytes, 279) == 165 * 2394);
+    const std::size_t strip = tiff_tag(bytes, 273);
+    CHECK(byte_at(bytes, strip) == 0xff);               // top row: last pick, all lifted, 1 = black
+    CHECK(byte_at(bytes, strip + 165 * 2393) == 0x7f);  // bottom row: pick 1, end 1 down
+}
+
+TEST_CASE(
+    "a BMP is one bit, uncompressed, its pixels at byte 62, palette black then white, bottom row first") {
+    const std::string bytes = *write_bitmap(letter_l(), BitmapFormat::bmp);
+    CHECK(bytes.substr(0, 2) == "BM");
+    CHECK(little(bytes, 2, 4) == bytes.size());
+    CHECK(little(bytes, 10, 4) == 62);
+    CHECK(little(bytes, 18, 4) == 2);
+    CHECK(little(bytes, 22, 4) == 3);
+    CHECK(little(bytes, 28, 2) == 1);
+    CHECK(little(bytes, 30, 4) == 0);
+    CHECK(little(bytes, 54, 4) == 0);
+    CHECK(little(bytes, 58, 4) == 0x00ffffff);
+    REQUIRE(bytes.size() == 62 + 3 * 4);
+    CHECK(byte_at(bytes, 62) == 0x00);  // pick 1: both ends lifted
+    CHECK(byte_at(bytes, 66) == 0x40);  // pick 2: end 2 down
+}
+
+TEST_CASE("a file that says how it is to be read warns when it is read otherwise") {
+    for (const BitmapFormat format : {BitmapFormat::png, BitmapFormat::tiff}) {
+        const std::string bytes = *write_bitmap(letter_l(), format, {true, true, false});
+        const Result<CardFromBitmap> back = read_bitmap(bytes);
+        REQUIRE(back);
+        REQUIRE(back->warnings.size() == 1);
+        CHECK(back->warnings[0].find("lifted end = white") != std::string::npos);
+    }
+}
+
+TEST_CASE("other programs' bilevel pictures are read: inverted palette, top-down, 24 bits, 4 bits") {
+    const Colour black{0, 0, 0}, white{255, 255, 255};
+    const std::string four(4, '\0');
+    CardImage expected(2, 2);  // pick 1 under both ends; pick 2 over end 1
+    expected.set(1, 0, true);
+    const auto card = [](const std::string& bytes) { return read_bitmap(bytes)->card; };
+    CHECK(card(bmp(2, 2, 1, {white, black}, std::string("\xc0\0\0\0\x40\0\0\0", 8))) == expected);
+    CHECK(card(bmp(2, -2, 1, {black, white}, std::string("\x80\0\0\0\0\0\0\0", 8))) == expected);
+    CHECK(card(bmp(2, 2, 4, {black, white}, std::string("\0\0\0\0\x10\0\0\0", 8))) == expected);
+    CHECK(card(bmp(2, 2, 24, {}, std::string(8, '\0') + std::string("\xff\xff\xff\0\0\0\0\0", 8))) ==
+          expected);
+}
+
+TEST_CASE("a picture that is not black and white is refused at its first other pixel") {
+    ColourImage image{2, 3, std::vector<Colour>(6, Colour{255, 255, 255})};
+    image.pixels[1] = {200, 10, 10};  // bottom row, second column
+    const Result<CardFromBitmap> read = read_bitmap(*write_png(image));
+    REQUIRE(!read);
+    CHECK(read.error().code == ErrorCode::bad_input);
+    CHECK(read.error().message.find("column 2 from the left and row 2 from the top is #c80a0a") !=
+          std::string::npos);
+}
+
+TEST_CASE("colour pictures come back as they were, row 0 at the bottom") {
+    for_all(
+        [](Random& random) {
+            ColourImage image{random.between(1, 9), random.between(1, 9), {}};
+            for (std::size_t k = 0; k < image.rows * image.columns; ++k) {
+                const auto part = [&] { return static_cast<std::uint8_t>(random.between(0, 255)); };
+                image.pixels.push_back({part(), part(), part()});
+            }
+            const Result<ColourImage> back = read_colour_image(*write_png(image));
+            REQUIRE(back);
+            REQUIRE(back->rows == image.rows);
+            REQUIRE(back->columns == image.columns);
+            REQUIRE(back->pixels == image.pixels);
+        },
+        1000);
+}
+
+TEST_CASE("damaged, foreign and oversized pictures are refused, whatever is in them") {
+    CHECK(!read_bitmap(""));
+    CHECK(!read_bitmap("GIF89a"));
+    CHECK(!read_bitmap(bmp(100000, 100000, 1, {{0, 0, 0}}, "")));  // more crossings than a card may have
+    CHECK(!read_bitmap(
+        bmp(2, 2, 1, {{0, 0, 0}}, std::string("\x40\0\0\0\0\0\0\0", 8))));  // index beyond the palette
+    CHECK(!read_bitmap(bmp(0, 2, 1, {{0, 0, 0}}, std::string(8, '\0'))));
+    CHECK(!read_bitmap(bmp(2, 2, 16, {}, std::string(16, '\0'))));
+    for_all([](Random& random) {
+        std::string bytes = *write_bitmap(random_card(random, 12), formats[random.between(0, 2)]);
+        for (std::size_t k = random.between(1, 4); k > 0; --k) {
+            bytes[random.between(0, bytes.size() - 1)] = static_cast<char>(random.between(0, 255));
+        }
+        if (random.coin()) bytes.resize(random.between(0, bytes.size()));
+        const Result<CardFromBitmap> read = read_bitmap(bytes);  // anything but a crash
+        if (read) CHECK(read->card.picks() * read->card.ends() <= most_crossings);
+        if (!read) CHECK(!read.error().message.empty());
+    });
+}
+
+TEST_CASE("the format is chosen by the name's ending") {
+    CHECK(*bitmap_format_of("a.PNG") == BitmapFormat::png);
+    CHECK(*bitmap_format_of("a.tif") == BitmapFormat::tiff);
+    CHECK(*bitmap_format_of("a.tiff") == BitmapFormat::tiff);
+    CHECK(*bitmap_format_of("b.c.bmp") == BitmapFormat::bmp);
+    CHECK(bitmap_format_of("a.jpg").error().code == ErrorCode::usage);
+}

@@ -1,0 +1,282 @@
+// Every rule of validation: a design that breaks it is found at the right place, one that keeps it is not.
+
+#include <weave/loom/check.hpp>
+
+#include <catch2/catch.hpp>
+
+#include <algorithm>
+#include <set>
+
+using namespace weave;
+
+namespace {
+
+/// One end a column; in each stack the picks that pass under the end, the end, the picks that pass over it.
+BlockPtr block_of(const std::vector<std::string>& rows, std::uint32_t t = 1) {
+    const auto stack = [&](std::size_t row, std::size_t column) {
+        std::vector<Slot> slots;
+        for (const char wanted : {'0', '1'}) {
+            if (wanted == '1') slots.push_back(Slot::warp(0));
+            for (std::size_t k = 0; k < t; ++k) {
+                if (rows[row * t + k][column] == wanted) slots.push_back(Slot::weft(k));
+            }
+        }
+        return Stack(std::move(slots));
+    };
+    std::vector<std::uint32_t> picks(rows.size() / t, t), ends(rows.front().size(), 1);
+    return std::make_shared<const Block>(make_block(std::move(picks), std::move(ends), stack).value());
+}
+
+LoomProfile loom() {
+    LoomProfile profile;
+    profile.name = "test";
+    profile.total_hooks = 40;
+    profile.body = {{0, 31}};
+    profile.selvedge = {{32, 35}};
+    profile.selvedge_weave = {"01", "10"};
+    profile.regulator_hooks = {39};
+    profile.limits = {3, 3, 0.5, 0.8, 100, 0.02, 50.0};
+    profile.density_ends_per_cm = 20;
+    return profile;
+}
+
+const std::vector<std::string> plain{"0101", "1010", "0101", "1010"};
+
+struct Case {
+    Design design;
+    LoomProfile profile = loom();
+    Evaluation cloth{block_of(plain), {}};
+    std::optional<TakeUps> take_ups;
+
+    [[nodiscard]] std::vector<Finding> of(const std::string& rule) const {
+        std::vector<Finding> found;
+        for (const Finding& f : check_for_loom(design, cloth, profile, take_ups).findings) {
+            if (f.rule == rule) found.push_back(f);
+        }
+        return found;
+    }
+    [[nodiscard]] bool passes(const std::string& rule) const {
+        const auto passed = check_for_loom(design, cloth, profile, take_ups).passed;
+        return std::find(passed.begin(), passed.end(), rule) != passed.end();
+    }
+    [[nodiscard]] bool lacks(const std::string& rule) const {
+        const auto missing = check_for_loom(design, cloth, profile, take_ups).not_evaluated;
+        return std::any_of(missing.begin(), missing.end(),
+                           [&](const auto& n) { return n.rule == rule && !n.reason.empty(); });
+    }
+    void expect_at(const std::string& rule, std::optional<std::size_t> pick,
+                   std::optional<std::size_t> end) const {
+        INFO(rule);
+        const auto found = of(rule);
+        REQUIRE(!found.empty());
+        CHECK(found[0].pick == pick);
+        CHECK(found[0].end == end);
+        CHECK_FALSE(found[0].message.empty());
+        CHECK_FALSE(passes(rule));
+    }
+};
+
+}  // namespace
+
+TEST_CASE("every rule is judged exactly once: found, passed or not evaluated") {
+    for (const bool turning : {false, true}) {
+        for (const Insertion insertion : {Insertion::shuttle, Insertion::rapier, Insertion::air_jet}) {
+            Case c;
+            c.profile.insertion = insertion;
+            if (turning) c.design.scene.weft_mode = WeftMode::wraparound;
+            const CheckReport report = check_for_loom(c.design, c.cloth, c.profile);
+            std::multiset<std::string> seen(report.passed.begin(), report.passed.end());
+            for (const auto& n : report.not_evaluated) seen.insert(n.rule);
+            std::set<std::string> found;
+            for (const auto& f : report.findings) found.insert(f.rule);
+            seen.insert(found.begin(), found.end());
+            for (const Rule& rule : rules()) {
+                INFO(rule.id);
+                CHECK(seen.count(rule.id) == 1);
+            }
+            CHECK(seen.size() == rules().size());
+            CHECK(report.count(Severity::error) == 0);
+        }
+    }
+}
+
+TEST_CASE("floats are runs of the card image, also through the repeat, on both faces") {
+    Case c;
+    c.cloth.block = block_of({"111011", "010101", "101010", "010101"});
+    c.expect_at("float.face", 0, 4);  // 5 ends from end 5 through the repeat to end 3
+    CHECK(c.of("float.face").size() == 1);
+    CHECK(c.of("float.face")[0].message.find("5 ends, from end 5 through the repeat to 3") !=
+          std::string::npos);
+    CHECK(c.passes("float.back"));
+    c.cloth.block = block_of({"10", "10", "10", "10", "01"});
+    c.expect_at("float.face", 0, 1);  // end 2 over picks 1 to 4
+    c.expect_at("float.back", 0, 0);
+    c.profile.limits.float_face = 4;
+    CHECK(c.passes("float.face"));
+    c.profile.limits.float_back = 0;
+    CHECK(c.lacks("float.back"));
+}
+
+TEST_CASE("in wraparound the width does not repeat") {
+    Case c;
+    c.cloth.block = block_of({"110011", "010101", "101010", "010101"});
+    CHECK(c.of("float.face").size() == 1);
+    c.design.scene.weft_mode = WeftMode::wraparound;
+    CHECK(c.of("float.face").empty());
+}
+
+TEST_CASE("picks and ends that do not bind are found, unless they are loose") {
+    Case c;
+    c.cloth.block = block_of({"0111", "0000", "0101", "0010"});
+    c.expect_at("bind.pick", 1, {});
+    c.expect_at("bind.end", {}, 0);
+    CHECK(c.of("bind.end").size() == 1);
+    c.cloth.block = std::make_shared<const Block>(
+        make_block({1, 1}, {1, 1}, [](std::size_t row, std::size_t column) {
+            const bool weft_up = (row + column) % 2 == 0;
+            if (column == 1) return Stack({Slot::weft(0), Slot::warp(0, true)});
+            return weft_up ? Stack({Slot::warp(0), Slot::weft(0)}) : Stack({Slot::weft(0), Slot::warp(0)});
+        }).value());
+    CHECK(c.passes("bind.end"));
+    CHECK(c.of("bind.pick").size() == 2);  // a trimmed end binds no pick
+}
+
+TEST_CASE("hooks: too many ends, cast-out hooks, shared hooks") {
+    Case c;
+    CHECK(c.passes("hooks.fit"));
+    CHECK(c.passes("hooks.castout"));
+    CHECK(c.passes("hooks.read-back"));
+    c.profile.cast_out = {{2, 2}};
+    c.expect_at("hooks.castout", {}, 2);
+    c = Case{};
+    c.profile.body = {{0, 2}};
+    c.expect_at("hooks.fit", {}, 3);
+    CHECK(c.lacks("hooks.read-back"));
+    c = Case{};
+    c.profile.hook_rule = HookRule::list;
+    c.profile.hook_of_end = {0, 1, 0, 1};
+    CHECK(c.passes("hooks.read-back"));
+    c.profile.hook_of_end = {0, 1, 2, 2};
+    c.expect_at("hooks.read-back", 0, 3);
+}
+
+TEST_CASE("selvedge, picks and title") {
+    Case c;
+    CHECK(c.passes("selvedge.binds"));
+    c.profile.selvedge_weave = {"01", "00"};
+    c.expect_at("selvedge.binds", 1, {});
+    c.profile.selvedge_weave.clear();
+    CHECK(c.lacks("selvedge.binds"));
+    CHECK(c.lacks("selvedge.needed"));
+    c.profile.insertion = Insertion::rapier;
+    CHECK(c.passes("selvedge.needed"));
+    c.profile.selvedge.clear();
+    c.expect_at("selvedge.needed", {}, {});
+    c.profile.limits.picks = 3;
+    c.expect_at("picks.limit", 3, {});
+    c.design.title = "A long title";
+    c.expect_at("name.limit", {}, {});
+    c.design.title = "Short";
+    CHECK(c.passes("name.limit"));
+}
+
+TEST_CASE("feeders: per pick, none, range") {
+    Case c;
+    c.design.weft.feeders = {{"a", 0}, {"b", 0}};
+    c.design.weft.feeder_order = {{0}, {0, 1}, {}, {0}};
+    c.expect_at("feeders.per-pick", 1, {});
+    c.expect_at("feeders.range", 1, {});
+    CHECK(c.passes("feeders.none"));
+    c.design.weft.take_up = {true, true, false, true};
+    c.expect_at("feeders.none", 2, {});
+    c.profile.feeders = 2;
+    c.profile.feeders_per_pick = 2;
+    CHECK(c.passes("feeders.per-pick"));
+    CHECK(c.passes("feeders.range"));
+}
+
+TEST_CASE("lifts: balance, share, face down") {
+    Case c;
+    CHECK(c.passes("lift.balance"));
+    CHECK(c.passes("lift.share"));
+    CHECK(c.passes("lift.face-down"));
+    c.cloth.block = block_of({"0101", "1110", "0000", "1011"});
+    c.expect_at("lift.balance", 2, {});
+    c.expect_at("lift.share", 2, {});
+    c.cloth.block = block_of({"0001", "1110", "0000", "0001"});
+    c.expect_at("lift.face-down", {}, {});
+    c.profile.limits.lift_share.reset();
+    CHECK(c.lacks("lift.share"));
+}
+
+TEST_CASE("turns: caught, crossed, box, cut") {
+    Case c;
+    CHECK(c.lacks("turn.caught"));
+    CHECK(c.passes("turn.box"));
+    c.design.scene.weft_mode = WeftMode::wraparound;
+    CHECK(c.passes("turn.caught"));
+    CHECK(c.passes("turn.crossed"));
+    c.cloth.block = block_of({"0101", "0101", "1010"});
+    c.expect_at("turn.caught", 1, {});
+    c.expect_at("repeat.doubled", {}, {});
+    c.cloth.block = block_of({"0001", "0111", "1111"});  // right turn at end 3, left turn at end 1: fine
+    CHECK(c.passes("turn.crossed"));
+    c.cloth.block = block_of({"1000", "0000", "0001"});  // right turn back to end 1, left turn on to end 4
+    c.expect_at("turn.crossed", 1, {});
+    c.design.weft.directions = {Direction::left_to_right, Direction::left_to_right, Direction::right_to_left};
+    c.expect_at("turn.box", 1, {});
+    c.profile.insertion = Insertion::rapier;
+    c.expect_at("turn.cut", {}, {});
+    c.expect_at("insertion.match", {}, {});
+    CHECK(c.lacks("turn.box"));
+}
+
+TEST_CASE("take-up: stops, regulator, beams") {
+    Case c;
+    c.cloth.block = block_of(plain, 2);
+    CHECK(c.passes("take-up.stop"));
+    CHECK(c.passes("take-up.regulator"));
+    c.profile.regulator_hooks.clear();
+    c.expect_at("take-up.regulator", 0, {});
+    c.design.weft.take_up = {true};
+    c.expect_at("take-up.stop", 0, {});
+    CHECK(c.lacks("take-up.beam"));
+    CHECK(c.lacks("consumption"));
+    c.take_ups = TakeUps{0.1, 0.11, 0.1, 0.2};
+    c.expect_at("take-up.beam", {}, 3);
+    c.design.warp.beams = {{"a"}, {"b"}};
+    c.design.warp.beam_order.once = {0, 0, 0, 1};
+    CHECK(c.passes("take-up.beam"));
+    c.take_ups->pop_back();
+    CHECK(c.lacks("take-up.beam"));
+}
+
+TEST_CASE("reed and density") {
+    Case c;
+    CHECK(c.passes("reed.width"));
+    CHECK(c.passes("reed.dents"));
+    CHECK(c.passes("warp.density"));
+    c.profile.limits.reed_width_mm = 1.9;
+    c.design.warp.ends_per_dent = 3;
+    c.profile.density_ends_per_cm = 10;
+    c.expect_at("reed.width", {}, {});
+    c.expect_at("reed.dents", {}, {});
+    c.expect_at("warp.density", {}, {});
+}
+
+TEST_CASE("lost flips, severities of the profile, and many findings in one place") {
+    Case c;
+    c.design.root = "cloth";
+    c.cloth.lost_flips = {{"cloth", {1, 2, true}, "pick 1 stands in the way"}};
+    c.expect_at("flips.apply", 1, 2);
+    c.profile.severities["flips.apply"] = Severity::info;
+    CHECK(c.of("flips.apply")[0].severity == Severity::info);
+    c.profile.severities["flips.apply"] = Severity::off;
+    CHECK(c.lacks("flips.apply"));
+    CHECK(c.of("flips.apply").empty());
+    c.cloth.block = block_of(std::vector<std::string>(300, "0000"));
+    const auto found = c.of("bind.pick");
+    CHECK(found.size() == 101);
+    CHECK(found.back().message.find("200 more places") != std::string::npos);
+    CHECK(c.passes("block.constraints"));
+}
