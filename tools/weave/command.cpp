@@ -65,7 +65,7 @@ void Program::answer(const Json& json_answer, const std::string& words) const {
 }
 
 CLI::App* add_command(CLI::App& app, Program& program, const std::string& name, const std::string& help) {
-    CLI::App* command = app.add_subcommand(name, help);
+    CLI::App* command = app.add_subcommand(name, help)->group("Commands");
     command->add_flag("--json", program.json, "answer with one JSON object on standard output");
     return command;
 }

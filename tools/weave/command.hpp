@@ -33,6 +33,12 @@ struct Program {
 /// Adds a command; `run` is called with the program when it is chosen. Every command takes --json.
 CLI::App* add_command(CLI::App& app, Program& program, const std::string& name, const std::string& help);
 
+/// A whole number within limits. The limits stay out of the help, where only the meaning of a number counts.
+template <class Whole>
+CLI::Validator between(Whole low, Whole high) {
+    return CLI::Range(low, high).description("");
+}
+
 /// Lets `run` be the command's work: its error, if any, is told and becomes the exit code.
 void on_run(CLI::App* command, Program& program, std::function<Status()> run);
 

@@ -128,23 +128,26 @@ void add_import_command(CLI::App& app, Program& program) {
     const auto end_1 = std::make_shared<std::string>("left");
     const auto lifted = std::make_shared<std::string>("black");
     command->add_option("IN", request->in, "the file to read")->required();
-    command->add_option("-o,--out", request->out, "the .weave file to write")->required();
-    const CLI::Range count(std::uint32_t{0}, std::uint32_t{1} << 28);
+    command->add_option("-o,--out", request->out, "the .weave file to write")->type_name("FILE")->required();
+    const CLI::Validator count = between(std::uint32_t{0}, std::uint32_t{1} << 28);
     CLI::Option* t =
         command->add_option("--t", request->t, "picks of each row, repeated over the card, such as 2,2")
             ->delimiter(',')
             ->allow_extra_args(false)
-            ->check(count);
+            ->check(count)
+            ->type_name("N,N,");
     CLI::Option* p = command->add_option("--p", request->p, "ends of each column, repeated, such as 2,2")
                          ->delimiter(',')
                          ->allow_extra_args(false)
-                         ->check(count);
+                         ->check(count)
+                         ->type_name("N,N,");
     CLI::Option* infer =
         command->add_flag("--infer", request->infer,
                           "find rows and columns from the card; lists the possible groupings, best first");
     command->add_option("--grouping", request->grouping, "which of the possible groupings to take, from 1")
         ->needs(infer)
-        ->check(CLI::Range(1, 1000));
+        ->check(between(1, 1000))
+        ->type_name("N");
     infer->excludes(t)->excludes(p);
     command->add_option("--pick-1", *pick_1, "where the picture has pick 1")
         ->check(CLI::IsMember({"bottom", "top"}))

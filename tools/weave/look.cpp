@@ -105,7 +105,9 @@ void add_card(CLI::App& app, Program& program) {
     const auto end_1 = std::make_shared<std::string>("left");
     const auto lifted = std::make_shared<std::string>("black");
     command->add_option("FILE", *file, "the .weave file")->required();
-    command->add_option("-o,--out", *out, "the picture to write: .png, .tif or .bmp")->required();
+    command->add_option("-o,--out", *out, "the picture to write: .png, .tif or .bmp")
+        ->type_name("FILE")
+        ->required();
     command->add_option("--pick-1", *pick_1, "where pick 1 goes")
         ->check(CLI::IsMember({"bottom", "top"}))
         ->capture_default_str();
@@ -153,9 +155,12 @@ void add_render(CLI::App& app, Program& program) {
     command
         ->add_option("--view", *view,
                      "card, face, back, floats, layers, weft:N, warp:N (pick or end N, from 1) or block")
+        ->type_name("VIEW")
         ->required();
     command->add_flag("--trim", *trim, "leave out yarns that are loose on purpose");
-    command->add_option("-o,--out", *out, "the picture to write: .png or .svg")->required();
+    command->add_option("-o,--out", *out, "the picture to write: .png or .svg")
+        ->type_name("FILE")
+        ->required();
     on_run(command, program, [=, &program] { return render(program, *file, *view, *trim, *out); });
 }
 

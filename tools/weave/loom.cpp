@@ -58,7 +58,7 @@ void add_check(CLI::App& app, Program& program) {
     const auto file = std::make_shared<std::string>();
     const auto loom = std::make_shared<std::string>();
     command->add_option("FILE", *file, "the .weave file")->required();
-    command->add_option("--loom", *loom, "the loom's profile, a .json file")->required();
+    command->add_option("--loom", *loom, "the loom's profile, a .json file")->type_name("FILE")->required();
     on_run(command, program, [=, &program]() -> Status {
         WEAVE_TRY(const LoomProfile profile, load_profile(*loom));
         WEAVE_TRY(const Cloth cloth, load_cloth(program, *file));
@@ -104,8 +104,9 @@ void add_export(CLI::App& app, Program& program) {
     const auto loom = std::make_shared<std::string>();
     const auto folder = std::make_shared<std::string>();
     command->add_option("FILE", *file, "the .weave file")->required();
-    command->add_option("--loom", *loom, "the loom's profile, a .json file")->required();
+    command->add_option("--loom", *loom, "the loom's profile, a .json file")->type_name("FILE")->required();
     command->add_option("-o,--out", *folder, "the folder to write; it must not exist, or be empty")
+        ->type_name("FOLDER")
         ->required();
     on_run(command, program, [=, &program] { return export_sample(program, *file, *loom, *folder); });
 }

@@ -5,6 +5,8 @@
 #include <csignal>
 #include <iostream>
 #include <new>
+#include <string>
+#include <vector>
 
 namespace {
 
@@ -16,24 +18,40 @@ constexpr const char* endings =
     "Exit status: 0 done, 1 findings or a refusal by validation, 2 usage, 3 bad input, 4 refused, 5 a fault "
     "of the system.";
 
+/// What is wrong with a call, in a sentence. CLI11 asks for a command before it looks at words it does not
+/// know.
+std::string usage_trouble(const CLI::App& app, const CLI::ParseError& trouble) {
+    if (!app.get_subcommands().empty()) return trouble.what();
+    const std::vector<std::string> unknown = app.remaining();
+    if (unknown.empty()) return "name a command";
+    const bool option = unknown.front().rfind('-', 0) == 0;
+    return "there is no " + std::string(option ? "option" : "command") + " '" + unknown.front() + "'";
+}
+
 }  // namespace
 
 int main(int count, char** words) {
-    std::signal(SIGXFSZ, SIG_IGN);  // a file past the limit is an error to tell and tidy up after, not our end
+    std::signal(SIGXFSZ,
+                SIG_IGN);  // a file past the limit is an error to tell and tidy up after, not our end
     weave::program::Program program;
     CLI::App app(about, "weave");
-    app.set_version_flag("--version", "weave " WEAVE_VERSION);
+    app.get_formatter()->label("SUBCOMMAND", "COMMAND ...");
+    app.get_formatter()->label("TEXT", "");  // what a word stands for says more than that it is text
+    app.set_help_flag("-h,--help", "tell this and end");
+    app.set_version_flag("--version", "weave " WEAVE_VERSION, "tell the version and end");
     app.require_subcommand(1);
-    app.footer(endings);
+    app.footer(endings);  // which the commands inherit
     weave::program::add_make_commands(app, program);
     weave::program::add_import_command(app, program);
     weave::program::add_look_commands(app, program);
     weave::program::add_loom_commands(app, program);
+    app.footer("'weave COMMAND --help' tells what a command takes.\n" + std::string(endings));
     try {
         app.parse(count, words);
     } catch (const CLI::ParseError& trouble) {
         if (trouble.get_exit_code() == 0) return app.exit(trouble);  // --help, --version
-        std::cerr << "weave: " << trouble.what() << "\nTry 'weave --help' or 'weave COMMAND --help'.\n";
+        program.note(usage_trouble(app, trouble));
+        std::cerr << "Try 'weave --help' or 'weave COMMAND --help'.\n";
         return weave::program::usage;
     } catch (const std::bad_alloc&) {
         std::cerr << "weave: this machine has not enough memory for it\n";

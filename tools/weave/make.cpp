@@ -48,7 +48,7 @@ void add_samples(CLI::App& app, Program& program) {
     const auto name = std::make_shared<std::string>();
     const auto out = std::make_shared<std::string>();
     command->add_option("NAME", *name, "the sample to write; without it the names are listed, one a line");
-    command->add_option("-o,--out", *out, "the .weave file to write");
+    command->add_option("-o,--out", *out, "the .weave file to write")->type_name("FILE");
     on_run(command, program, [=, &program]() -> Status {
         if (name->empty()) {
             if (!out->empty()) return usage_error("-o needs the NAME of a sample");
@@ -58,7 +58,7 @@ void add_samples(CLI::App& app, Program& program) {
         const Sample* sample = find_sample(*name);
         if (sample == nullptr)
             return usage_error("there is no sample '" + *name + "'; 'weave samples' lists them");
-        if (out->empty()) return usage_error("name the file to write with -o");
+        if (out->empty()) return usage_error("name the file to write, such as -o " + *name + ".weave");
         return save_cloth(program, sample->make(), *out);
     });
 }
@@ -66,7 +66,7 @@ void add_samples(CLI::App& app, Program& program) {
 // ---- preset
 
 std::string preset_help() {
-    std::string text = "Families and their options (name=value):\n";
+    std::string text = "Families, and their settings with what they are if left out:\n";
     for (const PresetFamily& family : preset_families()) {
         text += "  " + family.name + ": " + family.help + "\n";
         for (const PresetOption& option : family.options) {
@@ -84,9 +84,9 @@ Result<Preset> parse_preset(const std::string& family, const std::vector<std::st
         const std::string name = setting.substr(0, equals);
         const auto value =
             equals == std::string::npos ? std::nullopt : parse_whole(setting.substr(equals + 1));
-        if (!value) return usage_error("'" + setting + "' is not an option such as up=3");
+        if (!value) return usage_error("'" + setting + "' is not a setting such as up=3");
         if (!preset.options.emplace(name, *value).second)
-            return usage_error("option '" + name + "' is given twice");
+            return usage_error("setting '" + name + "' is given twice");
     }
     return preset;
 }
@@ -97,8 +97,9 @@ void add_preset(CLI::App& app, Program& program) {
     const auto settings = std::make_shared<std::vector<std::string>>();
     const auto out = std::make_shared<std::string>();
     command->add_option("FAMILY", *family, "the family, see below")->required();
-    command->add_option("OPTIONS", *settings, "options of the family, such as up=3");
-    command->add_option("-o,--out", *out, "the .weave file to write")->required();
+    command->add_option("SETTING", *settings,
+                        "settings of the family as NAME=VALUE, such as up=3, as many as wanted");
+    command->add_option("-o,--out", *out, "the .weave file to write")->type_name("FILE")->required();
     command->footer(preset_help);
     on_run(command, program, [=, &program]() -> Status {
         WEAVE_TRY(Preset preset, parse_preset(*family, *settings));
@@ -118,12 +119,12 @@ void add_tile(CLI::App& app, Program& program) {
     const auto file = std::make_shared<std::string>();
     const auto out = std::make_shared<std::string>();
     const auto times = std::make_shared<TileOperation>();
-    const CLI::Range range(std::size_t{1}, std::size_t{1} << 30);
+    const CLI::Validator range = between(std::size_t{1}, std::size_t{1} << 30);
     command->add_option("FILE", *file, "the .weave file to repeat")->required();
-    command->add_option("--x", times->x, "times along the warp")->check(range);
-    command->add_option("--y", times->y, "times along the weft")->check(range);
-    command->add_option("--z", times->z, "times in height")->check(range);
-    command->add_option("-o,--out", *out, "the .weave file to write")->required();
+    command->add_option("--x", times->x, "times along the warp, 1 if left out")->check(range)->type_name("N");
+    command->add_option("--y", times->y, "times along the weft")->check(range)->type_name("N");
+    command->add_option("--z", times->z, "times in height")->check(range)->type_name("N");
+    command->add_option("-o,--out", *out, "the .weave file to write")->type_name("FILE")->required();
     on_run(command, program, [=, &program]() -> Status {
         WEAVE_TRY(Design design, load_design(*file));
         times->of = design.root;
@@ -143,7 +144,7 @@ void add_attach(CLI::App& app, Program& program) {
     command->add_option("A", *first, "the .weave file that keeps its yarns")->required();
     command->add_option("B", *second, "the .weave file to join to it")->required();
     command->add_option("--face", *face, "the face of A")->required()->check(CLI::IsMember(face_names()));
-    command->add_option("-o,--out", *out, "the .weave file to write")->required();
+    command->add_option("-o,--out", *out, "the .weave file to write")->type_name("FILE")->required();
     on_run(command, program, [=, &program]() -> Status {
         WEAVE_TRY(Design design, load_design(*first));
         WEAVE_TRY(const Design other, load_design(*second));
@@ -166,12 +167,14 @@ void add_renumber(CLI::App& app, Program& program) {
     const auto order = std::make_shared<std::vector<std::size_t>>();
     const auto line = std::make_shared<std::size_t>(0);
     const auto out = std::make_shared<std::string>();
-    const CLI::Range range(std::size_t{0}, std::size_t{1} << 28);
+    const CLI::Validator range = between(std::size_t{0}, std::size_t{1} << 28);
     command->add_option("FILE", *file, "the .weave file")->required();
-    CLI::Option* row =
-        command->add_option("--row", *line, "the row of the block, from 0 as in stacks")->check(range);
-    CLI::Option* column =
-        command->add_option("--column", *line, "the column of the block, from 0")->check(range);
+    CLI::Option* row = command->add_option("--row", *line, "the row of the block, from 0 as in stacks")
+                           ->check(range)
+                           ->type_name("ROW");
+    CLI::Option* column = command->add_option("--column", *line, "the column of the block, from 0")
+                              ->check(range)
+                              ->type_name("COLUMN");
     row->excludes(column);
     command
         ->add_option(
@@ -180,8 +183,9 @@ void add_renumber(CLI::App& app, Program& program) {
         ->required()
         ->delimiter(',')
         ->allow_extra_args(false)
-        ->check(range);
-    command->add_option("-o,--out", *out, "the .weave file to write")->required();
+        ->check(range)
+        ->type_name("N,N,");
+    command->add_option("-o,--out", *out, "the .weave file to write")->type_name("FILE")->required();
     on_run(command, program, [=, &program]() -> Status {
         if (row->count() + column->count() == 0) return usage_error("name a --row or a --column");
         WEAVE_TRY(Design design, load_design(*file));
@@ -256,12 +260,13 @@ void add_stencil(CLI::App& app, Program& program) {
     const auto out = std::make_shared<std::string>();
     command
         ->add_option("IMAGE", *picture,
-                     "PNG, TIFF or BMP; its bottom row is row 1, its left column is column 1")
+                     "PNG, TIFF or BMP; its bottom row is row 0 of the cloth, its left column column 0")
         ->required();
     command->add_option("--map", *mappings, "COLOUR=FILE, such as #ff0000=twill.weave; once for each colour")
+        ->type_name("COLOUR=FILE")
         ->required()
         ->allow_extra_args(false);
-    command->add_option("-o,--out", *out, "the .weave file to write")->required();
+    command->add_option("-o,--out", *out, "the .weave file to write")->type_name("FILE")->required();
     on_run(command, program, [=, &program] { return make_stencil(program, *picture, *mappings, *out); });
 }
 
@@ -275,11 +280,11 @@ void add_flip(CLI::App& app, Program& program) {
     const auto out = std::make_shared<std::string>();
     const auto pick = std::make_shared<std::size_t>(0);
     const auto end = std::make_shared<std::size_t>(0);
-    const CLI::Range from_1(std::size_t{1}, std::size_t{1} << 28);
+    const CLI::Validator from_1 = between(std::size_t{1}, std::size_t{1} << 28);
     command->add_option("FILE", *file, "the .weave file")->required();
-    command->add_option("--pick", *pick, "the pick, from 1")->required()->check(from_1);
-    command->add_option("--end", *end, "the end, from 1")->required()->check(from_1);
-    command->add_option("-o,--out", *out, "the .weave file to write")->required();
+    command->add_option("--pick", *pick, "the pick, from 1")->required()->check(from_1)->type_name("N");
+    command->add_option("--end", *end, "the end, from 1")->required()->check(from_1)->type_name("N");
+    command->add_option("-o,--out", *out, "the .weave file to write")->type_name("FILE")->required();
     on_run(command, program, [=, &program]() -> Status {
         WEAVE_TRY(Cloth cloth, load_cloth(program, *file));
         const Block& block = *cloth.evaluation.block;

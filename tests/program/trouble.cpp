@@ -1,0 +1,169 @@
+// Broken inputs and outputs that cannot be written: one clear line, the documented exit status, nothing
+// half-written.
+
+#include "run.hpp"
+
+#include <weave/io/bitmap.hpp>
+
+using program_tests::loom;
+using program_tests::Workshop;
+using weave::Json;
+
+namespace {
+
+using Words = std::vector<std::string>;
+
+/// A workshop with a good design, its card, and one of each broken input.
+void furnish(const Workshop& shop) {
+    shop.must({"preset", "twill", "-o", "t.weave"});
+    shop.must({"card", "t.weave", "-o", "t.png"});
+    shop.must({"card", "t.weave", "-o", "t.tif"});
+    const std::string whole = shop.get("t.weave"), picture = shop.get("t.png");
+    shop.put("cut.weave", whole.substr(0, whole.size() / 2));
+    Json newer = *weave::parse_json(whole);
+    newer["version"] = 99;
+    shop.put("newer.weave", newer.dump());
+    shop.put("empty.weave", "");
+    shop.put("cut.png", picture.substr(0, picture.size() / 2));
+    shop.put("cut.tif", shop.get("t.tif").substr(0, 40));
+    weave::ColourImage image{2, 3, std::vector<weave::Colour>(6, weave::Colour{255, 255, 255})};
+    image.pixels[1] = weave::Colour{0, 0, 0};
+    image.pixels[5] = weave::Colour{128, 128, 128};
+    shop.put("grey.png", *weave::write_png(image));
+    shop.put("garbage.wif", "[WIF]\nVersion=1.1\n[CONTENTS]\nthis is no weaving\n");
+    Json profile = *weave::parse_json(*weave::read_file(loom("tc2")));
+    profile["colour"] = "blue";
+    shop.put("odd.json", profile.dump());
+    shop.put("cut.json", "{\"format\": \"weave-loom\", \"version\": 1,\n \"name\": ");
+}
+
+/// Every command that writes, writing to `out`; `folder` where export is to go.
+std::vector<Words> writers(const std::string& out) {
+    return {
+        {"samples", "plain", "-o", out + ".weave"},
+        {"preset", "plain", "-o", out + ".weave"},
+        {"tile", "t.weave", "--x", "2", "-o", out + ".weave"},
+        {"attach", "t.weave", "t.weave", "--face", "+x", "-o", out + ".weave"},
+        {"stencil", "t.png", "--map", "#000000=t.weave", "--map", "#ffffff=t.weave", "-o", out + ".weave"},
+        {"renumber", "t.weave", "--row", "0", "--order", "0", "-o", out + ".weave"},
+        {"flip", "t.weave", "--pick", "1", "--end", "1", "-o", out + ".weave"},
+        {"import", "t.png", "-o", out + ".weave"},
+        {"card", "t.weave", "-o", out + ".png"},
+        {"card", "t.weave", "-o", out + ".tif"},
+        {"card", "t.weave", "-o", out + ".bmp"},
+        {"render", "t.weave", "--view", "face", "-o", out + ".png"},
+        {"render", "t.weave", "--view", "block", "-o", out + ".svg"},
+        {"export", "t.weave", "--loom", loom("tc2"), "-o", out},
+    };
+}
+
+}  // namespace
+
+TEST_CASE("bad input ends with 3 and one line that names the file and the place in it") {
+    const Workshop shop;
+    furnish(shop);
+    const std::vector<std::pair<Words, Words>> calls{
+        {{"info", "none.weave"}, {"none.weave"}},
+        {{"info", "."}, {".", "regular file"}},
+        {{"info", "cut.weave"}, {"cut.weave", "line"}},
+        {{"info", "newer.weave"}, {"newer.weave", "version", "99"}},
+        {{"info", "empty.weave"}, {"empty.weave"}},
+        {{"info", "t.png"}, {"t.png"}},
+        {{"card", "cut.weave", "-o", "new.png"}, {"cut.weave", "line"}},
+        {{"render", "newer.weave", "--view", "face", "-o", "new.png"}, {"newer.weave", "version"}},
+        {{"tile", "cut.weave", "--x", "2", "-o", "new.weave"}, {"cut.weave", "line"}},
+        {{"attach", "t.weave", "cut.weave", "--face", "+x", "-o", "new.weave"}, {"cut.weave", "line"}},
+        {{"renumber", "cut.weave", "--row", "0", "--order", "0", "-o", "new.weave"}, {"cut.weave", "line"}},
+        {{"flip", "newer.weave", "--pick", "1", "--end", "1", "-o", "new.weave"}, {"newer.weave", "version"}},
+        {{"stencil", "none.png", "--map", "#000000=t.weave", "-o", "new.weave"}, {"none.png"}},
+        {{"stencil", "cut.png", "--map", "#000000=t.weave", "-o", "new.weave"}, {"cut.png"}},
+        {{"stencil", "t.png", "--map", "#000000=cut.weave", "-o", "new.weave"}, {"cut.weave", "line"}},
+        {{"stencil", "grey.png", "--map", "#000000=t.weave", "--map", "#ffffff=t.weave", "-o", "new.weave"},
+         {"grey.png", "row 2", "column 3", "#808080"}},
+        {{"import", "none.png", "-o", "new.weave"}, {"none.png"}},
+        {{"import", "grey.png", "-o", "new.weave"}, {"grey.png"}},
+        {{"import", "cut.png", "-o", "new.weave"}, {"cut.png"}},
+        {{"import", "cut.tif", "-o", "new.weave"}, {"cut.tif"}},
+        {{"import", "t.weave", "-o", "new.weave"}, {"t.weave", "PNG"}},
+        {{"import", "garbage.wif", "-o", "new.weave"}, {"garbage.wif", "line 4"}},
+        {{"import", "t.png", "--t", "3", "-o", "new.weave"}, {"t.png", "3", "4"}},
+        {{"check", "cut.weave", "--loom", loom("tc2")}, {"cut.weave", "line"}},
+        {{"check", "t.weave", "--loom", "none.json"}, {"none.json"}},
+        {{"check", "t.weave", "--loom", "odd.json"}, {"odd.json", "colour"}},
+        {{"check", "t.weave", "--loom", "cut.json"}, {"cut.json", "line 2"}},
+        {{"check", "t.weave", "--loom", "t.weave"}, {"t.weave", "format"}},
+        {{"export", "cut.weave", "--loom", loom("tc2"), "-o", "new"}, {"cut.weave", "line"}},
+        {{"export", "t.weave", "--loom", "odd.json", "-o", "new"}, {"odd.json", "colour"}},
+    };
+    for (const auto& [words, pieces] : calls) shop.refused(words, 3, pieces);
+}
+
+TEST_CASE("a broken input that asks for JSON leaves standard output empty too") {
+    const Workshop shop;
+    furnish(shop);
+    shop.refused({"info", "cut.weave", "--json"}, 3, {"cut.weave"});
+    shop.refused({"check", "t.weave", "--loom", "odd.json", "--json"}, 3, {"odd.json"});
+}
+
+TEST_CASE("a place where nothing can be written ends with 5, and nothing is left behind") {
+    const Workshop shop;
+    furnish(shop);
+    for (const Words& call : writers("none/there/new")) {
+        if (call[0] == "export") continue;  // makes the folders that lead to its own
+        shop.refused(call, 5, {"none/there/new"});
+    }
+    for (const Words& call : writers("t.weave/new")) shop.refused(call, 5, {"t.weave/new"});  // below a file
+}
+
+TEST_CASE("a full disk ends with 5: no new file, and an old one stays as it was") {
+    const Workshop shop;
+    furnish(shop);
+    for (const Words& call : writers("new")) shop.refused(call, 5, {"new"}, 20);
+    for (const char* extension : {".weave", ".png", ".tif", ".bmp", ".svg"})
+        shop.put(std::string("old") + extension, "of old");
+    for (const Words& call : writers("old")) {
+        if (call[0] == "export") continue;
+        shop.refused(call, 5, {"old"}, 20);
+        CHECK(shop.get(call.back()) == "of old");
+    }
+}
+
+TEST_CASE("bad input leaves an old output as it was") {
+    const Workshop shop;
+    furnish(shop);
+    shop.put("old.weave", "of old");
+    shop.put("old.png", "of old");
+    shop.refused({"tile", "cut.weave", "--x", "2", "-o", "old.weave"}, 3, {"cut.weave"});
+    shop.refused({"import", "grey.png", "-o", "old.weave"}, 3, {"grey.png"});
+    shop.refused({"card", "cut.weave", "-o", "old.png"}, 3, {"cut.weave"});
+    shop.refused({"flip", "t.weave", "--pick", "99", "--end", "1", "-o", "old.weave"}, 1, {"99"});
+    CHECK(shop.get("old.weave") == "of old");
+    CHECK(shop.get("old.png") == "of old");
+}
+
+TEST_CASE("an output replaces the old file as a whole, even the very file that it is made from") {
+    const Workshop shop;
+    furnish(shop);
+    std::filesystem::create_hard_link(shop.path("t.weave"), shop.path("held.weave"));
+    const std::string before = shop.get("t.weave");
+    const std::set<std::string> names = shop.names();
+    shop.must({"tile", "t.weave", "--x", "2", "-o", "t.weave"});
+    CHECK(shop.get("held.weave") == before);  // a new file took the name; the old one was never written into
+    CHECK(shop.json({"info", "t.weave"}).at("picks") == 8);
+    CHECK(shop.names() == names);
+}
+
+TEST_CASE("a symbolic link stays a link, to the new content") {
+    const Workshop shop;
+    shop.must({"preset", "plain", "-o", "real.weave"});
+    std::filesystem::create_symlink("real.weave", shop.path("link.weave"));
+    shop.must({"preset", "satin", "-o", "link.weave"});
+    CHECK(std::filesystem::is_symlink(shop.path("link.weave")));
+    CHECK(shop.json({"info", "real.weave"}).at("picks") == 5);
+}
+
+TEST_CASE("control characters from a file's name do not reach the terminal") {
+    const Workshop shop;
+    const std::string line = shop.refused({"info", "a\x1b[2Jb.weave"}, 3, {"a\\x1b[2Jb.weave"});
+    CHECK(line.find('\x1b') == std::string::npos);
+}

@@ -1,0 +1,115 @@
+// What a person meets first: help, version, and calls that make no sense.
+
+#include "run.hpp"
+
+#include <map>
+
+using program_tests::Ended;
+using program_tests::Workshop;
+
+namespace {
+
+/// Every command, and what its help must mention.
+const std::map<std::string, std::vector<std::string>> commands{
+    {"samples", {"NAME", "--out"}},
+    {"preset", {"FAMILY", "--out", "twill", "up=2", "satin", "move=0", "angle-interlock", "stuffers=0"}},
+    {"tile", {"FILE", "--x", "--y", "--z", "--out"}},
+    {"attach", {"A", "B", "--face", "+x,-x,+y,-y,+z,-z", "--out"}},
+    {"stencil", {"IMAGE", "--map", "--out"}},
+    {"renumber", {"FILE", "--row", "--column", "--order", "--out"}},
+    {"import", {"IN", "--out", "--t", "--p", "--infer", "--grouping", "--pick-1", "--end-1", "--lifted"}},
+    {"info", {"FILE"}},
+    {"card", {"FILE", "--out", ".png", ".tif", ".bmp", "--pick-1", "--end-1", "--lifted"}},
+    {"check", {"FILE", "--loom"}},
+    {"render", {"FILE", "--out", "--view", "--trim", "floats", "weft:N", "warp:N", "block"}},
+    {"flip", {"FILE", "--pick", "--end", "--out"}},
+    {"export", {"FILE", "--loom", "--out"}},
+};
+
+}  // namespace
+
+TEST_CASE("weave --help names every command, and every command's help its options") {
+    const Workshop shop;
+    const Ended all = shop.must({"--help"});
+    CHECK(all.out.find("Exit status") != std::string::npos);
+    CHECK(all.err.empty());
+    for (const auto& [command, mentions] : commands) {
+        INFO(command);
+        CHECK(all.out.find("\n  " + command + " ") != std::string::npos);
+        const Ended help = shop.must({command, "--help"});
+        CHECK(help.err.empty());
+        CHECK(help.out.find("--json") != std::string::npos);
+        for (const std::string& mention : mentions) {
+            INFO("must mention " << mention);
+            CHECK(help.out.find(mention) != std::string::npos);
+        }
+        CHECK(help.out.find("268435456") == std::string::npos);  // limits of our own are no one's reading
+        CHECK(help.out.find("1073741824") == std::string::npos);
+    }
+    CHECK(shop.names().empty());
+}
+
+TEST_CASE("help on a family lists the options of that family alone") {
+    const Workshop shop;
+    const std::string twill = shop.must({"preset", "twill", "--help"}).out;
+    CHECK(twill.find("up=2") != std::string::npos);
+    CHECK(twill.find("step=1") != std::string::npos);
+}
+
+TEST_CASE("weave --version tells name and version") {
+    const Workshop shop;
+    const Ended ended = shop.must({"--version"});
+    CHECK(ended.out.rfind("weave ", 0) == 0);
+    CHECK(ended.out.find('.') != std::string::npos);
+}
+
+TEST_CASE("a call that makes no sense ends with 2 and says what is wrong with it") {
+    const Workshop shop;
+    shop.must({"preset", "twill", "-o", "t.weave"});
+    shop.must({"card", "t.weave", "-o", "t.png"});
+    using Words = std::vector<std::string>;
+    const std::vector<std::pair<Words, Words>> calls{
+        {{}, {"command"}},
+        {{"wave"}, {"wave"}},
+        {{"--wave"}, {"--wave"}},
+        {{"info"}, {"FILE"}},
+        {{"info", "t.weave", "--wave"}, {"--wave"}},
+        {{"info", "t.weave", "u.weave"}, {"u.weave"}},
+        {{"preset", "twill", "-o", "new.weave", "--wave"}, {"--wave"}},
+        {{"preset", "tweed", "-o", "new.weave"}, {"tweed", "plain", "twill", "satin"}},
+        {{"preset", "twill", "sideways=1", "-o", "new.weave"}, {"sideways", "up", "down", "step"}},
+        {{"preset", "twill", "up", "-o", "new.weave"}, {"up", "=3"}},
+        {{"preset", "twill", "up=many", "-o", "new.weave"}, {"up=many"}},
+        {{"preset", "twill", "up=201", "-o", "new.weave"}, {"up", "200"}},
+        {{"preset", "twill", "up=1", "up=2", "-o", "new.weave"}, {"up", "twice"}},
+        {{"preset", "satin", "size=6", "move=2", "-o", "new.weave"}, {"6", "2"}},
+        {{"preset", "twill"}, {"--out"}},
+        {{"samples", "trousers", "-o", "new.weave"}, {"trousers", "weave samples"}},
+        {{"samples", "plain"}, {"-o"}},
+        {{"samples", "-o", "new.weave"}, {"NAME"}},
+        {{"tile", "t.weave", "--x", "0", "-o", "new.weave"}, {"--x"}},
+        {{"tile", "t.weave", "--x", "two", "-o", "new.weave"}, {"--x", "two"}},
+        {{"attach", "t.weave", "t.weave", "--face", "up", "-o", "new.weave"}, {"--face", "up", "+z"}},
+        {{"attach", "t.weave", "t.weave", "-o", "new.weave"}, {"--face"}},
+        {{"renumber", "t.weave", "--order", "0", "-o", "new.weave"}, {"--row", "--column"}},
+        {{"renumber", "t.weave", "--row", "0", "--column", "0", "--order", "0", "-o", "new.weave"},
+         {"--row", "--column"}},
+        {{"stencil", "t.png", "--map", "red", "-o", "new.weave"}, {"red", "#ff0000="}},
+        {{"stencil", "t.png", "--map", "red=t.weave", "-o", "new.weave"}, {"red", "#"}},
+        {{"stencil", "t.png", "--map", "#000000=t.weave", "--map", "#000000=t.weave", "-o", "new.weave"},
+         {"#000000", "twice"}},
+        {{"import", "t.png", "--infer", "--t", "2", "-o", "new.weave"}, {"--t", "--infer"}},
+        {{"import", "t.png", "--grouping", "2", "-o", "new.weave"}, {"--grouping", "--infer"}},
+        {{"import", "t.png", "--infer", "--grouping", "999", "-o", "new.weave"}, {"grouping"}},
+        {{"import", "t.png", "--lifted", "grey", "-o", "new.weave"}, {"--lifted", "grey", "black"}},
+        {{"card", "t.weave", "-o", "card.gif"}, {"card.gif", ".png", ".tif", ".bmp"}},
+        {{"render", "t.weave", "--view", "card", "-o", "card.bmp"}, {"card.bmp", ".png", ".svg"}},
+        {{"render", "t.weave", "--view", "inside", "-o", "new.png"}, {"inside", "face", "weft:N"}},
+        {{"render", "t.weave", "--view", "weft:5", "-o", "new.png"}, {"5", "1 to 4"}},
+        {{"render", "t.weave", "--view", "warp:0", "-o", "new.png"}, {"0", "1 to 4"}},
+        {{"flip", "t.weave", "--pick", "0", "--end", "1", "-o", "new.weave"}, {"--pick"}},
+        {{"check", "t.weave"}, {"--loom"}},
+        {{"export", "t.weave", "-o", "new"}, {"--loom"}},
+    };
+    for (const auto& [words, pieces] : calls) shop.refused(words, 2, pieces);
+}
