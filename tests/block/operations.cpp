@@ -255,3 +255,13 @@ TEST_CASE("renumbering refuses what is not an order of that row's picks") {
     REQUIRE(renumber_column(block, 0, ends));
     REQUIRE_THAT(renumber_column(block, 2, ends).error().message, Catch::Contains("no column 2"));
 }
+
+TEST_CASE("no operation makes a block higher than the limit, however few yarns it has") {
+    const auto stack = [](std::size_t, std::size_t) { return Stack({Slot::weft(0), Slot::warp(0)}); };
+    CHECK(!make_block({1}, {1}, stack, most_height + 1));
+    const Block high = make_block({1}, {1}, stack, most_height).value();
+    CHECK(tile(high, 1, 1, 1));
+    CHECK(!tile(high, 1, 1, 2));
+    CHECK(!attach(high, high, Face::plus_z));
+    CHECK(attach(high, high, Face::plus_x));
+}

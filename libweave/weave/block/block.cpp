@@ -65,6 +65,12 @@ void put_bits(std::span<std::uint8_t> row, std::size_t at, const std::vector<std
 
 }  // namespace
 
+Status check_height(std::size_t height) {
+    if (height <= most_height) return {};
+    return bad_input("a block of " + std::to_string(height) + " slots is higher than the limit of " +
+                     std::to_string(most_height));
+}
+
 Result<Block> Block::make(std::vector<std::uint32_t> t, std::vector<std::uint32_t> p,
                           std::vector<Stack> stacks, std::vector<std::uint32_t> cells, std::size_t height) {
     assert(cells.size() == t.size() * p.size());
@@ -74,6 +80,7 @@ Result<Block> Block::make(std::vector<std::uint32_t> t, std::vector<std::uint32_
     if (block.picks() == 0 || block.ends() == 0)
         return bad_input("a block needs at least one pick and one end");
     WEAVE_CHECK_OK(check_card_size(block.picks(), block.ends()));
+    WEAVE_CHECK_OK(check_height(height));
     std::vector<bool> checked(stacks.size());
     for (std::size_t row = 0, cell = 0; row < t.size(); ++row) {
         for (std::size_t column = 0; column < p.size(); ++column, ++cell) {

@@ -13,6 +13,12 @@
 
 namespace weave {
 
+/// No block may be higher, in slots: real cloth has dozens of layers, and a hostile file could ask for billions.
+inline constexpr std::size_t most_height = std::size_t{1} << 20;
+
+/// An error where a block of this height is higher than most_height.
+Status check_height(std::size_t height);
+
 /// A weave block {r, c, h, t, p, A} (paper, section 4.1): a tilable piece of 3D weave as an array of stacks.
 ///
 /// Row i holds t[i] picks and column j holds p[j] ends. Equal stacks are kept once: a cell is the number of
