@@ -41,7 +41,8 @@ YarnType random_yarn(Random& random) {
 
 Design random_design(Random& random) {
     Design design;
-    static const char* const texts[] = {"", "Toe; of a shoe", " [WIF]\r\nline 2 ", "\xc3\xa9\xe2\x82\xac", "a\tb\x01"};
+    static const char* const texts[] = {"", "Toe; of a shoe", " [WIF]\r\nline 2 ", "\xc3\xa9\xe2\x82\xac",
+                                        "a\tb\x01"};
     design.title = texts[random.between(0, 4)];
     design.notes = texts[random.between(0, 4)];
     design.root = "any.name";
@@ -128,7 +129,8 @@ TEST_CASE("what every program can see of our WIF says the same as our own sectio
                     return k == 0 ? plan.yarns[plan.order.at(end)].colour : plan.colours[k - 1];
                 };
                 REQUIRE(colour(warp) == colour(told));
-                REQUIRE(warp.yarns[warp.order.at(end)].radius_mm == Approx(told.yarns[told.order.at(end)].radius_mm));
+                REQUIRE(warp.yarns[warp.order.at(end)].radius_mm ==
+                        Approx(told.yarns[told.order.at(end)].radius_mm));
             }
             for (std::size_t pick = 0; pick < block.picks(); ++pick) {
                 const auto yarn = [&](const WeftPlan& plan) {
@@ -152,7 +154,10 @@ TEST_CASE("a WIF of ours holds what the standard demands") {
     leaf.card = std::make_shared<const CardImage>(card);
     design.blocks["cloth"] = std::make_shared<const Node>(Node{leaf, {}});
     const std::string text = written(design);
-    CHECK(text.find("[WIF]\r\nVersion=1.1\r\nDate=April 20, 1997\r\nDevelopers=wif@mhsoft.com\r\nSource Program=") == 0);
+    CHECK(
+        text.find(
+            "[WIF]\r\nVersion=1.1\r\nDate=April 20, 1997\r\nDevelopers=wif@mhsoft.com\r\nSource Program=") ==
+        0);
     CHECK(text.find("Shafts=3\r\nTreadles=3\r\nRising Shed=true\r\n") != std::string::npos);
     CHECK(text.find("[THREADING]\r\n1=1\r\n2=2\r\n3=1\r\n4=3\r\n5=1\r\n") != std::string::npos);
     CHECK(text.find("[LIFTPLAN]\r\n1=1\r\n2=2\r\n") != std::string::npos);
@@ -190,7 +195,8 @@ TEST_CASE("what another program changed wins over our own section, with a warnin
     CHECK(recoloured->design.warp.yarns[0].colour == Colour{1, 2, 3});
     CHECK(leaf_of(recoloured->design).t == std::vector<std::uint32_t>{2});
 
-    const Result<DesignFromWif> rewoven = read_wif(replaced(text, "[LIFTPLAN]\r\n1=1\r\n", "[LIFTPLAN]\r\n1=0\r\n"));
+    const Result<DesignFromWif> rewoven =
+        read_wif(replaced(text, "[LIFTPLAN]\r\n1=1\r\n", "[LIFTPLAN]\r\n1=0\r\n"));
     REQUIRE(rewoven);
     CHECK(rewoven->warnings.size() == 1);
     CHECK(rows_of(*leaf_of(rewoven->design).card) == "----/####/####/####");
@@ -237,11 +243,21 @@ TEST_CASE("no damage to a WIF file brings the reader down") {
         for (std::size_t k = random.between(1, 4); k > 0 && !text.empty(); --k) {
             const std::size_t at = random.between(0, text.size() - 1);
             switch (random.between(0, 4)) {
-                case 0: text.resize(at); break;
-                case 1: text[at] = static_cast<char>(random.between(0, 255)); break;
-                case 2: text.erase(at, random.between(1, 30)); break;
-                case 3: text.insert(at, text.substr(random.between(0, text.size() - 1), random.between(1, 60))); break;
-                default: text.insert(at, random.coin() ? "99999999999" : "0"); break;
+                case 0:
+                    text.resize(at);
+                    break;
+                case 1:
+                    text[at] = static_cast<char>(random.between(0, 255));
+                    break;
+                case 2:
+                    text.erase(at, random.between(1, 30));
+                    break;
+                case 3:
+                    text.insert(at, text.substr(random.between(0, text.size() - 1), random.between(1, 60)));
+                    break;
+                default:
+                    text.insert(at, random.coin() ? "99999999999" : "0");
+                    break;
             }
         }
         const Result<DesignFromWif> read = read_wif(text);

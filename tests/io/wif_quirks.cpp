@@ -1,18 +1,20 @@
 #include <weave/core/file.hpp>
 #include <weave/io/wif.hpp>
 
+#include <catch2/catch.hpp>
+
 #include <algorithm>
 #include <utility>
-
-#include <catch2/catch.hpp>
 
 using namespace weave;
 
 namespace {
 
-const std::string head = "[WIF]\nVersion=1.1\nDate=April 20, 1997\nDevelopers=wif@mhsoft.com\nSource Program=Hand\n";
+const std::string head =
+    "[WIF]\nVersion=1.1\nDate=April 20, 1997\nDevelopers=wif@mhsoft.com\nSource Program=Hand\n";
 
-/// Line 1 to 5 the head, 6 to 11 [CONTENTS], 12 to 15 [WEAVING], 16 [WARP], 18 [WEFT], 20 [THREADING], 24 [LIFTPLAN].
+/// Line 1 to 5 the head, 6 to 11 [CONTENTS], 12 to 15 [WEAVING], 16 [WARP], 18 [WEFT], 20 [THREADING], 24
+/// [LIFTPLAN].
 const std::string plain_cloth =
     head +
     "[CONTENTS]\nWEAVING=true\nWARP=true\nWEFT=true\nTHREADING=true\nLIFTPLAN=true\n"
@@ -134,7 +136,8 @@ TEST_CASE("WIF: forms that the standard allows bring no warning") {
     std::string cr = plain_cloth;
     std::replace(cr.begin(), cr.end(), '\n', '\r');
     CHECK(rows(read(cr)) == "#--/-##");
-    const DesignFromWif loose = read(with("Rising Shed=true", "  rising SHED = ON ; up", with("[THREADING]", "[Threading]")));
+    const DesignFromWif loose =
+        read(with("Rising Shed=true", "  rising SHED = ON ; up", with("[THREADING]", "[Threading]")));
     CHECK(loose.warnings.empty());
     CHECK(rows(loose) == "#--/-##");
     CHECK(rows(read(with("2=2,3", "2= 2 , 3 ; two"))) == "#--/-##");
@@ -158,8 +161,9 @@ TEST_CASE("WIF: tie-up and treadling win over a lift plan") {
     const DesignFromWif result = read(and_also("[TIEUP]\n1=2\n2=1,3\n[TREADLING]\n1=1\n2=2\n"));
     check_warning(result, 26, "[LIFTPLAN] stands beside");
     CHECK(rows(result) == "-#-/#-#");
-    const DesignFromWif two = read(with("[LIFTPLAN]\n1=1\n2=2,3\n", "[TIEUP]\n1=1\n3=2,3\n[TREADLING]\n1=1,3\n2=2\n",
-                                        with("LIFTPLAN=true", "TIEUP=true\nTREADLING=true")));
+    const DesignFromWif two =
+        read(with("[LIFTPLAN]\n1=1\n2=2,3\n", "[TIEUP]\n1=1\n3=2,3\n[TREADLING]\n1=1,3\n2=2\n",
+                  with("LIFTPLAN=true", "TIEUP=true\nTREADLING=true")));
     CHECK(two.warnings.empty());
     CHECK(rows(two) == "###/---");
 }
@@ -176,8 +180,9 @@ TEST_CASE("WIF: oddities are read with one warning each") {
     check_warning(read(with("WARP=true", "WARP=true\nWARP=true")), 9, "lists [WARP] again");
     check_warning(read(with("WARP=true", "WARP=true\nTIEUP=true")), 9, "[TIEUP], which is not in the file");
     check_warning(read(with("[WEAVING]", "[CONTENTS]\n[WEAVING]")), 12, "comes again");
-    check_warning(read(with("[CONTENTS]\nWEAVING=true\nWARP=true\nWEFT=true\nTHREADING=true\nLIFTPLAN=true\n", "")), 0,
-                  "no [CONTENTS]");
+    check_warning(
+        read(with("[CONTENTS]\nWEAVING=true\nWARP=true\nWEFT=true\nTHREADING=true\nLIFTPLAN=true\n", "")), 0,
+        "no [CONTENTS]");
     check_warning(read(with("Rising Shed=true\n", "")), 12, "rising shed");
     check_warning(read(with("Threads=3", "Threads=30")), 17, "says 30 ends, but only 3");
     check_warning(read(with("Threads=2", "Threads=5")), 19, "says 5 picks, but only 2");
@@ -210,8 +215,9 @@ TEST_CASE("WIF: oddities of colours") {
 }
 
 TEST_CASE("WIF: uneven thickness makes yarns, spacing makes density") {
-    const DesignFromWif result = read(and_also("[WARP THICKNESS]\n2=36\n[WARP SPACING]\n1=72\n2=36\n3=36\n",
-                                               with("Threads=3", "Threads=3\nUnits=decipoints\nThickness=18\nSpacing=1")));
+    const DesignFromWif result =
+        read(and_also("[WARP THICKNESS]\n2=36\n[WARP SPACING]\n1=72\n2=36\n3=36\n",
+                      with("Threads=3", "Threads=3\nUnits=decipoints\nThickness=18\nSpacing=1")));
     CHECK(result.warnings.empty());
     REQUIRE(result.design.warp.yarns.size() == 2);
     CHECK(result.design.warp.yarns[0].radius_mm == Approx(25.4 / 80));
@@ -229,7 +235,8 @@ TEST_CASE("WIF: more than 64 weft yarns are merged with a warning") {
         colours += number + "=" + number + "\n";
     }
     const std::string text = with("[LIFTPLAN]\n1=1\n2=2,3\n", plan, with("Threads=2", "Threads=70"));
-    const DesignFromWif result = read(and_also("[COLOR PALETTE]\nRange=0,255\nEntries=70\n" + table + colours, text));
+    const DesignFromWif result =
+        read(and_also("[COLOR PALETTE]\nRange=0,255\nEntries=70\n" + table + colours, text));
     check_warning(result, 0, "at most 64 feeders");
     REQUIRE(result.design.weft.feeders.size() == 64);
     CHECK(result.design.weft.feeder_order[63] == FeederSet{63});
@@ -238,7 +245,8 @@ TEST_CASE("WIF: more than 64 weft yarns are merged with a warning") {
 
 TEST_CASE("WIF: a long title is cut between characters") {
     std::string title(999, 'x');
-    const DesignFromWif result = read(and_also("[TEXT]\nTitle=" + title + "\xc3\xa9\n[NOTES]\n1=one = two\nthree\n"));
+    const DesignFromWif result =
+        read(and_also("[TEXT]\nTitle=" + title + "\xc3\xa9\n[NOTES]\n1=one = two\nthree\n"));
     check_warning(result, 0, "the title is longer");
     CHECK(result.design.title == title);
     CHECK(result.design.notes == "one = two\nthree");
@@ -283,8 +291,8 @@ TEST_CASE("WIF: sizes are bounded before anything is allocated") {
     check_refused(with("3=3\n", "3=3\n99999999999=1\n"), 24, "there are only 3");
     check_refused(with("Threads=3", "Threads=4194305"), 17, "must be from 1");
     const Result<DesignFromWif> huge = read_wif(
-        with("Threads=3", "Threads=4194304", with("3=3", "4194304=3", with("Threads=2", "Threads=4194304",
-             with("2=2,3", "4194304=2")))));
+        with("Threads=3", "Threads=4194304",
+             with("3=3", "4194304=3", with("Threads=2", "Threads=4194304", with("2=2,3", "4194304=2")))));
     REQUIRE_FALSE(huge);
     CHECK(huge.error().message.find("larger than the limit") != std::string::npos);
     std::string sections = head;
