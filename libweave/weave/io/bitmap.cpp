@@ -1,8 +1,8 @@
+#include <weave/core/file.hpp>
 #include <weave/io/bitmap.hpp>
 #include <weave/io/raster.hpp>
 
 #include <algorithm>
-#include <cctype>
 
 namespace weave {
 
@@ -72,9 +72,7 @@ Status decode(std::string_view bytes, RasterSink& sink) {
 }  // namespace
 
 Result<BitmapFormat> bitmap_format_of(const std::filesystem::path& path) {
-    std::string extension = path.extension().string();
-    std::transform(extension.begin(), extension.end(), extension.begin(),
-                   [](unsigned char c) { return static_cast<char>(std::tolower(c)); });
+    const std::string extension = lower_extension(path);
     if (extension == ".png") return BitmapFormat::png;
     if (extension == ".tif" || extension == ".tiff") return BitmapFormat::tiff;
     if (extension == ".bmp") return BitmapFormat::bmp;
