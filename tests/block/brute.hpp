@@ -1,13 +1,13 @@
 #pragma once
 
-#include <vector>
-
 #include <weave/block/block.hpp>
+
+#include <vector>
 
 namespace weave::testing {
 
-/// A block as the paper writes it: absolute yarn numbers, one flat array of heights. Made independently of the library's
-/// operations, to compare them with.
+/// A block as the paper writes it: absolute yarn numbers, one flat array of heights. Made independently of
+/// the library's operations, to compare them with.
 struct Plain {
     static constexpr int empty = -1;
     struct Yarn {
@@ -28,8 +28,12 @@ inline std::size_t sum(const std::vector<std::size_t>& counts, std::size_t first
 }
 
 inline Plain plain(const Block& block) {
-    Plain out{block.rows(), block.columns(), block.height(), {block.t().begin(), block.t().end()},
-              {block.p().begin(), block.p().end()}, {}};
+    Plain out{block.rows(),
+              block.columns(),
+              block.height(),
+              {block.t().begin(), block.t().end()},
+              {block.p().begin(), block.p().end()},
+              {}};
     out.a.assign(out.r, std::vector<std::vector<Plain::Yarn>>(out.c, std::vector<Plain::Yarn>(out.h)));
     for (std::size_t i = 0; i < out.r; ++i) {
         for (std::size_t j = 0; j < out.c; ++j) {
@@ -76,7 +80,8 @@ inline std::vector<std::vector<bool>> pixels(const Plain& block) {
                 for (std::size_t high = low + 1; high < stack.size(); ++high) {
                     if (stack[low].number == Plain::empty || stack[high].number == Plain::empty) continue;
                     if (!stack[low].weft && stack[high].weft) {
-                        image[static_cast<std::size_t>(stack[high].number)][static_cast<std::size_t>(stack[low].number)] = true;
+                        image[static_cast<std::size_t>(stack[high].number)]
+                             [static_cast<std::size_t>(stack[low].number)] = true;
                     }
                 }
             }

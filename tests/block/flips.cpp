@@ -44,8 +44,10 @@ std::vector<bool> empty_places(const Stack& stack) {
     return places;
 }
 
-/// Whether the yarns in the way truly are: each lies between the two, and without them the flip would be possible.
-bool truly_in_the_way(const Stack& stack, std::size_t weft, std::size_t warp, const std::vector<Slot>& named) {
+/// Whether the yarns in the way truly are: each lies between the two, and without them the flip would be
+/// possible.
+bool truly_in_the_way(const Stack& stack, std::size_t weft, std::size_t warp,
+                      const std::vector<Slot>& named) {
     const std::size_t a = stack.positions(System::weft)[weft], b = stack.positions(System::warp)[warp];
     for (const Slot yarn : named) {
         if (yarn.is_empty()) return false;
@@ -56,25 +58,29 @@ bool truly_in_the_way(const Stack& stack, std::size_t weft, std::size_t warp, co
 }
 
 /// Checks one flip of one stack against the set of all images that any stack of these yarns has.
-bool flip_is_right(const Stack& stack, std::size_t weft, std::size_t warp, const std::vector<bool>& possible) {
+bool flip_is_right(const Stack& stack, std::size_t weft, std::size_t warp,
+                   const std::vector<bool>& possible) {
     const std::uint32_t wanted = pixels_of(stack) ^ std::uint32_t{1} << (weft * stack.warps() + warp);
     const FlippedStack flipped = flip(stack, weft, warp);
     if (flipped.valid != possible[wanted]) return false;
-    if (!flipped.valid) return flipped.stack == stack && truly_in_the_way(stack, weft, warp, flipped.in_the_way);
+    if (!flipped.valid)
+        return flipped.stack == stack && truly_in_the_way(stack, weft, warp, flipped.in_the_way);
     return flipped.in_the_way.empty() && pixels_of(flipped.stack) == wanted && flipped.stack.check() &&
            empty_places(flipped.stack) == empty_places(stack);
 }
 
 }  // namespace
 
-TEST_CASE("a flip is accepted exactly when some stack differs in that one pixel: all stacks up to 4 + 4 yarns") {
+TEST_CASE(
+    "a flip is accepted exactly when some stack differs in that one pixel: all stacks up to 4 + 4 yarns") {
     std::size_t flips = 0, wrong = 0;
     for (std::size_t wefts = 1; wefts <= 4; ++wefts) {
         for (std::size_t warps = 1; warps <= 4; ++warps) {
             std::vector<bool> possible(std::size_t{1} << (wefts * warps));
             for_each_stack(wefts, warps, 0, [&](const Stack& stack) { possible[pixels_of(stack)] = true; });
             for (std::size_t empties = 0; empties <= 2; ++empties) {
-                // 8 yarns and 2 empties have 1.8 million orders; there every 7th flip of each is enough to meet all kinds
+                // 8 yarns and 2 empties have 1.8 million orders; there every 7th flip of each is enough to
+                // meet all kinds
                 const std::size_t step = wefts + warps + empties >= 9 ? 7 : 1;
                 for_each_stack(wefts, warps, empties, [&](const Stack& stack) {
                     for (std::size_t k = flips % step; k < wefts * warps; k += step) {
@@ -93,7 +99,8 @@ TEST_CASE("a flip of a block changes one pixel, and back") {
     std::size_t accepted = 0, rejected = 0;
     for_all([&](Random& random) {
         const Block block = random_block(random);
-        const std::size_t pick = random.between(0, block.picks() - 1), end = random.between(0, block.ends() - 1);
+        const std::size_t pick = random.between(0, block.picks() - 1),
+                          end = random.between(0, block.ends() - 1);
         const auto flipped = flip(block, pick, end);
         const std::string pair = "pick " + std::to_string(pick + 1) + " and end " + std::to_string(end + 1);
         if (!flipped) {
@@ -117,12 +124,12 @@ TEST_CASE("a flip of a block changes one pixel, and back") {
 TEST_CASE("a rejected flip names the yarns in the way as people count them") {
     const Stack stack = parse_stack("T0 - P0 T1 P1~").value();
     const Block block = make_block({1, 2}, {1, 2}, [&](std::size_t row, std::size_t column) {
-        if (row == 1 && column == 1) return stack;
-        std::vector<Slot> slots;
-        for (std::size_t k = 0; k <= row; ++k) slots.push_back(Slot::weft(k));
-        for (std::size_t k = 0; k <= column; ++k) slots.push_back(Slot::warp(k));
-        return Stack(slots);
-    }).value();
+                            if (row == 1 && column == 1) return stack;
+                            std::vector<Slot> slots;
+                            for (std::size_t k = 0; k <= row; ++k) slots.push_back(Slot::weft(k));
+                            for (std::size_t k = 0; k <= column; ++k) slots.push_back(Slot::warp(k));
+                            return Stack(slots);
+                        }).value();
     REQUIRE(flip(block, 1, 2).error().message ==
             "pick 2 and end 3 cannot be flipped alone: in the way stand end 2, pick 3");
     REQUIRE_THAT(flip(block, 3, 0).error().message, Catch::Contains("no crossing of pick 4 and end 1"));

@@ -1,13 +1,12 @@
 #include <weave/block/from_card.hpp>
+#include <weave/block/operations.hpp>
+#include <weave/block/preset.hpp>
 
 #include <array>
 #include <block/brute.hpp>
 #include <regex>
 #include <set>
 #include <support/random.hpp>
-
-#include <weave/block/operations.hpp>
-#include <weave/block/preset.hpp>
 
 using namespace weave;
 using namespace weave::testing;
@@ -33,12 +32,15 @@ bool is_canonical(const Stack& stack) {
 }
 
 /// By the definition: no two picks and two ends of the cell lie crosswise.
-bool admits_order(const CardImage& card, std::size_t first_pick, std::size_t picks, std::size_t first_end, std::size_t ends) {
+bool admits_order(const CardImage& card, std::size_t first_pick, std::size_t picks, std::size_t first_end,
+                  std::size_t ends) {
     for (std::size_t a = first_pick; a < first_pick + picks; ++a) {
         for (std::size_t b = a + 1; b < first_pick + picks; ++b) {
             for (std::size_t c = first_end; c < first_end + ends; ++c) {
                 for (std::size_t d = first_end; d < first_end + ends; ++d) {
-                    if (card.weft_over(a, c) && !card.weft_over(b, c) && !card.weft_over(a, d) && card.weft_over(b, d)) return false;
+                    if (card.weft_over(a, c) && !card.weft_over(b, c) && !card.weft_over(a, d) &&
+                        card.weft_over(b, d))
+                        return false;
                 }
             }
         }
@@ -48,12 +50,14 @@ bool admits_order(const CardImage& card, std::size_t first_pick, std::size_t pic
 
 /// The four numbers of the message, from 0: pick over end 1, under end 2; other pick.
 std::array<std::size_t, 4> named_in(const std::string& message) {
-    static const std::regex shape(R"(no order fits: pick (\d+) lies over end (\d+) and under end (\d+), but pick (\d+) under end (\d+) and over end (\d+))");
+    static const std::regex shape(
+        R"(no order fits: pick (\d+) lies over end (\d+) and under end (\d+), but pick (\d+) under end (\d+) and over end (\d+))");
     std::smatch found;
     REQUIRE(std::regex_match(message, found, shape));
     REQUIRE(found[2] == found[5]);
     REQUIRE(found[3] == found[6]);
-    return {std::stoul(found[1]) - 1, std::stoul(found[4]) - 1, std::stoul(found[2]) - 1, std::stoul(found[3]) - 1};
+    return {std::stoul(found[1]) - 1, std::stoul(found[4]) - 1, std::stoul(found[2]) - 1,
+            std::stoul(found[3]) - 1};
 }
 
 std::size_t place_of(const std::vector<Grouping>& groupings, const Block& truth) {
@@ -74,11 +78,13 @@ std::vector<Preset> presets_in_many_sizes() {
     std::vector<Preset> all;
     for (std::int64_t a = 1; a <= 5; ++a) {
         for (std::int64_t b = 1; b <= 5; ++b) {
-            for (std::int64_t step = -2; step <= 2; ++step) all.push_back({"twill", {{"up", a}, {"down", b}, {"step", step}}});
+            for (std::int64_t step = -2; step <= 2; ++step)
+                all.push_back({"twill", {{"up", a}, {"down", b}, {"step", step}}});
             all.push_back({"pointed-twill", {{"up", a}, {"down", b}}});
             all.push_back({"herringbone", {{"up", a}, {"down", b}}});
             all.push_back({"basket", {{"ends", a}, {"picks", b}}});
-            for (std::int64_t c = 0; c < 2; ++c) all.push_back({"rib", {{"first", a}, {"second", b}, {"weft-rib", c}}});
+            for (std::int64_t c = 0; c < 2; ++c)
+                all.push_back({"rib", {{"first", a}, {"second", b}, {"weft-rib", c}}});
         }
     }
     for (std::int64_t size = 5; size <= 16; ++size) {
@@ -89,11 +95,16 @@ std::vector<Preset> presets_in_many_sizes() {
         for (std::int64_t stuffers = 0; stuffers <= 2; ++stuffers) {
             for (std::int64_t depth = 0; depth <= layers; ++depth) {
                 for (std::int64_t k = 1; k <= 3; ++k) {
-                    all.push_back({"layer-to-layer", {{"layers", layers}, {"depth", depth}, {"float", k}, {"stuffers", stuffers}}});
-                    all.push_back({"angle-interlock", {{"layers", layers}, {"depth", depth}, {"step", k}, {"stuffers", stuffers}}});
+                    all.push_back(
+                        {"layer-to-layer",
+                         {{"layers", layers}, {"depth", depth}, {"float", k}, {"stuffers", stuffers}}});
+                    all.push_back(
+                        {"angle-interlock",
+                         {{"layers", layers}, {"depth", depth}, {"step", k}, {"stuffers", stuffers}}});
                 }
             }
-            // without stuffers and with floats the card is that of a rib to the last pixel: nothing tells the layers
+            // without stuffers and with floats the card is that of a rib to the last pixel: nothing tells the
+            // layers
             for (std::int64_t k = 1; k <= (stuffers > 0 ? 3 : 1); ++k) {
                 all.push_back({"orthogonal", {{"layers", layers}, {"float", k}, {"stuffers", stuffers}}});
             }
@@ -129,7 +140,8 @@ TEST_CASE("a cell that admits no order is named with picks and ends that truly c
         const std::size_t t = random.between(1, 3), p = random.between(1, 3);
         const std::size_t rows = random.between(1, 2), columns = random.between(1, 2);
         const CardImage card = random_card(random, t * rows, p * columns);
-        const auto block = block_from_card(card, {static_cast<std::uint32_t>(t)}, {static_cast<std::uint32_t>(p)});
+        const auto block =
+            block_from_card(card, {static_cast<std::uint32_t>(t)}, {static_cast<std::uint32_t>(p)});
         std::string first_bad;
         for (std::size_t cell = rows * columns; cell-- > 0;) {
             const std::size_t row = cell / columns, column = cell % columns;
@@ -154,12 +166,15 @@ TEST_CASE("a cell that admits no order is named with picks and ends that truly c
 }
 
 TEST_CASE("cells of all sizes are read alike, whether their pixels fit into a word or not") {
-    for_all([](Random& random) {
-        const auto t = static_cast<std::uint32_t>(random.between(1, 12)), p = static_cast<std::uint32_t>(random.between(1, 140));
-        const Block block = random_block(random, {t, 1, t}, {p, 1, p, 2});
-        const CardImage card = block.card_image();
-        REQUIRE(block_from_card(card, block.t(), block.p()).value().card_image() == card);
-    }, 500);
+    for_all(
+        [](Random& random) {
+            const auto t = static_cast<std::uint32_t>(random.between(1, 12)),
+                       p = static_cast<std::uint32_t>(random.between(1, 140));
+            const Block block = random_block(random, {t, 1, t}, {p, 1, p, 2});
+            const CardImage card = block.card_image();
+            REQUIRE(block_from_card(card, block.t(), block.p()).value().card_image() == card);
+        },
+        500);
     Random random(7);
     const CardImage card = random_card(random, 3, 200);
     const Block single_picks = block_from_card(card, {1}, {200}).value();
@@ -174,7 +189,8 @@ TEST_CASE("counts that do not come out even with the card are refused") {
     Random random(8);
     const CardImage card = random_card(random, 6, 4);
     REQUIRE(block_from_card(card, {1}, {1}).value().card_image() == card);
-    REQUIRE_THAT(block_from_card(card, {4}, {1}).error().message, Catch::Contains("t add up to 4 picks") && Catch::Contains("card's 6"));
+    REQUIRE_THAT(block_from_card(card, {4}, {1}).error().message,
+                 Catch::Contains("t add up to 4 picks") && Catch::Contains("card's 6"));
     REQUIRE_THAT(block_from_card(card, {1}, {1, 2}).error().message, Catch::Contains("p add up to 3 ends"));
     REQUIRE_FALSE(block_from_card(card, {}, {1}));
     REQUIRE_FALSE(block_from_card(card, {1, 0}, {1}));
@@ -199,21 +215,24 @@ TEST_CASE("the true stacks of every preset are among the first three that its ca
 }
 
 TEST_CASE("every grouping that is offered fits the card, each once, with a reason") {
-    for_all([](Random& random) {
-        const bool random_pixels = random.between(0, 3) == 0;
-        const CardImage card = random_pixels ? random_card(random, random.between(1, 12), random.between(1, 12))
-                                             : random_block(random).card_image();
-        const std::size_t most = random.between(1, 12);
-        const auto groupings = possible_groupings(card, most);
-        REQUIRE_FALSE(groupings.empty());
-        REQUIRE(groupings.size() <= most);
-        std::set<std::pair<std::vector<std::uint32_t>, std::vector<std::uint32_t>>> seen;
-        for (const Grouping& grouping : groupings) {
-            REQUIRE(block_from_card(card, grouping.t, grouping.p).value().card_image() == card);
-            REQUIRE(seen.emplace(grouping.t, grouping.p).second);
-            REQUIRE_FALSE(grouping.reason.empty());
-        }
-    }, 3000);
+    for_all(
+        [](Random& random) {
+            const bool random_pixels = random.between(0, 3) == 0;
+            const CardImage card = random_pixels
+                                       ? random_card(random, random.between(1, 12), random.between(1, 12))
+                                       : random_block(random).card_image();
+            const std::size_t most = random.between(1, 12);
+            const auto groupings = possible_groupings(card, most);
+            REQUIRE_FALSE(groupings.empty());
+            REQUIRE(groupings.size() <= most);
+            std::set<std::pair<std::vector<std::uint32_t>, std::vector<std::uint32_t>>> seen;
+            for (const Grouping& grouping : groupings) {
+                REQUIRE(block_from_card(card, grouping.t, grouping.p).value().card_image() == card);
+                REQUIRE(seen.emplace(grouping.t, grouping.p).second);
+                REQUIRE_FALSE(grouping.reason.empty());
+            }
+        },
+        3000);
 }
 
 TEST_CASE("layers that were renumbered, or change places from region to region, are still found") {
@@ -228,8 +247,10 @@ TEST_CASE("layers that were renumbered, or change places from region to region, 
     const Block two = make_preset({"multi-layer", {}}).value();
     const std::vector<std::size_t> exchange{1, 0};
     Block other = two;
-    for (std::size_t k = 0; k < 2; ++k) other = renumber_column(renumber_row(other, k, exchange).value(), k, exchange).value();
-    const std::vector<BlockPtr> blocks{std::make_shared<const Block>(two), std::make_shared<const Block>(other)};
+    for (std::size_t k = 0; k < 2; ++k)
+        other = renumber_column(renumber_row(other, k, exchange).value(), k, exchange).value();
+    const std::vector<BlockPtr> blocks{std::make_shared<const Block>(two),
+                                       std::make_shared<const Block>(other)};
     StencilMap map{8, 8, {}};
     for (std::size_t k = 0; k < 64; ++k) map.blocks.push_back(k / 32 == k % 8 / 4 ? 0 : 1);
     const Block checks = stencil(blocks, map).value();

@@ -15,7 +15,8 @@ std::vector<std::uint32_t> random_counts(Random& random, std::size_t size) {
     return counts;
 }
 
-/// The wefts and warps of `part`, in its order, as they stand in a larger stack from `first` weft and warp on.
+/// The wefts and warps of `part`, in its order, as they stand in a larger stack from `first` weft and warp
+/// on.
 bool holds_in_order(const Stack& whole, const Stack& part, std::size_t first_weft, std::size_t first_warp) {
     std::vector<Slot> inside, expected;
     for (const Slot slot : whole.slots()) {
@@ -33,7 +34,8 @@ bool holds_in_order(const Stack& whole, const Stack& part, std::size_t first_wef
 bool region_is(const CardImage& whole, const CardImage& part, std::size_t first_pick, std::size_t first_end) {
     for (std::size_t pick = 0; pick < part.picks(); ++pick) {
         for (std::size_t end = 0; end < part.ends(); ++end) {
-            if (whole.weft_over(first_pick + pick, first_end + end) != part.weft_over(pick, end)) return false;
+            if (whole.weft_over(first_pick + pick, first_end + end) != part.weft_over(pick, end))
+                return false;
         }
     }
     return true;
@@ -64,30 +66,39 @@ TEST_CASE("each copy in a tiled block keeps the order and the card of its source
         const Block block = random_block(random, {}, {}, 3);
         const std::size_t x = random.between(1, 3), y = random.between(1, 3), z = random.between(1, 3);
         const Block tiles = tile(block, x, y, z).value();
-        const std::size_t row = random.between(0, tiles.rows() - 1), column = random.between(0, tiles.columns() - 1);
+        const std::size_t row = random.between(0, tiles.rows() - 1),
+                          column = random.between(0, tiles.columns() - 1);
         const std::size_t copy = random.between(0, z - 1);
         const Stack& source = block.stack(row % block.rows(), column % block.columns());
-        REQUIRE(holds_in_order(tiles.stack(row, column), source, copy * source.wefts(), copy * source.warps()));
+        REQUIRE(
+            holds_in_order(tiles.stack(row, column), source, copy * source.wefts(), copy * source.warps()));
         if (z == 1) {
-            REQUIRE(region_is(tiles.card_image(), block.card_image(), (x - 1) * block.picks(), (y - 1) * block.ends()));
+            REQUIRE(region_is(tiles.card_image(), block.card_image(), (x - 1) * block.picks(),
+                              (y - 1) * block.ends()));
         }
     });
 }
 
 TEST_CASE("the tiling formula as printed breaks the yarn index constraints") {
     std::size_t broken = 0;
-    for_all([&](Random& random) {
-        const Block block = random_block(random, {}, {}, 3);
-        const Plain printed = tiled(plain(block), 2, 2, 2, true);
-        // With one row and one column every partial sum is 0 and the stray factor does no harm.
-        REQUIRE(obeys(printed) == (block.rows() == 1 && block.columns() == 1));
-        broken += obeys(printed) ? 0 : 1;
-    }, 1000);
+    for_all(
+        [&](Random& random) {
+            const Block block = random_block(random, {}, {}, 3);
+            const Plain printed = tiled(plain(block), 2, 2, 2, true);
+            // The factor is wrong in the first column, where it takes away the picks of the rows before, and
+            // from the third on, where it counts yarns several times; only where all those sums are 0 it does
+            // no harm.
+            REQUIRE(obeys(printed) == (block.rows() == 1 && block.columns() <= 2));
+            broken += obeys(printed) ? 0 : 1;
+        },
+        1000);
     REQUIRE(broken > 0);
 }
 
 TEST_CASE("tiling refuses nothing-times and more crossings than a card may have") {
-    const Block block = make_block({1}, {1}, [](auto, auto) { return Stack({Slot::weft(0), Slot::warp(0)}); }).value();
+    const Block block = make_block({1}, {1}, [](auto, auto) {
+                            return Stack({Slot::weft(0), Slot::warp(0)});
+                        }).value();
     REQUIRE_FALSE(tile(block, 0, 1, 1));
     REQUIRE_FALSE(tile(block, 1, 1, 0));
     for (const std::size_t times : {std::size_t{1} << 30, std::size_t{1} << 62, SIZE_MAX}) {
@@ -105,8 +116,10 @@ TEST_CASE("attaching puts both blocks side by side on all six faces") {
         const std::size_t axis = static_cast<std::size_t>(face) / 2;
         const bool after = static_cast<std::size_t>(face) % 2 == 0;
         const Block one = random_block(random, {}, {}, 3);
-        const auto t = axis == 1 ? one.t() : random_counts(random, axis == 2 ? one.rows() : random.between(1, 3));
-        const auto p = axis == 0 ? one.p() : random_counts(random, axis == 2 ? one.columns() : random.between(1, 3));
+        const auto t =
+            axis == 1 ? one.t() : random_counts(random, axis == 2 ? one.rows() : random.between(1, 3));
+        const auto p =
+            axis == 0 ? one.p() : random_counts(random, axis == 2 ? one.columns() : random.between(1, 3));
         const Block other = random_block(random, t, p);
         const Block whole = attach(one, other, face).value();
         const Block &first = after ? one : other, &second = after ? other : one;
@@ -118,7 +131,8 @@ TEST_CASE("attaching puts both blocks side by side on all six faces") {
             REQUIRE(whole.height() == std::max(one.height(), other.height()));
             REQUIRE(region_is(card, first.card_image(), 0, 0));
             REQUIRE(region_is(card, second.card_image(), picks, ends));
-            REQUIRE(whole.stack(axis == 0 ? first.rows() : 0, axis == 1 ? first.columns() : 0) == second.stack(0, 0));
+            REQUIRE(whole.stack(axis == 0 ? first.rows() : 0, axis == 1 ? first.columns() : 0) ==
+                    second.stack(0, 0));
             return;
         }
         REQUIRE(whole.height() == one.height() + other.height());
@@ -137,12 +151,14 @@ TEST_CASE("attaching puts both blocks side by side on all six faces") {
 
 TEST_CASE("attaching names the row or column in which blocks differ") {
     Random random(1);
-    const Block one = random_block(random, {1, 2, 1}, {2, 2}), wider = random_block(random, {1, 2, 1}, {2, 3});
-    const Block deeper = random_block(random, {1, 2, 3}, {2, 2}), longer = random_block(random, {1, 2}, {2, 2});
+    const Block one = random_block(random, {1, 2, 1}, {2, 2}),
+                wider = random_block(random, {1, 2, 1}, {2, 3});
+    const Block deeper = random_block(random, {1, 2, 3}, {2, 2}),
+                longer = random_block(random, {1, 2}, {2, 2});
     REQUIRE(attach(one, wider, Face::plus_x).error().message ==
-            "cannot attach: column 1 has 2 ends in one block and 3 ends in the other");
+            "cannot attach: column 1 has 2 ends in one block and 3 in the other");
     REQUIRE(attach(one, deeper, Face::minus_y).error().message ==
-            "cannot attach: row 2 has 3 picks in one block and 1 picks in the other");
+            "cannot attach: row 2 has 3 picks in one block and 1 in the other");
     REQUIRE_THAT(attach(one, longer, Face::plus_y).error().message, Catch::Contains("3 and 2 rows"));
     REQUIRE_THAT(attach(one, longer, Face::plus_z).error().message, Catch::Contains("3 rows and 2 columns"));
     REQUIRE(attach(one, longer, Face::plus_x));
@@ -166,7 +182,8 @@ TEST_CASE("a stencil takes each stack from the block that it names") {
         for (std::size_t row = 0; row < map.rows; ++row) {
             for (std::size_t column = 0; column < map.columns; ++column) {
                 const Block& source = *blocks[map.row(row)[column]];
-                REQUIRE(whole.stack(row, column) == source.stack(row % first.rows(), column % first.columns()));
+                REQUIRE(whole.stack(row, column) ==
+                        source.stack(row % first.rows(), column % first.columns()));
             }
         }
     });
@@ -175,15 +192,20 @@ TEST_CASE("a stencil takes each stack from the block that it names") {
 TEST_CASE("a stencil of blocks of different sizes fits where their repeated counts agree") {
     Random random(2);
     const auto share = [](Block block) { return std::make_shared<const Block>(std::move(block)); };
-    const std::vector<BlockPtr> fits{share(random_block(random, {2}, {1, 3})), share(random_block(random, {2, 2}, {1, 3, 1, 3}))};
+    const std::vector<BlockPtr> fits{share(random_block(random, {2}, {1, 3})),
+                                     share(random_block(random, {2, 2}, {1, 3, 1, 3}))};
     StencilMap map{3, 4, std::vector<std::uint16_t>(12, 1)};
     REQUIRE(stencil(fits, map));
     map.blocks[7] = 2;
-    REQUIRE(stencil(fits, map).error().text() == "stencil[1][3]: names block 2, but there are only 2, counted from 0");
+    REQUIRE(stencil(fits, map).error().text() ==
+            "stencil[1][3]: names block 2, but there are only 2, counted from 0");
     map.blocks[7] = 0;
-    const std::vector<BlockPtr> differ{share(random_block(random, {2}, {1, 3})), share(random_block(random, {2, 2, 1}, {1, 3}))};
-    REQUIRE_THAT(stencil(differ, map).error().message, Catch::Contains("blocks 0 and 1") && Catch::Contains("row 2 has 2 picks"));
-    const std::vector<BlockPtr> wide{share(random_block(random, {2}, {1, 3})), share(random_block(random, {2}, {1, 2}))};
+    const std::vector<BlockPtr> differ{share(random_block(random, {2}, {1, 3})),
+                                       share(random_block(random, {2, 2, 1}, {1, 3}))};
+    REQUIRE_THAT(stencil(differ, map).error().message,
+                 Catch::Contains("blocks 0 and 1") && Catch::Contains("row 2 has 2 picks"));
+    const std::vector<BlockPtr> wide{share(random_block(random, {2}, {1, 3})),
+                                     share(random_block(random, {2}, {1, 2}))};
     REQUIRE_THAT(stencil(wide, map).error().message, Catch::Contains("column 1 has 3 ends"));
     REQUIRE_FALSE(stencil(fits, StencilMap{}));
     REQUIRE_FALSE(stencil({}, map));
@@ -195,7 +217,8 @@ TEST_CASE("renumbering permutes picks within a row or ends within a column and n
         const bool of_row = random.coin();
         const std::size_t line = random.between(0, (of_row ? block.rows() : block.columns()) - 1);
         const auto order = random_order(random, of_row ? block.t()[line] : block.p()[line]);
-        const Block changed = (of_row ? renumber_row(block, line, order) : renumber_column(block, line, order)).value();
+        const Block changed =
+            (of_row ? renumber_row(block, line, order) : renumber_column(block, line, order)).value();
         REQUIRE(obeys(plain(changed)));
         const std::size_t first = of_row ? block.first_pick(line) : block.first_end(line);
         auto expected = pixels(block.card_image());
@@ -204,7 +227,8 @@ TEST_CASE("renumbering permutes picks within a row or ends within a column and n
         };
         for (std::size_t pick = 0; pick < block.picks(); ++pick) {
             for (std::size_t end = 0; end < block.ends(); ++end) {
-                expected[pick][end] = block.weft_over(of_row ? source(pick) : pick, of_row ? end : source(end));
+                expected[pick][end] =
+                    block.weft_over(of_row ? source(pick) : pick, of_row ? end : source(end));
             }
         }
         REQUIRE(pixels(changed.card_image()) == expected);
@@ -212,16 +236,19 @@ TEST_CASE("renumbering permutes picks within a row or ends within a column and n
         REQUIRE(changed.p() == block.p());
         std::vector<std::size_t> back(order.size());
         for (std::size_t k = 0; k < order.size(); ++k) back[order[k]] = k;
-        REQUIRE((of_row ? renumber_row(changed, line, back) : renumber_column(changed, line, back)).value() == block);
+        REQUIRE((of_row ? renumber_row(changed, line, back) : renumber_column(changed, line, back)).value() ==
+                block);
     });
 }
 
 TEST_CASE("renumbering refuses what is not an order of that row's picks") {
     Random random(3);
     const Block block = random_block(random, {3}, {2, 1});
-    const std::vector<std::size_t> twice{0, 1, 1}, short_one{0, 1}, foreign{0, 1, 3}, fine{2, 0, 1}, ends{1, 0};
+    const std::vector<std::size_t> twice{0, 1, 1}, short_one{0, 1}, foreign{0, 1, 3}, fine{2, 0, 1},
+        ends{1, 0};
     for (const auto& wrong : {twice, short_one, foreign}) {
-        REQUIRE_THAT(renumber_row(block, 0, wrong).error().message, Catch::Contains("row 0") && Catch::Contains("3 picks"));
+        REQUIRE_THAT(renumber_row(block, 0, wrong).error().message,
+                     Catch::Contains("row 0") && Catch::Contains("3 picks"));
     }
     REQUIRE(renumber_row(block, 0, fine));
     REQUIRE_FALSE(renumber_row(block, 1, fine));

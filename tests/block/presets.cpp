@@ -1,7 +1,7 @@
 #include <weave/block/preset.hpp>
 
-#include <numeric>
 #include <block/brute.hpp>
+#include <numeric>
 #include <support/random.hpp>
 
 using namespace weave;
@@ -19,7 +19,9 @@ std::string card_of(const Preset& preset) {
     return text;
 }
 
-std::string refusal(const Preset& preset) { return make_preset(preset).error().message; }
+std::string refusal(const Preset& preset) {
+    return make_preset(preset).error().message;
+}
 
 bool all_bind(const CardImage& card) {
     const auto varies = [](const CardImage& lines) {
@@ -35,29 +37,32 @@ bool all_bind(const CardImage& card) {
 
 }  // namespace
 
-TEST_CASE("any preset of any size is a block in which every pick and every end binds, or a refusal that says why") {
+TEST_CASE(
+    "any preset of any size is a block in which every pick and every end binds, or a refusal that says why") {
     std::vector<std::size_t> made(preset_families().size());
-    for_all([&](Random& random) {
-        const std::size_t which = random.between(0, made.size() - 1);
-        Preset preset{preset_families()[which].name, {}};
-        for (const PresetOption& option : preset_families()[which].options) {
-            const std::int64_t high = std::min<std::int64_t>(option.high, option.low + 12);
-            const std::int64_t low = std::max<std::int64_t>(option.low, -12);
-            const auto spread = static_cast<std::size_t>(std::min<std::int64_t>(high - low, 12) + (low < 0 ? 12 : 0));
-            preset.options[option.name] = low + static_cast<std::int64_t>(random.between(0, spread));
-        }
-        if (preset.options.contains("stitch")) preset.options["stitch"] %= 4;
-        if (preset.options.contains("stuffers")) preset.options["stuffers"] %= 3;
-        const auto block = make_preset(preset);
-        if (!block) {
-            REQUIRE(block.error().code == ErrorCode::invalid);
-            REQUIRE(block.error().message.size() > 20);
-            return;
-        }
-        ++made[which];
-        REQUIRE(all_bind(block->card_image()));
-        if (block->rows() * block->columns() < 400) REQUIRE(obeys(plain(*block)));
-    }, 3000);
+    for_all(
+        [&](Random& random) {
+            const std::size_t which = random.between(0, made.size() - 1);
+            Preset preset{preset_families()[which].name, {}};
+            for (const PresetOption& option : preset_families()[which].options) {
+                const std::int64_t low = std::max<std::int64_t>(option.low, -12),
+                                   high = std::min<std::int64_t>(option.high, 12);
+                const auto spread = static_cast<std::size_t>(high - low);
+                preset.options[option.name] = low + static_cast<std::int64_t>(random.between(0, spread));
+            }
+            if (preset.options.contains("stitch")) preset.options["stitch"] %= 4;
+            if (preset.options.contains("stuffers")) preset.options["stuffers"] %= 3;
+            const auto block = make_preset(preset);
+            if (!block) {
+                REQUIRE(block.error().code == ErrorCode::invalid);
+                REQUIRE(block.error().message.size() > 20);
+                return;
+            }
+            ++made[which];
+            REQUIRE(all_bind(block->card_image()));
+            if (block->rows() * block->columns() < 400) REQUIRE(obeys(plain(*block)));
+        },
+        3000);
     for (const std::size_t count : made) REQUIRE(count > 0);
 }
 
@@ -80,7 +85,8 @@ TEST_CASE("single-layer families have one pick and one end a stack, layered ones
     for (const PresetFamily& family : preset_families()) {
         INFO(family.name);
         const Block block = make_preset({family.name, {}}).value();
-        const bool layered = std::any_of(family.options.begin(), family.options.end(), [](const PresetOption& option) { return option.name == "layers"; });
+        const bool layered = std::any_of(family.options.begin(), family.options.end(),
+                                         [](const PresetOption& option) { return option.name == "layers"; });
         REQUIRE((block.t()[0] > 1) == layered);
         REQUIRE(all_bind(block.card_image()));
         REQUIRE_FALSE(family.help.empty());
@@ -94,7 +100,8 @@ TEST_CASE("single-layer families have one pick and one end a stack, layered ones
     REQUIRE(interlock.t() == std::vector<std::uint32_t>(4, 4));
     std::vector<std::string> climb;
     for (std::size_t row = 0; row < 4; ++row) climb.push_back(to_text(interlock.stack(row, 0)));
-    REQUIRE(climb == std::vector<std::string>{"P0 T0 T1 T2 T3", "T0 T1 P0 T2 T3", "T0 T1 T2 T3 P0", "T0 T1 P0 T2 T3"});
+    REQUIRE(climb ==
+            std::vector<std::string>{"P0 T0 T1 T2 T3", "T0 T1 P0 T2 T3", "T0 T1 T2 T3 P0", "T0 T1 P0 T2 T3"});
     const Block orthogonal = make_preset({"orthogonal", {}}).value();
     REQUIRE(orthogonal.p() == std::vector<std::uint32_t>{1, 2, 1, 2});
     const Block bound = make_preset({"layer-to-layer", {}}).value();
@@ -105,7 +112,8 @@ TEST_CASE("single-layer families have one pick and one end a stack, layered ones
 TEST_CASE("a stitch ties each cloth to the next with one pixel and no more") {
     for (std::int64_t weave = 0; weave <= 2; ++weave) {
         for (std::int64_t stitch = 1; stitch <= 4; ++stitch) {
-            const Block tied = make_preset({"multi-layer", {{"layers", 4}, {"weave", weave}, {"stitch", stitch}}}).value();
+            const Block tied =
+                make_preset({"multi-layer", {{"layers", 4}, {"weave", weave}, {"stitch", stitch}}}).value();
             std::size_t ties = 0;
             const Plain block = plain(tied);
             const auto card = pixels(block);
@@ -128,7 +136,8 @@ TEST_CASE("impossible presets are refused with what would be possible") {
             "a satin on 8 ends cannot have move 4: some ends would not bind; possible moves are 3 and 5");
     REQUIRE_THAT(refusal({"sateen", {{"size", 6}}}), Catch::Contains("no regular satin on 6 ends"));
     REQUIRE_THAT(refusal({"satin", {{"size", 5}, {"move", 7}}}), Catch::Contains("2 and 3"));
-    REQUIRE_THAT(refusal({"twill", {{"up", 1}, {"down", 3}, {"step", 2}}}), Catch::Contains("possible steps are 1 and 3"));
+    REQUIRE_THAT(refusal({"twill", {{"up", 1}, {"down", 3}, {"step", 2}}}),
+                 Catch::Contains("possible steps are 1 and 3"));
     REQUIRE_THAT(refusal({"twill", {{"step", 0}}}), Catch::Contains("never bind"));
     REQUIRE_THAT(refusal({"herringbone", {{"width", 3}}}), Catch::Contains("at least 4"));
     REQUIRE_THAT(refusal({"layer-to-layer", {{"layers", 3}, {"depth", 4}}}), Catch::Contains("at most 3"));

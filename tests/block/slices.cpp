@@ -9,10 +9,16 @@ namespace {
 
 /// One column (or row) of a block by itself.
 Block column_of(const Block& block, std::size_t column) {
-    return make_block(block.t(), {block.p()[column]}, [&](auto row, auto) { return block.stack(row, column); }, block.height()).value();
+    return make_block(
+               block.t(), {block.p()[column]}, [&](auto row, auto) { return block.stack(row, column); },
+               block.height())
+        .value();
 }
 Block row_of(const Block& block, std::size_t row) {
-    return make_block({block.t()[row]}, block.p(), [&](auto, auto column) { return block.stack(row, column); }, block.height()).value();
+    return make_block(
+               {block.t()[row]}, block.p(), [&](auto, auto column) { return block.stack(row, column); },
+               block.height())
+        .value();
 }
 
 Slice slice_of(System dots, const std::vector<std::string>& positions) {
@@ -26,7 +32,8 @@ Slice slice_of(System dots, const std::vector<std::string>& positions) {
 TEST_CASE("a column of a block as a slice and back is that column, empty slots included") {
     for_all([](Random& random) {
         const Block block = random_block(random);
-        const std::size_t column = random.between(0, block.columns() - 1), row = random.between(0, block.rows() - 1);
+        const std::size_t column = random.between(0, block.columns() - 1),
+                          row = random.between(0, block.rows() - 1);
         const Slice warps = warp_slice(block, column).value(), wefts = weft_slice(block, row).value();
         REQUIRE(to_block(warps).value() == column_of(block, column));
         REQUIRE(to_block(wefts).value() == row_of(block, row));
@@ -77,14 +84,19 @@ TEST_CASE("a slice's text reads as it is drawn") {
     REQUIRE(position[2].disabled);
     REQUIRE(position[2].yarn == Slot::weft(1, true));
     REQUIRE(to_text(position) == "T0 - (T1~) P0");
-    REQUIRE(to_block(slice_of(System::weft, {"(T0) P0 T1 -", "T0 P0"}))->stack(0, 0) == parse_stack("- P0 T0").value());
+    REQUIRE(to_block(slice_of(System::weft, {"(T0) P0 T1 -", "T0 P0"}))->stack(0, 0) ==
+            parse_stack("- P0 T0").value());
     REQUIRE_THAT(parse_slice_position("(P0)", System::weft).error().message, Catch::Contains("only wefts"));
-    REQUIRE_THAT(parse_slice_position("T0 (T1)", System::warp).error().message, Catch::Contains("only warps"));
-    for (const char* text : {"()", "(T0", "T0)", "((T0))", "(-)", "X"}) REQUIRE_FALSE(parse_slice_position(text, System::weft));
+    REQUIRE_THAT(parse_slice_position("T0 (T1)", System::warp).error().message,
+                 Catch::Contains("only warps"));
+    for (const char* text : {"()", "(T0", "T0)", "((T0))", "(-)", "X"})
+        REQUIRE_FALSE(parse_slice_position(text, System::weft));
 }
 
 TEST_CASE("a slice that is no cloth is refused at its position") {
-    const auto error = [](std::vector<std::string> positions) { return to_block(slice_of(System::weft, positions)).error(); };
+    const auto error = [](std::vector<std::string> positions) {
+        return to_block(slice_of(System::weft, positions)).error();
+    };
     REQUIRE_THAT(error({}).message, Catch::Contains("at least one position"));
     REQUIRE(error({"T0 P0", "T0 P0 P1"}).text() ==
             "positions[1]: has 2 warps running along the slice, but positions[0] has 1");

@@ -12,7 +12,8 @@ TEST_CASE("a random block obeys the constraints, and its card follows from them 
         const Plain same = plain(block);
         REQUIRE(obeys(same));
         REQUIRE(pixels(block.card_image()) == pixels(same));
-        const std::size_t pick = random.between(0, block.picks() - 1), end = random.between(0, block.ends() - 1);
+        const std::size_t pick = random.between(0, block.picks() - 1),
+                          end = random.between(0, block.ends() - 1);
         REQUIRE(block.weft_over(pick, end) == pixels(same)[pick][end]);
         REQUIRE(block.first_pick(block.row_of_pick(pick)) <= pick);
         REQUIRE(block.first_pick(block.row_of_pick(pick) + 1) > pick);
@@ -24,7 +25,8 @@ TEST_CASE("a random block obeys the constraints, and its card follows from them 
 TEST_CASE("a block with one yarn missing, repeated or foreign is refused, and the cell is named") {
     for_all([](Random& random) {
         const Block block = random_block(random);
-        const std::size_t row = random.between(0, block.rows() - 1), column = random.between(0, block.columns() - 1);
+        const std::size_t row = random.between(0, block.rows() - 1),
+                          column = random.between(0, block.columns() - 1);
         const auto slots = block.stack(row, column).slots();
         std::vector<Slot> broken(slots.begin(), slots.end());
         std::size_t at = random.between(0, broken.size() - 1);
@@ -32,10 +34,17 @@ TEST_CASE("a block with one yarn missing, repeated or foreign is refused, and th
         const Slot victim = broken[at];
         const std::size_t count = victim.is_weft() ? block.t()[row] : block.p()[column];
         switch (random.between(0, 3)) {
-            case 0: broken[at] = Slot(); break;
-            case 1: broken.push_back(victim); break;
-            case 2: broken[at] = victim.renumbered(count + random.between(0, 5)); break;
-            default: broken[at] = victim.is_weft() ? Slot::warp(block.p()[column]) : Slot::weft(block.t()[row]);
+            case 0:
+                broken[at] = Slot();
+                break;
+            case 1:
+                broken.push_back(victim);
+                break;
+            case 2:
+                broken[at] = victim.renumbered(count + random.between(0, 5));
+                break;
+            default:
+                broken[at] = victim.is_weft() ? Slot::warp(block.p()[column]) : Slot::weft(block.t()[row]);
         }
         const auto made = make_block(block.t(), block.p(), [&](std::size_t i, std::size_t j) {
             return i == row && j == column ? Stack(broken) : block.stack(i, j);
@@ -56,7 +65,8 @@ TEST_CASE("a stack survives its text, through the numbers of the whole block") {
 }
 
 TEST_CASE("a stack's text that is no stack is refused and quoted") {
-    for (const char* text : {"T", "P~", "X1", "T-1", "T1.", "t0", "T99999999999999999999", "T268435456", "~", "T0P0", "T 0"}) {
+    for (const char* text :
+         {"T", "P~", "X1", "T-1", "T1.", "t0", "T99999999999999999999", "T268435456", "~", "T0P0", "T 0"}) {
         INFO(text);
         REQUIRE_FALSE(parse_stack(text));
     }
@@ -71,7 +81,8 @@ TEST_CASE("an empty block and one beyond the crossing limit are refused") {
     REQUIRE_FALSE(check_card_size(0, 5));
     REQUIRE_FALSE(check_card_size(UINT64_MAX, UINT64_MAX));
     REQUIRE(check_card_size(1 << 15, 1 << 15));
-    REQUIRE_THAT(check_card_size((1 << 15) + 1, 1 << 15).error().message, Catch::Contains("larger than the limit"));
+    REQUIRE_THAT(check_card_size((1 << 15) + 1, 1 << 15).error().message,
+                 Catch::Contains("larger than the limit"));
 }
 
 TEST_CASE("a card's bits are packed from the left, first pick first, and its hash is theirs") {
@@ -86,19 +97,21 @@ TEST_CASE("a card's bits are packed from the left, first pick first, and its has
 }
 
 TEST_CASE("a transposed card has picks and ends exchanged") {
-    for_all([](Random& random) {
-        CardImage card(random.between(1, 40), random.between(1, 40));
-        for (std::size_t pick = 0; pick < card.picks(); ++pick) {
-            for (std::size_t end = 0; end < card.ends(); ++end) card.set(pick, end, random.coin());
-        }
-        const CardImage turned = card.transposed();
-        bool same = turned.picks() == card.ends() && turned.ends() == card.picks();
-        for (std::size_t pick = 0; same && pick < card.picks(); ++pick) {
-            for (std::size_t end = 0; end < card.ends(); ++end) {
-                same = same && turned.weft_over(end, pick) == card.weft_over(pick, end);
+    for_all(
+        [](Random& random) {
+            CardImage card(random.between(1, 40), random.between(1, 40));
+            for (std::size_t pick = 0; pick < card.picks(); ++pick) {
+                for (std::size_t end = 0; end < card.ends(); ++end) card.set(pick, end, random.coin());
             }
-        }
-        REQUIRE(same);
-        REQUIRE(turned.transposed() == card);  // the padding stays 0
-    }, 2000);
+            const CardImage turned = card.transposed();
+            bool same = turned.picks() == card.ends() && turned.ends() == card.picks();
+            for (std::size_t pick = 0; same && pick < card.picks(); ++pick) {
+                for (std::size_t end = 0; end < card.ends(); ++end) {
+                    same = same && turned.weft_over(end, pick) == card.weft_over(pick, end);
+                }
+            }
+            REQUIRE(same);
+            REQUIRE(turned.transposed() == card);  // the padding stays 0
+        },
+        2000);
 }

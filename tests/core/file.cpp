@@ -1,10 +1,10 @@
 #include <weave/core/file.hpp>
 
+#include <catch2/catch.hpp>
+
+#include <fstream>
 #include <sys/stat.h>
 #include <unistd.h>
-
-#include <catch2/catch.hpp>
-#include <fstream>
 
 using namespace weave;
 namespace fs = std::filesystem;
@@ -26,7 +26,8 @@ struct Folder {
     Folder(const Folder&) = delete;
     Folder& operator=(const Folder&) = delete;
     [[nodiscard]] std::size_t entries() const {
-        return static_cast<std::size_t>(std::distance(fs::directory_iterator(path), fs::directory_iterator()));
+        return static_cast<std::size_t>(
+            std::distance(fs::directory_iterator(path), fs::directory_iterator()));
     }
 };
 
@@ -71,12 +72,14 @@ TEST_CASE("what cannot be read is refused with its name") {
     const fs::path file = folder.path / "large";
     REQUIRE(write_file(file, std::string(1001, 'x')));
     REQUIRE(read_file(file, 1001));
-    REQUIRE_THAT(read_file(file, 1000).error().text(), Catch::Contains("larger than the limit of 1000") && Catch::Contains(file.string()));
+    REQUIRE_THAT(read_file(file, 1000).error().text(),
+                 Catch::Contains("larger than the limit of 1000") && Catch::Contains(file.string()));
     REQUIRE(read_file(folder.path / "gone").error().code == ErrorCode::bad_input);
     REQUIRE_THAT(read_file(folder.path).error().message, Catch::Contains("not a regular file"));
     const fs::path pipe = folder.path / "pipe";
     REQUIRE(::mkfifo(pipe.c_str(), 0600) == 0);
-    REQUIRE_THAT(read_file(pipe).error().message, Catch::Contains("not a regular file"));  // and does not wait for a writer
+    REQUIRE_THAT(read_file(pipe).error().message,
+                 Catch::Contains("not a regular file"));  // and does not wait for a writer
 }
 
 TEST_CASE("a folder appears whole or not at all") {

@@ -8,7 +8,9 @@ using namespace weave;
 
 namespace {
 
-std::string number(std::uint64_t bits) { return ecmascript_number(std::bit_cast<double>(bits)); }
+std::string number(std::uint64_t bits) {
+    return ecmascript_number(std::bit_cast<double>(bits));
+}
 std::string refusal(const std::string& text) {
     const auto parsed = parse_json(text);
     REQUIRE_FALSE(parsed);
@@ -61,14 +63,18 @@ TEST_CASE("canonical bytes are those of the examples of RFC 8785") {
     })") == "{\"literals\":[null,true,false],\"numbers\":[333333333.3333333,1e+30,4.5,0.002,1e-27],"
             "\"string\":\"\xe2\x82\xac$\\u000f\\nA'B\\\"\\\\\\\\\\\"/\"}");
     // members go by UTF-16 code units: an emoji (surrogates from d800) stands before the ligature at fb33
-    REQUIRE(canonical("{\"\\u20ac\": \"Euro Sign\", \"\\r\": \"Carriage Return\", \"\\ufb33\": \"Hebrew Letter Dalet With Dagesh\","
-                      "\"1\": \"One\", \"\\ud83d\\ude00\": \"Emoji: Grinning Face\", \"\\u0080\": \"Control\","
-                      "\"\\u00f6\": \"Latin Small Letter O With Diaeresis\"}") ==
-            "{\"\\r\":\"Carriage Return\",\"1\":\"One\",\"\xc2\x80\":\"Control\","
-            "\"\xc3\xb6\":\"Latin Small Letter O With Diaeresis\",\"\xe2\x82\xac\":\"Euro Sign\","
-            "\"\xf0\x9f\x98\x80\":\"Emoji: Grinning Face\",\"\xef\xac\xb3\":\"Hebrew Letter Dalet With Dagesh\"}");
+    REQUIRE(
+        canonical("{\"\\u20ac\": \"Euro Sign\", \"\\r\": \"Carriage Return\", \"\\ufb33\": \"Hebrew Letter "
+                  "Dalet With Dagesh\","
+                  "\"1\": \"One\", \"\\ud83d\\ude00\": \"Emoji: Grinning Face\", \"\\u0080\": \"Control\","
+                  "\"\\u00f6\": \"Latin Small Letter O With Diaeresis\"}") ==
+        "{\"\\r\":\"Carriage Return\",\"1\":\"One\",\"\xc2\x80\":\"Control\","
+        "\"\xc3\xb6\":\"Latin Small Letter O With Diaeresis\",\"\xe2\x82\xac\":\"Euro Sign\","
+        "\"\xf0\x9f\x98\x80\":\"Emoji: Grinning Face\",\"\xef\xac\xb3\":\"Hebrew Letter Dalet With "
+        "Dagesh\"}");
     REQUIRE(canonical("\"\\b\\t\\n\\f\\r\\u0000\\u001f\\u007f\"") == "\"\\b\\t\\n\\f\\r\\u0000\\u001f\x7f\"");
-    REQUIRE(canonical(R"([{}, [], "", -0.0, 18446744073709551615, -1])") == R"([{},[],"",0,18446744073709552000,-1])");
+    REQUIRE(canonical(R"([{}, [], "", -0.0, 18446744073709551615, -1])") ==
+            R"([{},[],"",0,18446744073709552000,-1])");
 }
 
 TEST_CASE("the order of members and the spacing do not change the canonical bytes") {
@@ -82,13 +88,16 @@ TEST_CASE("what is not strict JSON is refused, with its place") {
     REQUIRE_THAT(refusal(R"({"a": 1, "b": 2, "a": 3})"), Catch::Contains("repeats the member 'a'"));
     REQUIRE_THAT(refusal(R"({"x": {"a": 1, "\u0061": 3}})"), Catch::Contains("repeats the member 'a'"));
     REQUIRE(parse_json(R"({"x": {"a": 1}, "y": {"a": 2}, "a": [{"a": 1}]})"));
-    REQUIRE_THAT(refusal("{\n  \"a\": tru\n}"), Catch::Contains("line 2"));
-    for (const std::string text : {"", " ", "{", "[1,]", "{\"a\":1,}", "01", "+1", "1.", ".5", "NaN", "Infinity", "'a'", "[1] 2",
-                                   "// no\n1", "\"\t\"", "\"\\x41\"", "\"\\ud800\"", "nul", "1e999", "{a:1}", "[1 2]"}) {
+    REQUIRE_THAT(refusal("{\n  \"a\": tru }"), Catch::Contains("line 2"));
+    for (const std::string text :
+         {"",       " ",         "{",           "[1,]",     "{\"a\":1,}", "01",    "+1",
+          "1.",     ".5",        "NaN",         "Infinity", "'a'",        "[1] 2", "// no\n1",
+          "\"\t\"", "\"\\x41\"", "\"\\ud800\"", "nul",      "1e999",      "{a:1}", "[1 2]"}) {
         INFO(text);
         REQUIRE_FALSE(parse_json(text));
     }
-    for (const std::string text : {"\"\xff\"", "\"\xc0\xaf\"", "\"\xed\xa0\x80\"", "\"\xe2\x82\"", "\"\xf4\x90\x80\x80\""}) {
+    for (const std::string text :
+         {"\"\xff\"", "\"\xc0\xaf\"", "\"\xed\xa0\x80\"", "\"\xe2\x82\"", "\"\xf4\x90\x80\x80\""}) {
         REQUIRE_FALSE(parse_json(text));
     }
 }

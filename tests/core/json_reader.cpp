@@ -18,8 +18,10 @@ std::string error_of(const std::string& text, Read read) {
 }  // namespace
 
 TEST_CASE("a reader hands out members of every kind") {
-    const Json json = parse_json(R"({"n": 1.5, "i": -3, "b": true, "t": "plain", "c": "#A0b1c2", "way": "right",
-        "list": [1, 2], "o": {"x": 1}, "os": [{"x": 1}, {"x": 2}], "named": {"toe": {"x": 4}, "heel": {"x": 5}}, "raw": [null]})").value();
+    const Json json =
+        parse_json(R"({"n": 1.5, "i": -3, "b": true, "t": "plain", "c": "#A0b1c2", "way": "right",
+        "list": [1, 2], "o": {"x": 1}, "os": [{"x": 1}, {"x": 2}], "named": {"toe": {"x": 4}, "heel": {"x": 5}}, "raw": [null]})")
+            .value();
     JsonReader reader(json, "here");
     REQUIRE(reader.number("n", {0, 2}) == 1.5);
     REQUIRE(reader.integer("i", -3, 3) == -3);
@@ -66,7 +68,9 @@ TEST_CASE("values of a wrong kind or out of range are refused") {
         INFO(value);
         REQUIRE_FALSE(whole(value).empty());
     }
-    const auto refused = [](const std::string& value, auto read) { return !error_of("{\"x\": " + value + "}", read).empty(); };
+    const auto refused = [](const std::string& value, auto read) {
+        return !error_of("{\"x\": " + value + "}", read).empty();
+    };
     REQUIRE(refused("1", [](auto& r) { r.text("x"); }));
     REQUIRE(refused("\"abcd\"", [](auto& r) { r.text("x", {}, 3); }));
     REQUIRE(refused("1", [](auto& r) { r.boolean("x"); }));

@@ -8,14 +8,17 @@
 using namespace weave;
 
 TEST_CASE("a colour survives its text") {
-    weave::testing::for_all([](weave::testing::Random& random) {
-        const auto part = [&] { return static_cast<std::uint8_t>(random.between(0, 255)); };
-        const Colour colour{part(), part(), part()};
-        REQUIRE(parse_colour(to_text(colour)).value() == colour);
-    }, 2000);
+    weave::testing::for_all(
+        [](weave::testing::Random& random) {
+            const auto part = [&] { return static_cast<std::uint8_t>(random.between(0, 255)); };
+            const Colour colour{part(), part(), part()};
+            REQUIRE(parse_colour(to_text(colour)).value() == colour);
+        },
+        2000);
     REQUIRE(to_text(Colour{0, 10, 255}) == "#000aff");
     REQUIRE(parse_colour("#D08030").value() == Colour{0xd0, 0x80, 0x30});
-    for (const char* text : {"", "#", "d08030", "#d0803", "#d080300", "#d0803g", "#-08030", "#+08030", "# 08030", "#0x0803", "red"}) {
+    for (const char* text : {"", "#", "d08030", "#d0803", "#d080300", "#d0803g", "#-08030", "#+08030",
+                             "# 08030", "#0x0803", "red"}) {
         INFO(text);
         REQUIRE_FALSE(parse_colour(text));
     }
@@ -23,8 +26,10 @@ TEST_CASE("a colour survives its text") {
 
 TEST_CASE("an error gathers its place from the inside out") {
     REQUIRE(bad_input("is missing").text() == "is missing");
-    REQUIRE(bad_input("is missing", "t").in("toe").in("shoe.weave").text() == "shoe.weave: toe: t: is missing");
-    REQUIRE(bad_input("holds T5", "[3]").in("stacks").text() == "stacks[3]: holds T5");
+    REQUIRE(bad_input("is missing", "t").under("blocks.toe").in("shoe.weave").text() ==
+            "shoe.weave: blocks.toe.t: is missing");
+    REQUIRE(bad_input("holds T5", "[3]").under("stacks").text() == "stacks[3]: holds T5");
+    REQUIRE(bad_input("holds T5").under("stacks").in("a.weave").text() == "a.weave: stacks: holds T5");
     const auto tries = [](bool fails) -> Result<int> {
         WEAVE_TRY(const int value, fails ? Result<int>(invalid("no")) : Result<int>(4));
         WEAVE_CHECK_OK(value == 4 ? Status() : Status(invalid("never")));

@@ -304,13 +304,15 @@ CardImage corner_of(const CardImage& card) {
 }
 
 /// Stacks of equal counts that every cell admits although neither system keeps its order over the whole
-/// cloth: layers that change places from region to region. As many ends as picks come first.
-std::vector<Ranked> small_stacks(const CardImage& card) {
-    constexpr std::pair<std::uint32_t, std::uint32_t> usual[] = {{2, 2}, {3, 3}, {4, 4}, {2, 3}, {3, 2},
-                                                                 {2, 4}, {4, 2}, {3, 4}, {4, 3}};
-    constexpr std::size_t enough = 3;
-    std::vector<Ranked> found;
+/// cloth: layers that change places from region to region. Where the yarns tell nothing at all, small
+/// stacks are the likelier ones (`small_first`); where they tell something, large ones say more.
+std::vector<Ranked> even_stacks(const CardImage& card, std::size_t enough, bool small_first) {
+    std::array<std::pair<std::uint32_t, std::uint32_t>, 14> usual{{{6, 6}, {8, 4}, {6, 4}, {6, 3}, {4, 4}, {6, 2}, {3, 4},
+                                                                     {4, 3}, {3, 3}, {4, 2}, {2, 4}, {2, 3}, {3, 2},
+                                                                     {2, 2}}};
+    if (small_first) std::reverse(usual.begin(), usual.end());
     const CardImage corner = corner_of(card);
+    std::vector<Ranked> found;
     for (const auto& [t, p] : usual) {
         if (found.size() == enough) break;
         if (card.picks() % t != 0 || card.ends() % p != 0) continue;
@@ -321,6 +323,23 @@ std::vector<Ranked> small_stacks(const CardImage& card) {
     return found;
 }
 
+/// Puts readings into the ranking from this place on, unless they stand there or before.
+void offer_early(std::vector<Ranked>& ranked, std::vector<Ranked> offers, std::size_t place) {
+    for (Ranked& offer : offers) {
+        place = std::min(place, ranked.size());
+        const auto known = std::find_if(ranked.begin(), ranked.end(),
+                                        [&](const Ranked& other) { return same_grouping(offer, other); });
+        const auto target = ranked.begin() + static_cast<std::ptrdiff_t>(place);
+        if (known < target) continue;
+        if (known != ranked.end()) {
+            std::rotate(target, known, known + 1);
+        } else {
+            ranked.insert(target, std::move(offer));
+        }
+        ++place;
+    }
+}
+
 }  // namespace
 
 std::vector<Grouping> possible_groupings(const CardImage& card, std::size_t most) {
@@ -329,14 +348,8 @@ std::vector<Grouping> possible_groupings(const CardImage& card, std::size_t most
     const Yarns picks(card), ends(turned);
     const Readings pick_readings = readings_of(picks, true), end_readings = readings_of(ends, false);
     std::vector<Ranked> ranked = ranked_pairs(pick_readings, end_readings, card.ends());
-    if (is_single(ranked.front().t.counts) && is_single(ranked.front().p.counts)) {
-        std::size_t place = std::min<std::size_t>(2, ranked.size());
-        for (Ranked& stacks : small_stacks(card)) {
-            const auto same = [&](const Ranked& other) { return same_grouping(stacks, other); };
-            if (std::any_of(ranked.begin(), ranked.end(), same)) continue;
-            ranked.insert(ranked.begin() + static_cast<std::ptrdiff_t>(place++), std::move(stacks));
-        }
-    }
+    const bool nothing_found = is_single(ranked.front().t.counts) && is_single(ranked.front().p.counts);
+    offer_early(ranked, even_stacks(card, nothing_found ? 3 : 2, nothing_found), nothing_found ? 2 : 3);
     std::vector<Grouping> groupings;
     for (const Ranked& candidate : ranked) {
         if (groupings.size() == most) break;

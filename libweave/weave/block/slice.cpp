@@ -63,7 +63,7 @@ Result<Block> to_block(const Slice& slice) {
     std::size_t paths = 0, height = 0;
     for (std::size_t position = 0; position < slice.positions.size(); ++position) {
         Result<Stack> stack = stack_at(slice.positions[position], slice.dots);
-        if (!stack) return std::move(stack).error().in(place_of(position));
+        if (!stack) return std::move(stack).error().under(place_of(position));
         if (position == 0) paths = paths_of(*stack);
         if (paths_of(*stack) != paths) {
             return bad_input("has " + yarns_named(paths_of(*stack), wefts_run) +

@@ -16,6 +16,11 @@ std::string join(const std::vector<std::string>& names) {
     return text;
 }
 
+/// Whether a value is written as a whole number that 64 bits with a sign can hold.
+bool holds_whole_number(const Json& value) {
+    return value.is_number_integer() && !(value.is_number_unsigned() && value.get<std::uint64_t>() > INT64_MAX);
+}
+
 std::string between(double low, double high) {
     const bool below = high >= std::numeric_limits<double>::max();
     if (below && low <= -std::numeric_limits<double>::max()) return "a number";
@@ -77,8 +82,7 @@ std::int64_t JsonReader::integer(const std::string& key, std::int64_t low, std::
     const std::int64_t spare = fallback.value_or(low);
     const Json* member = find(key, !fallback);
     if (member == nullptr) return spare;
-    if (member->is_number_integer() &&
-        !(member->is_number_unsigned() && member->get<std::uint64_t>() > INT64_MAX)) {
+    if (holds_whole_number(*member)) {
         const auto value = member->get<std::int64_t>();
         if (value >= low && value <= high) return value;
     }
@@ -141,13 +145,12 @@ std::vector<std::int64_t> JsonReader::integers(const std::string& key, std::int6
     }
     for (std::size_t i = 0; i < member->size(); ++i) {
         const Json& item = (*member)[i];
-        const std::int64_t value = item.is_number_integer() ? item.get<std::int64_t>() : low - 1;
-        if (value < low || value > high) {
+        if (!holds_whole_number(item) || item.get<std::int64_t>() < low || item.get<std::int64_t>() > high) {
             fail("must be a whole number from " + std::to_string(low) + " to " + std::to_string(high),
                  key + "[" + std::to_string(i) + "]");
             return values;
         }
-        values.push_back(value);
+        values.push_back(item.get<std::int64_t>());
     }
     return values;
 }

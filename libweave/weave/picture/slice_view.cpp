@@ -153,6 +153,8 @@ class SliceDrawer {
         const auto mark = [&](Point point, double slope) {
             const double norm = std::hypot(1.0, slope);
             const Point ahead{way / norm, way * slope / norm};
+            m_canvas.arrow_head({point.x + ahead.x * 10, point.y + ahead.y * 10}, ahead, 21,
+                                {0xff, 0xff, 0xff});  // a rim, so that it reads on dark yarns too
             m_canvas.arrow_head({point.x + ahead.x * 7, point.y + ahead.y * 7}, ahead, 14,
                                 mix(path.colour, {0, 0, 0}, 0.62));
         };
@@ -192,6 +194,16 @@ class SliceDrawer {
             m_canvas.text(at(position, static_cast<double>(level)), number,
                           {.size = 11, .colour = dark, .anchor = anchor, .bold = true, .centred = true});
         };
+        // Where a pick turns at both ends its number stands on the yarn itself.
+        if (!reaches(path, false) && !reaches(path, true) && path.levels.front() < m_map.levels) {
+            const Point middle =
+                at(static_cast<double>(path.first) + 0.2, static_cast<double>(path.levels.front()));
+            const double half = Canvas::text_width(number, 11, true) / 2 + 2;
+            m_canvas.rectangle({middle.x - half, middle.y - 7, 2 * half, 14}, {0xff, 0xff, 0xff}, 0.9);
+            m_canvas.text(
+                middle, number,
+                {.size = 11, .colour = dark, .anchor = Anchor::middle, .bold = true, .centred = true});
+        }
         const double edge = static_cast<double>(m_map.positions) - 1;
         if (reaches(path, false) && !(m_trim && path.loose.front()))
             name(-overhang - 0.14, path.levels.front(), Anchor::end);

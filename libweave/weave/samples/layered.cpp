@@ -154,16 +154,15 @@ Design angle_interlock_a() {
 
 Design angle_interlock_b() {
     Design design = composite("Angle interlock B",
-                              "Three levels of wefts, binders on a slant from face to face, and a straight stuffer end "
-                              "beside each binder, in turn between the lower and the upper two levels.");
+                              "Three levels of wefts, binders on a slant from face to face, and beside each binder two "
+                              "straight stuffer ends, one between the lower and one between the upper two levels.");
     design.warp.yarns.push_back(yarn("stuffer", "#3f6fb0", 0.25, 300, 13000, 0.9));
-    design.warp.order.once = {0, 1};
+    design.warp.order.once = {1, 1, 0};
     design.warp.beams = {{"binders"}, {"stuffers"}};
-    design.warp.beam_order.once = {0, 1};
+    design.warp.beam_order.once = {1, 1, 0};
     static constexpr std::size_t height[] = {0, 0, 1, 2, 3, 3, 2, 1};
-    add_slices(design, "angle-interlock-b", 8, 8, 3, 2, [](std::size_t i, std::size_t j, std::size_t e) {
-        return e == 0 ? height[(i + 3 * j) % 8] : 1 + j % 2;
-    });
+    add_slices(design, "angle-interlock-b", 8, 8, 3, 3,
+               [](std::size_t i, std::size_t j, std::size_t e) { return e < 2 ? e + 1 : height[(i + 3 * j) % 8]; });
     return design;
 }
 

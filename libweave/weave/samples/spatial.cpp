@@ -65,8 +65,12 @@ constexpr std::size_t tl013_rows = 16, tl013_columns = 8, zigzag_end = 2, upper_
 constexpr std::array<std::size_t, 8> leaning_zigzag{1, 2, 4, 4, 5, 3, 3, 2};
 constexpr std::array<std::size_t, 8> upright_zigzag{1, 2, 3, 4, 5, 4, 3, 2};
 
-/// Every other end starts half a zigzag later, so that the ends cross like the struts of a girder.
-constexpr std::size_t zigzag_step(std::size_t row, std::size_t column) { return (row + 4 * (column % 2)) % 8; }
+/// Neighbouring ends are half a zigzag apart, so that they cross like the struts of a girder, and each pair starts an eighth
+/// later, so that in every row some end keeps the wefts of the two sections apart.
+constexpr std::size_t zigzag_step(std::size_t row, std::size_t column) {
+    constexpr std::array<std::size_t, 8> start{0, 4, 1, 5, 2, 6, 3, 7};
+    return (row + start[column % 8]) % 8;
+}
 
 Stack tl013_stack(std::size_t i, std::size_t j) {
     const bool up = (i + j) % 2 == 0;
