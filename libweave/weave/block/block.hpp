@@ -13,6 +13,13 @@
 
 namespace weave {
 
+/// No block is higher than this many places, and no operation piles up more places than this in the different
+/// stacks of its result: so a few bytes of a file that claim a great height cannot ask for all of the memory.
+inline constexpr std::size_t most_height = std::size_t{1} << 20, most_places = std::size_t{1} << 28;
+
+/// An error where so many different stacks of this height are more than that.
+Status check_places(std::size_t stacks, std::size_t height);
+
 /// A weave block {r, c, h, t, p, A} (paper, section 4.1): a tilable piece of 3D weave as an array of stacks.
 ///
 /// Row i holds t[i] picks and column j holds p[j] ends. Equal stacks are kept once: a cell is the number of
@@ -22,8 +29,8 @@ namespace weave {
 class Block {
   public:
     /// Checks every constraint of the paper's section 4.1. `cells` has t.size() * p.size() entries, row by
-    /// row, each an index into `stacks`. `height` is raised to the tallest stack where it is smaller. Errors
-    /// name the first bad cell as `stacks[row][column]`.
+    /// row, each an index into `stacks`. `height` is raised to the tallest stack where it is smaller and is
+    /// at most most_height. Errors name the first bad cell as `stacks[row][column]`.
     static Result<Block> make(std::vector<std::uint32_t> t, std::vector<std::uint32_t> p,
                               std::vector<Stack> stacks, std::vector<std::uint32_t> cells,
                               std::size_t height = 0);

@@ -2,6 +2,7 @@
 
 #include <weave/io/bitmap.hpp>
 
+#include <cstdint>
 #include <string_view>
 
 namespace weave::fuzz {
