@@ -130,8 +130,8 @@ TEST_CASE("a block that claims a great height cannot be piled up into endless me
                  Catch::Contains("higher than the limit"));
     const Block half = block_of_height(most_height / 2).value();
     REQUIRE(attach(half, half, Face::plus_z).value().stack(0, 0).height() == most_height / 2 + 2);
-    REQUIRE(check_places(256, most_height));
-    REQUIRE_THAT(check_places(257, most_height).error().message, Catch::Contains("different stacks"));
+    REQUIRE(check_slots(256, most_height));
+    REQUIRE_THAT(check_slots(257, most_height).error().message, Catch::Contains("different stacks"));
 }
 
 TEST_CASE("a stack tiled to the greatest height takes no time to pile up") {
@@ -289,4 +289,14 @@ TEST_CASE("renumbering refuses what is not an order of that row's picks") {
     REQUIRE_FALSE(renumber_row(block, 1, fine));
     REQUIRE(renumber_column(block, 0, ends));
     REQUIRE_THAT(renumber_column(block, 2, ends).error().message, Catch::Contains("no column 2"));
+}
+
+TEST_CASE("no operation makes a block higher than the limit, however few yarns it has") {
+    const auto stack = [](std::size_t, std::size_t) { return Stack({Slot::weft(0), Slot::warp(0)}); };
+    CHECK(!make_block({1}, {1}, stack, most_height + 1));
+    const Block high = make_block({1}, {1}, stack, most_height).value();
+    CHECK(tile(high, 1, 1, 1));
+    CHECK(!tile(high, 1, 1, 2));
+    CHECK(!attach(high, high, Face::plus_z));
+    CHECK(attach(high, high, Face::plus_x));
 }

@@ -13,12 +13,15 @@
 
 namespace weave {
 
-/// No block is higher than this many places, and no operation piles up more places than this in the different
-/// stacks of its result: so a few bytes of a file that claim a great height cannot ask for all of the memory.
-inline constexpr std::size_t most_height = std::size_t{1} << 20, most_places = std::size_t{1} << 28;
+/// No block may be higher, in slots: real cloth has dozens of layers, and a hostile file could ask for billions.
+inline constexpr std::size_t most_height = std::size_t{1} << 20;
+/// No operation in height fills more slots in the different stacks of its result.
+inline constexpr std::size_t most_slots = std::size_t{1} << 28;
 
-/// An error where so many different stacks of this height are more than that.
-Status check_places(std::size_t stacks, std::size_t height);
+/// An error where a block of this height is higher than most_height.
+Status check_height(std::size_t height);
+/// The same, or where so many different stacks of this height have more than most_slots.
+Status check_slots(std::size_t stacks, std::size_t height);
 
 /// A weave block {r, c, h, t, p, A} (paper, section 4.1): a tilable piece of 3D weave as an array of stacks.
 ///

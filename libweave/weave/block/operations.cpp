@@ -113,6 +113,7 @@ Result<Block> attach_z(const Block& lower, const Block& upper) {
                        std::to_string(upper.rows()) + " and " + std::to_string(upper.columns()) +
                        "; on top of each other they must be equal");
     }
+    WEAVE_CHECK_OK(check_height(lower.height() + upper.height()));
     StackTable table;
     std::map<std::pair<std::uint32_t, std::uint32_t>, std::uint32_t> known;
     std::vector<std::uint32_t> cells(lower.cells().size());
@@ -120,7 +121,7 @@ Result<Block> attach_z(const Block& lower, const Block& upper) {
         const auto pair = std::pair(lower.cells()[cell], upper.cells()[cell]);
         auto entry = known.find(pair);
         if (entry == known.end()) {
-            WEAVE_CHECK_OK(check_places(known.size() + 1, lower.height() + upper.height()));
+            WEAVE_CHECK_OK(check_slots(known.size() + 1, lower.height() + upper.height()));
             const Stack pile = piled(lower.stacks()[pair.first], lower.height(), upper.stacks()[pair.second]);
             entry = known.emplace(pair, table.number_of(pile)).first;
         }
@@ -222,7 +223,7 @@ Result<Block> tile(const Block& block, std::size_t x, std::size_t y, std::size_t
     if (too_long(block.picks(), x) || too_long(block.ends(), y))
         return check_card_size(most_crossings, 2).error();
     WEAVE_CHECK_OK(check_card_size(block.picks() * x * z, block.ends() * y * z));
-    WEAVE_CHECK_OK(check_places(block.stacks().size(), block.height() * z));
+    WEAVE_CHECK_OK(check_slots(block.stacks().size(), block.height() * z));
     StackTable table;
     std::vector<std::uint32_t> moved;
     for (const Stack& stack : block.stacks())
