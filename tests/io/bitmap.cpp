@@ -207,6 +207,11 @@ TEST_CASE("a few bytes that claim a picture of endless rows cost no memory") {
         48);
     CHECK_THAT(read_bitmap(claim).error().message, Catch::Contains("longer on a side than the limit"));
     CHECK_THAT(read_colour_image(claim).error().message, Catch::Contains("longer on a side than the limit"));
+    // The same with a text of 1.3 GB, of which ten bytes are there: refused at its length, before the size is
+    // judged.
+    const std::string text =
+        claim.substr(0, 33) + std::string("\x4f\x4f\x4f\x4fiTXt\x74\0NDAEB\x82\xff\xff\xff\0", 19);
+    CHECK_FALSE(read_bitmap(text));
     for (const BitmapFormat format : formats) {
         const CardImage wide(1, (std::size_t{1} << 22) + 1), widest(1, std::size_t{1} << 22);
         CHECK_FALSE(write_bitmap(wide, format));

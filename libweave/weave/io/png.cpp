@@ -84,6 +84,9 @@ bool read_header(PngTalk& talk) {
     return guarded(talk, [&talk] {
         png_set_read_fn(talk.png, &talk, on_read);
         png_set_user_limits(talk.png, PNG_UINT_31_MAX, PNG_UINT_31_MAX);
+        // A text or profile may claim 2 GiB, which libpng would allocate before it looks for the bytes.
+        constexpr png_alloc_size_t longest_chunk = png_alloc_size_t{1} << 23;
+        png_set_chunk_malloc_max(talk.png, longest_chunk);
         png_read_info(talk.png, talk.info);
     });
 }
