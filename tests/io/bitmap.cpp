@@ -207,8 +207,7 @@ TEST_CASE("a few bytes that claim a picture of endless rows cost no memory") {
         48);
     CHECK_THAT(read_bitmap(claim).error().message, Catch::Contains("longer on a side than the limit"));
     CHECK_THAT(read_colour_image(claim).error().message, Catch::Contains("longer on a side than the limit"));
-    // The same with a text of 1.3 GB, of which ten bytes are there: refused at its length, before the size is
-    // judged.
+    // The same with a text that claims 1.3 GB, of which ten bytes are there.
     const std::string text =
         claim.substr(0, 33) + std::string("\x4f\x4f\x4f\x4fiTXt\x74\0NDAEB\x82\xff\xff\xff\0", 19);
     CHECK_FALSE(read_bitmap(text));
