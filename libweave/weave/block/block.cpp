@@ -71,6 +71,13 @@ Status check_height(std::size_t height) {
                      std::to_string(most_height));
 }
 
+Status check_slots(std::size_t stacks, std::size_t height) {
+    WEAVE_CHECK_OK(check_height(height));
+    if (height == 0 || stacks <= most_slots / height) return {};
+    return bad_input(count_of(stacks, "different stack") + " of " + count_of(height, "slot") +
+                     " are more than the limit of " + std::to_string(most_slots) + " slots");
+}
+
 Result<Block> Block::make(std::vector<std::uint32_t> t, std::vector<std::uint32_t> p,
                           std::vector<Stack> stacks, std::vector<std::uint32_t> cells, std::size_t height) {
     assert(cells.size() == t.size() * p.size());
@@ -80,7 +87,6 @@ Result<Block> Block::make(std::vector<std::uint32_t> t, std::vector<std::uint32_
     if (block.picks() == 0 || block.ends() == 0)
         return bad_input("a block needs at least one pick and one end");
     WEAVE_CHECK_OK(check_card_size(block.picks(), block.ends()));
-    WEAVE_CHECK_OK(check_height(height));
     std::vector<bool> checked(stacks.size());
     for (std::size_t row = 0, cell = 0; row < t.size(); ++row) {
         for (std::size_t column = 0; column < p.size(); ++column, ++cell) {
@@ -91,6 +97,7 @@ Result<Block> Block::make(std::vector<std::uint32_t> t, std::vector<std::uint32_
             height = std::max(height, stack.height());
         }
     }
+    WEAVE_CHECK_OK(check_height(height));
     block.m_t = std::move(t);
     block.m_p = std::move(p);
     block.m_height = height;

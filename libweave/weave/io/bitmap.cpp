@@ -55,6 +55,13 @@ Status take_row(CardImage& card, const BitmapReading& reading, std::size_t row_f
     return {};
 }
 
+Status check_picture_size(std::size_t width, std::size_t height) {
+    WEAVE_CHECK_OK(check_card_size(height, width));
+    if (width <= longest_side && height <= longest_side) return {};
+    return bad_input("a picture of " + std::to_string(width) + " by " + std::to_string(height) +
+                     " pixels is longer on a side than the limit of " + std::to_string(longest_side));
+}
+
 bool starts_with(std::string_view bytes, std::string_view magic) {
     return bytes.substr(0, magic.size()) == magic;
 }
@@ -80,7 +87,7 @@ Result<BitmapFormat> bitmap_format_of(const std::filesystem::path& path) {
 }
 
 Result<std::string> write_bitmap(const CardImage& card, BitmapFormat format, const BitmapReading& reading) {
-    WEAVE_CHECK_OK(check_card_size(card.picks(), card.ends()));
+    WEAVE_CHECK_OK(check_picture_size(card.ends(), card.picks()));
     const BilevelRaster raster{
         card.ends(), card.picks(),
         [&](std::size_t row, std::span<std::uint8_t> packed) { fill_row(card, reading, row, packed); },
@@ -100,7 +107,7 @@ Result<CardFromBitmap> read_bitmap(std::string_view bytes, const BitmapReading& 
     CardFromBitmap read;
     RasterSink sink;
     sink.start = [&](std::size_t width, std::size_t height) -> Status {
-        WEAVE_CHECK_OK(check_card_size(height, width));
+        WEAVE_CHECK_OK(check_picture_size(width, height));
         read.card = CardImage(height, width);
         return {};
     };
@@ -120,7 +127,7 @@ Result<ColourImage> read_colour_image(std::string_view bytes) {
     ColourImage image;
     RasterSink sink;
     sink.start = [&](std::size_t width, std::size_t height) -> Status {
-        WEAVE_CHECK_OK(check_card_size(height, width));
+        WEAVE_CHECK_OK(check_picture_size(width, height));
         image.rows = height, image.columns = width;
         return {};
     };
