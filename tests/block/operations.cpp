@@ -110,6 +110,41 @@ TEST_CASE("tiling refuses nothing-times and more crossings than a card may have"
     REQUIRE_THAT(tile(block, 40000, 40000, 1).error().message, Catch::Contains("limit"));
 }
 
+TEST_CASE("a block that claims a great height cannot be piled up into endless memory") {
+    const auto block_of_height = [](std::size_t height) {
+        return make_block(
+            {1}, {1},
+            [](auto, auto) {
+                return Stack({Slot::weft(0), Slot::warp(0)});
+            },
+            height);
+    };
+    REQUIRE_THAT(block_of_height(most_height + 1).error().message, Catch::Contains("higher than the limit"));
+    const Block tall = block_of_height(most_height).value(), small = block_of_height(2).value();
+    REQUIRE(tile(tall, 2, 2, 1).value().height() == most_height);
+    for (const std::size_t times : {2, 1000, 32768}) {
+        REQUIRE_THAT(tile(tall, 1, 1, times).error().message, Catch::Contains("higher than the limit"));
+    }
+    REQUIRE_THAT(attach(tall, small, Face::plus_z).error().message, Catch::Contains("higher than the limit"));
+    REQUIRE_THAT(attach(tall, small, Face::minus_z).error().message,
+                 Catch::Contains("higher than the limit"));
+    const Block half = block_of_height(most_height / 2).value();
+    REQUIRE(attach(half, half, Face::plus_z).value().stack(0, 0).height() == most_height / 2 + 2);
+    REQUIRE(check_slots(256, most_height));
+    REQUIRE_THAT(check_slots(257, most_height).error().message, Catch::Contains("different stacks"));
+}
+
+TEST_CASE("a stack tiled to the greatest height takes no time to pile up") {
+    const Block block = make_block({1}, {1}, [](auto, auto) {
+                            return Stack({Slot::warp(0), Slot(), Slot::weft(0, true)});
+                        }).value();
+    const Block high = tile(block, 1, 1, 32768).value();
+    REQUIRE(high.height() == 3 * 32768);
+    REQUIRE(high.stack(0, 0).check());
+    REQUIRE(high.stack(0, 0).slots()[3 * 32767] == Slot::warp(32767));
+    REQUIRE(high.stack(0, 0).slots()[3 * 32767 + 2] == Slot::weft(32767, true));
+}
+
 TEST_CASE("attaching puts both blocks side by side on all six faces") {
     for_all([](Random& random) {
         const auto face = static_cast<Face>(random.between(0, 5));
@@ -254,4 +289,14 @@ TEST_CASE("renumbering refuses what is not an order of that row's picks") {
     REQUIRE_FALSE(renumber_row(block, 1, fine));
     REQUIRE(renumber_column(block, 0, ends));
     REQUIRE_THAT(renumber_column(block, 2, ends).error().message, Catch::Contains("no column 2"));
+}
+
+TEST_CASE("no operation makes a block higher than the limit, however few yarns it has") {
+    const auto stack = [](std::size_t, std::size_t) { return Stack({Slot::weft(0), Slot::warp(0)}); };
+    CHECK(!make_block({1}, {1}, stack, most_height + 1));
+    const Block high = make_block({1}, {1}, stack, most_height).value();
+    CHECK(tile(high, 1, 1, 1));
+    CHECK(!tile(high, 1, 1, 2));
+    CHECK(!attach(high, high, Face::plus_z));
+    CHECK(attach(high, high, Face::plus_x));
 }

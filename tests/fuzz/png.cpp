@@ -83,6 +83,7 @@ extern "C" std::size_t LLVMFuzzerCustomMutator(std::uint8_t* data, std::size_t s
 }
 
 extern "C" int LLVMFuzzerTestOneInput(const std::uint8_t* data, std::size_t size) {
-    weave::fuzz::try_picture(weave::fuzz::text_of(data, size), weave::BitmapFormat::png);
+    const std::uint64_t claimed = size < 24 ? 0 : std::uint64_t{number_at(data + 16)} * number_at(data + 20);
+    weave::fuzz::try_picture(weave::fuzz::text_of(data, size), weave::BitmapFormat::png, claimed);
     return 0;
 }

@@ -199,6 +199,27 @@ TEST_CASE("damaged, foreign and oversized pictures are refused, whatever is in t
     });
 }
 
+TEST_CASE("a few bytes that claim a picture of endless rows cost no memory") {
+    // A PNG of two rows of 2^25 pixels in colours, as far as the start of its pixels.
+    const std::string claim(
+        "\x89PNG\r\n\x1a\n\0\0\0\x0dIHDR\x02\0\0\0\0\0\0\x02\x08\x02\0\0\0\x99\x7d\xff\x05"
+        "\0\0\0\x07IDAT\x78\x9c\x63\x60\x60\x60\xf8",
+        48);
+    CHECK_THAT(read_bitmap(claim).error().message, Catch::Contains("longer on a side than the limit"));
+    CHECK_THAT(read_colour_image(claim).error().message, Catch::Contains("longer on a side than the limit"));
+    // The same with a text that claims 1.3 GB, of which ten bytes are there.
+    const std::string text =
+        claim.substr(0, 33) + std::string("\x4f\x4f\x4f\x4fiTXt\x74\0NDAEB\x82\xff\xff\xff\0", 19);
+    CHECK_FALSE(read_bitmap(text));
+    for (const BitmapFormat format : formats) {
+        const CardImage wide(1, (std::size_t{1} << 22) + 1), widest(1, std::size_t{1} << 22);
+        CHECK_FALSE(write_bitmap(wide, format));
+        const Result<std::string> written = write_bitmap(widest, format);
+        REQUIRE(written);
+        CHECK(read_bitmap(*written).value().card == widest);  // what is written can be read
+    }
+}
+
 TEST_CASE("the format is chosen by the name's ending") {
     CHECK(*bitmap_format_of("a.PNG") == BitmapFormat::png);
     CHECK(*bitmap_format_of("a.tif") == BitmapFormat::tiff);

@@ -27,13 +27,6 @@ struct ImportRequest {
     BitmapReading reading;
 };
 
-bool is_wif(const std::string& file) {
-    std::string extension = std::filesystem::path(file).extension().string();
-    std::transform(extension.begin(), extension.end(), extension.begin(),
-                   [](unsigned char c) { return static_cast<char>(std::tolower(c)); });
-    return extension == ".wif";
-}
-
 std::string in_short(const Counts& counts) {
     std::string text;
     for (std::size_t k = 0; k < std::min<std::size_t>(counts.size(), 8); ++k)
@@ -99,7 +92,7 @@ std::string in_words(const ImportRequest& request, const Block& block, const Jso
 Status import_design(const Program& program, const ImportRequest& request) {
     const Progress progress("reading " + request.in);
     WEAVE_TRY(const std::string bytes, read_file(request.in));
-    Result<DesignFromWif> read = is_wif(request.in) ? read_wif(bytes) : design_from_bitmap(request, bytes);
+    Result<DesignFromWif> read = lower_extension(request.in) == ".wif" ? read_wif(bytes) : design_from_bitmap(request, bytes);
     if (!read) return std::move(read).error().in(request.in);
     Design& design = read->design;
     Json groupings = Json::array();

@@ -7,6 +7,7 @@
 #include <weave/core/text.hpp>
 #include <weave/design/document.hpp>
 #include <weave/io/bitmap.hpp>
+#include <weave/io/wif.hpp>
 #include <weave/picture/picture.hpp>
 
 #include <algorithm>
@@ -79,15 +80,36 @@ void add_info(CLI::App& app, Program& program) {
     on_run(command, program, [=, &program] { return tell_info(program, *file); });
 }
 
+Error not_read_back(const std::string& out) {
+    return system_fault("the card image does not read back as it was", out);
+}
+
+/// The card as a picture, read back and compared before anyone gets it.
+Result<std::string> card_as_bitmap(const CardImage& card, const std::string& out, const BitmapReading& reading) {
+    WEAVE_TRY(const BitmapFormat format, bitmap_format_of(out));
+    WEAVE_TRY(std::string bytes, write_bitmap(card, format, reading));
+    WEAVE_TRY(const CardFromBitmap back, read_bitmap(bytes, reading));
+    if (back.card != card) return not_read_back(out);
+    return bytes;
+}
+
+/// The design as WIF, read back and its card compared. WIF fixes the orientation itself.
+Result<std::string> card_as_wif(const Cloth& cloth, const CardImage& card, const std::string& out) {
+    WEAVE_TRY(std::string bytes, write_wif(cloth.design, *cloth.evaluation.block, card));
+    WEAVE_TRY(const DesignFromWif back, read_wif(bytes));
+    WEAVE_TRY(const Evaluation again, evaluate(back.design));
+    if (again.block->card_image() != card) return not_read_back(out);
+    return bytes;
+}
+
 Status write_card(const Program& program, const std::string& file, const std::string& out,
                   const BitmapReading& reading) {
-    WEAVE_TRY(const BitmapFormat format, bitmap_format_of(out));
+    const bool wif = lower_extension(out) == ".wif";
+    if (!wif) WEAVE_CHECK_OK(bitmap_format_of(out));
     WEAVE_TRY(const Cloth cloth, load_cloth(program, file));
     const Progress progress("writing " + out);
     const CardImage card = cloth.evaluation.block->card_image();
-    WEAVE_TRY(const std::string bytes, write_bitmap(card, format, reading));
-    WEAVE_TRY(const CardFromBitmap back, read_bitmap(bytes, reading));
-    if (back.card != card) return system_fault("the card image does not read back as it was", out);
+    WEAVE_TRY(const std::string bytes, wif ? card_as_wif(cloth, card, out) : card_as_bitmap(card, out, reading));
     WEAVE_CHECK_OK(write_file(out, bytes));
     program.answer(
         {{"file", out}, {"picks", card.picks()}, {"ends", card.ends()}, {"card_sha256", card.sha256()}},
@@ -105,9 +127,7 @@ void add_card(CLI::App& app, Program& program) {
     const auto end_1 = std::make_shared<std::string>("left");
     const auto lifted = std::make_shared<std::string>("black");
     command->add_option("FILE", *file, "the .weave file")->required();
-    command->add_option("-o,--out", *out, "the picture to write: .png, .tif or .bmp")
-        ->type_name("FILE")
-        ->required();
+    command->add_option("-o,--out", *out, "the file to write: .png, .tif, .bmp or .wif")->type_name("FILE")->required();
     command->add_option("--pick-1", *pick_1, "where pick 1 goes")
         ->check(CLI::IsMember({"bottom", "top"}))
         ->capture_default_str();
@@ -123,9 +143,7 @@ void add_card(CLI::App& app, Program& program) {
 }
 
 Result<PictureFormat> picture_format_of(const std::string& file) {
-    std::string extension = std::filesystem::path(file).extension().string();
-    std::transform(extension.begin(), extension.end(), extension.begin(),
-                   [](unsigned char c) { return static_cast<char>(std::tolower(c)); });
+    const std::string extension = lower_extension(file);
     if (extension == ".png") return PictureFormat::png;
     if (extension == ".svg") return PictureFormat::svg;
     return Error{ErrorCode::usage, "a picture's name ends in .png or .svg", file};

@@ -65,6 +65,19 @@ void put_bits(std::span<std::uint8_t> row, std::size_t at, const std::vector<std
 
 }  // namespace
 
+Status check_height(std::size_t height) {
+    if (height <= most_height) return {};
+    return bad_input("a block of " + std::to_string(height) + " slots is higher than the limit of " +
+                     std::to_string(most_height));
+}
+
+Status check_slots(std::size_t stacks, std::size_t height) {
+    WEAVE_CHECK_OK(check_height(height));
+    if (height == 0 || stacks <= most_slots / height) return {};
+    return bad_input(count_of(stacks, "different stack") + " of " + count_of(height, "slot") +
+                     " are more than the limit of " + std::to_string(most_slots) + " slots");
+}
+
 Result<Block> Block::make(std::vector<std::uint32_t> t, std::vector<std::uint32_t> p,
                           std::vector<Stack> stacks, std::vector<std::uint32_t> cells, std::size_t height) {
     assert(cells.size() == t.size() * p.size());
@@ -84,6 +97,7 @@ Result<Block> Block::make(std::vector<std::uint32_t> t, std::vector<std::uint32_
             height = std::max(height, stack.height());
         }
     }
+    WEAVE_CHECK_OK(check_height(height));
     block.m_t = std::move(t);
     block.m_p = std::move(p);
     block.m_height = height;

@@ -13,6 +13,16 @@
 
 namespace weave {
 
+/// No block may be higher, in slots: real cloth has dozens of layers, and a hostile file could ask for billions.
+inline constexpr std::size_t most_height = std::size_t{1} << 20;
+/// No operation in height fills more slots in the different stacks of its result.
+inline constexpr std::size_t most_slots = std::size_t{1} << 28;
+
+/// An error where a block of this height is higher than most_height.
+Status check_height(std::size_t height);
+/// The same, or where so many different stacks of this height have more than most_slots.
+Status check_slots(std::size_t stacks, std::size_t height);
+
 /// A weave block {r, c, h, t, p, A} (paper, section 4.1): a tilable piece of 3D weave as an array of stacks.
 ///
 /// Row i holds t[i] picks and column j holds p[j] ends. Equal stacks are kept once: a cell is the number of
@@ -22,8 +32,8 @@ namespace weave {
 class Block {
   public:
     /// Checks every constraint of the paper's section 4.1. `cells` has t.size() * p.size() entries, row by
-    /// row, each an index into `stacks`. `height` is raised to the tallest stack where it is smaller. Errors
-    /// name the first bad cell as `stacks[row][column]`.
+    /// row, each an index into `stacks`. `height` is raised to the tallest stack where it is smaller and is
+    /// at most most_height. Errors name the first bad cell as `stacks[row][column]`.
     static Result<Block> make(std::vector<std::uint32_t> t, std::vector<std::uint32_t> p,
                               std::vector<Stack> stacks, std::vector<std::uint32_t> cells,
                               std::size_t height = 0);

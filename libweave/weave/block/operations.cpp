@@ -30,10 +30,18 @@ Stack piled(const Stack& lower, std::size_t lower_height, const Stack& upper) {
     return Stack(std::move(slots));
 }
 
+/// `times` copies on top of each other, each filled up to `height`.
 Stack piled_times(const Stack& stack, std::size_t height, std::size_t times) {
-    Stack pile = stack;
-    for (std::size_t k = 1; k < times; ++k) pile = piled(pile, k * height, stack);
-    return pile;
+    std::vector<Slot> slots;
+    slots.reserve(height * times);
+    for (std::size_t k = 0; k < times; ++k) {
+        slots.resize(k * height);
+        for (const Slot slot : stack.slots()) {
+            const std::size_t below = k * (slot.is_weft() ? stack.wefts() : stack.warps());
+            slots.push_back(slot.is_empty() ? slot : slot.renumbered(slot.index() + below));
+        }
+    }
+    return Stack(std::move(slots));
 }
 
 std::string differs(const char* line, std::size_t index, const char* yarns, std::uint32_t one,
@@ -105,6 +113,7 @@ Result<Block> attach_z(const Block& lower, const Block& upper) {
                        std::to_string(upper.rows()) + " and " + std::to_string(upper.columns()) +
                        "; on top of each other they must be equal");
     }
+    WEAVE_CHECK_OK(check_height(lower.height() + upper.height()));
     StackTable table;
     std::map<std::pair<std::uint32_t, std::uint32_t>, std::uint32_t> known;
     std::vector<std::uint32_t> cells(lower.cells().size());
@@ -112,6 +121,7 @@ Result<Block> attach_z(const Block& lower, const Block& upper) {
         const auto pair = std::pair(lower.cells()[cell], upper.cells()[cell]);
         auto entry = known.find(pair);
         if (entry == known.end()) {
+            WEAVE_CHECK_OK(check_slots(known.size() + 1, lower.height() + upper.height()));
             const Stack pile = piled(lower.stacks()[pair.first], lower.height(), upper.stacks()[pair.second]);
             entry = known.emplace(pair, table.number_of(pile)).first;
         }
@@ -213,6 +223,7 @@ Result<Block> tile(const Block& block, std::size_t x, std::size_t y, std::size_t
     if (too_long(block.picks(), x) || too_long(block.ends(), y))
         return check_card_size(most_crossings, 2).error();
     WEAVE_CHECK_OK(check_card_size(block.picks() * x * z, block.ends() * y * z));
+    WEAVE_CHECK_OK(check_slots(block.stacks().size(), block.height() * z));
     StackTable table;
     std::vector<std::uint32_t> moved;
     for (const Stack& stack : block.stacks())

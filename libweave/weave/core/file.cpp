@@ -1,5 +1,6 @@
 #include <weave/core/file.hpp>
 
+#include <cctype>
 #include <cerrno>
 #include <cstring>
 #include <fcntl.h>
@@ -149,6 +150,12 @@ Status write_folder(const fs::path& folder, const std::vector<std::pair<std::str
     }
     flush_parent(target);
     return {};
+}
+
+std::string lower_extension(const fs::path& path) {
+    std::string extension = path.extension().string();
+    for (char& c : extension) c = static_cast<char>(std::tolower(static_cast<unsigned char>(c)));
+    return extension;
 }
 
 }  // namespace weave

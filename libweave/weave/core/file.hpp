@@ -26,4 +26,7 @@ Status write_file(const std::filesystem::path& path, std::string_view bytes);
 Status write_folder(const std::filesystem::path& folder,
                     const std::vector<std::pair<std::string, std::string>>& files);
 
+/// The ending of a file's name in lower case, with its point: `.png` of `Card.PNG`.
+std::string lower_extension(const std::filesystem::path& path);
+
 }  // namespace weave

@@ -66,7 +66,7 @@ std::size_t places_in(std::string_view text) {
 
 Result<NodeSource> read_stacks(JsonReader& reader) {
     const Json& rows = reader.raw("stacks");
-    auto height = static_cast<std::size_t>(reader.integer("height", 0, 1 << 28, 0));
+    auto height = static_cast<std::size_t>(reader.integer("height", 0, most_height, 0));
     WEAVE_CHECK_OK(reader.status());
     if (!rows.is_array() || rows.empty())
         return bad_input("must be a list of rows, each a list of stacks", "stacks");

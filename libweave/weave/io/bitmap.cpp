@@ -1,8 +1,8 @@
+#include <weave/core/file.hpp>
 #include <weave/io/bitmap.hpp>
 #include <weave/io/raster.hpp>
 
 #include <algorithm>
-#include <cctype>
 
 namespace weave {
 
@@ -55,6 +55,13 @@ Status take_row(CardImage& card, const BitmapReading& reading, std::size_t row_f
     return {};
 }
 
+Status check_picture_size(std::size_t width, std::size_t height) {
+    WEAVE_CHECK_OK(check_card_size(height, width));
+    if (width <= longest_side && height <= longest_side) return {};
+    return bad_input("a picture of " + std::to_string(width) + " by " + std::to_string(height) +
+                     " pixels is longer on a side than the limit of " + std::to_string(longest_side));
+}
+
 bool starts_with(std::string_view bytes, std::string_view magic) {
     return bytes.substr(0, magic.size()) == magic;
 }
@@ -72,9 +79,7 @@ Status decode(std::string_view bytes, RasterSink& sink) {
 }  // namespace
 
 Result<BitmapFormat> bitmap_format_of(const std::filesystem::path& path) {
-    std::string extension = path.extension().string();
-    std::transform(extension.begin(), extension.end(), extension.begin(),
-                   [](unsigned char c) { return static_cast<char>(std::tolower(c)); });
+    const std::string extension = lower_extension(path);
     if (extension == ".png") return BitmapFormat::png;
     if (extension == ".tif" || extension == ".tiff") return BitmapFormat::tiff;
     if (extension == ".bmp") return BitmapFormat::bmp;
@@ -82,7 +87,7 @@ Result<BitmapFormat> bitmap_format_of(const std::filesystem::path& path) {
 }
 
 Result<std::string> write_bitmap(const CardImage& card, BitmapFormat format, const BitmapReading& reading) {
-    WEAVE_CHECK_OK(check_card_size(card.picks(), card.ends()));
+    WEAVE_CHECK_OK(check_picture_size(card.ends(), card.picks()));
     const BilevelRaster raster{
         card.ends(), card.picks(),
         [&](std::size_t row, std::span<std::uint8_t> packed) { fill_row(card, reading, row, packed); },
@@ -102,7 +107,7 @@ Result<CardFromBitmap> read_bitmap(std::string_view bytes, const BitmapReading& 
     CardFromBitmap read;
     RasterSink sink;
     sink.start = [&](std::size_t width, std::size_t height) -> Status {
-        WEAVE_CHECK_OK(check_card_size(height, width));
+        WEAVE_CHECK_OK(check_picture_size(width, height));
         read.card = CardImage(height, width);
         return {};
     };
@@ -122,7 +127,7 @@ Result<ColourImage> read_colour_image(std::string_view bytes) {
     ColourImage image;
     RasterSink sink;
     sink.start = [&](std::size_t width, std::size_t height) -> Status {
-        WEAVE_CHECK_OK(check_card_size(height, width));
+        WEAVE_CHECK_OK(check_picture_size(width, height));
         image.rows = height, image.columns = width;
         return {};
     };

@@ -4,6 +4,7 @@
 #include <png.h>
 
 #include <csetjmp>
+#include <cstdlib>
 #include <cstring>
 
 namespace weave {
@@ -52,12 +53,23 @@ Error damaged(const PngTalk& talk) {
     return bad_input("is not a readable PNG: " + std::string(talk.error));
 }
 
+/// libpng allocates what a text or profile claims to be, up to 2 GiB, before it looks for the bytes; no row
+/// needs this much.
+png_voidp bounded_malloc(png_structp, png_alloc_size_t bytes) {
+    constexpr png_alloc_size_t most = png_alloc_size_t{1} << 27;
+    return bytes > most ? nullptr : std::malloc(bytes);
+}
+void bounded_free(png_structp, png_voidp memory) {
+    std::free(memory);
+}
+
 /// Owns a reading libpng.
 class Decoder {
   public:
     explicit Decoder(std::string_view bytes) {
         talk.in = bytes;
-        talk.png = png_create_read_struct(PNG_LIBPNG_VER_STRING, &talk, on_error, on_warning);
+        talk.png = png_create_read_struct_2(PNG_LIBPNG_VER_STRING, &talk, on_error, on_warning, nullptr,
+                                            bounded_malloc, bounded_free);
         if (talk.png != nullptr) talk.info = png_create_info_struct(talk.png);
     }
     ~Decoder() { png_destroy_read_struct(&talk.png, &talk.info, nullptr); }

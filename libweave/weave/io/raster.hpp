@@ -42,4 +42,8 @@ Result<std::string> encode_bmp(const BilevelRaster& raster);
 /// pixels.
 inline constexpr std::size_t most_pixels_at_once = std::size_t{1} << 26;
 
+/// No picture, read or written, is longer on a side. Rows are held whole, several times over while they are
+/// decoded, before a single byte of pixels had to come: a few bytes may claim a side of 2^31.
+inline constexpr std::size_t longest_side = std::size_t{1} << 22;
+
 }  // namespace weave

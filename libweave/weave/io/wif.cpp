@@ -22,13 +22,15 @@ Status check_header(const File& file, Warnings& warnings) {
     } else if (said != "1.1" && (said == "1" || said.substr(0, 2) == "1.")) {
         warnings.add(version->line, "the version is " + in_quotes(said) + "; read as 1.1");
     } else if (said != "1.1") {
-        return bad_input("the version is " + in_quotes(said) + ", but only 1.1 is known", place(version->line));
+        return bad_input("the version is " + in_quotes(said) + ", but only 1.1 is known",
+                         place(version->line));
     }
     const Entry* date = section->find("date");
     if (date == nullptr) {
         warnings.add(section->line, "[WIF] lacks the Date of the standard");
     } else if (normal(date->value) != "april 20, 1997") {
-        warnings.add(date->line, "the Date is " + in_quotes(date->value) + ", not that of the standard, April 20, 1997");
+        warnings.add(date->line,
+                     "the Date is " + in_quotes(date->value) + ", not that of the standard, April 20, 1997");
     }
     for (const char* key : {"developers", "source program"}) {
         if (section->find(key) == nullptr) warnings.add(section->line, "[WIF] lacks " + in_quotes(key));
@@ -46,7 +48,8 @@ Status check_contents(const File& file, Warnings& warnings) {
     std::map<std::string, bool> listed;
     for (const Entry& entry : contents->entries) {
         if (!entry.assigns)
-            return bad_input(in_quotes(entry.key) + " in [CONTENTS] is not a section and true or false", place(entry.line));
+            return bad_input(in_quotes(entry.key) + " in [CONTENTS] is not a section and true or false",
+                             place(entry.line));
         WEAVE_TRY(const bool there, boolean(entry));
         const std::string name = normal(entry.key);
         if (!listed.try_emplace(name, there).second) {
@@ -70,19 +73,20 @@ Status check_sections(const File& file, Warnings& warnings) {
     static constexpr std::string_view settings[] = {"wif", "color palette", "weaving", "warp", "weft"};
     for (const Section& section : file.sections) {
         for (const std::size_t line : section.repeated)
-            warnings.add(line, shown(section.name) + " comes again, after line " + std::to_string(section.line) +
-                                   "; both are read as one");
+            warnings.add(line, shown(section.name) + " comes again, after line " +
+                                   std::to_string(section.line) + "; both are read as one");
         if (std::find(std::begin(settings), std::end(settings), section.name) == std::end(settings)) continue;
         std::map<std::string, const Entry*> seen;
         for (const Entry& entry : section.entries) {
             if (!entry.assigns) {
-                return bad_input(in_quotes(entry.key) + " in " + shown(section.name) + " is not a name and its value",
-                                 place(entry.line));
+                return bad_input(
+                    in_quotes(entry.key) + " in " + shown(section.name) + " is not a name and its value",
+                    place(entry.line));
             }
             const auto [known, is_new] = seen.try_emplace(normal(entry.key), &entry);
             if (is_new) continue;
-            const std::string again = in_quotes(entry.key) + " comes again, after line " +
-                                      std::to_string(known->second->line);
+            const std::string again =
+                in_quotes(entry.key) + " comes again, after line " + std::to_string(known->second->line);
             if (plain(known->second->value) != plain(entry.value))
                 return bad_input(again + ", with another value", place(entry.line));
             warnings.add(entry.line, again);

@@ -49,15 +49,19 @@ Result<Threads> threads_of(const File& file, const std::string& system, const st
     };
     note(main);
     for (const char* list : {" colors", " thickness", " spacing"}) note(listed_in(file.find(system + list)));
-    if (threads.from_zero) warnings.add(file.find(main_list)->line, shown(main_list) + " counts from 0; read as from 1");
+    if (threads.from_zero)
+        warnings.add(file.find(main_list)->line, shown(main_list) + " counts from 0; read as from 1");
     const Section* section = file.find(system);
     const Entry* declared = section == nullptr ? nullptr : section->find("threads");
     if (threads.count == 0) {
         return bad_input("gives no " + noun + "s in " + shown(main_list),
-                         place(declared != nullptr ? declared->line : section != nullptr ? section->line : 1));
+                         place(declared != nullptr  ? declared->line
+                               : section != nullptr ? section->line
+                                                    : 1));
     }
     if (declared == nullptr) {
-        warnings.add(shown(system) + " does not say Threads; " + counted(threads.count, noun) + " are listed");
+        warnings.add(shown(system) + " does not say Threads; " + counted(threads.count, noun) +
+                     " are listed");
         return threads;
     }
     WEAVE_TRY(const std::int64_t said, whole(*declared, 1, most_threads));
@@ -103,8 +107,9 @@ class Budget {
     Status spend(std::uint64_t work, std::size_t line) {
         m_spent += work;
         if (m_spent <= most_work) return {};
-        return bad_input("lifts so many shafts with so many ends that the file cannot be read in reasonable time",
-                         place(line));
+        return bad_input(
+            "lifts so many shafts with so many ends that the file cannot be read in reasonable time",
+            place(line));
     }
 
   private:
@@ -114,9 +119,11 @@ class Budget {
 /// Shafts=, or Treadles=, of [WEAVING].
 Result<std::uint32_t> declared_count(const File& file, const std::string& key) {
     const Section* weaving = file.find("weaving");
-    if (weaving == nullptr) return bad_input("has no [WEAVING], which says how many shafts there are", place(1));
+    if (weaving == nullptr)
+        return bad_input("has no [WEAVING], which says how many shafts there are", place(1));
     const Entry* entry = weaving->find(key);
-    if (entry == nullptr) return bad_input("[WEAVING] does not say how many " + key + " there are", place(weaving->line));
+    if (entry == nullptr)
+        return bad_input("[WEAVING] does not say how many " + key + " there are", place(weaving->line));
     WEAVE_TRY(const std::int64_t count, whole(*entry, 1, most_shafts));
     return static_cast<std::uint32_t>(count);
 }
@@ -130,21 +137,25 @@ Result<std::vector<EndSet>> read_threading(const File& file, const Threads& ends
         WEAVE_TRY(auto numbers, whole_list(entry.value, entry.line, shafts));
         sort_out(numbers);
         if (numbers.size() > most_shafts_of_end)
-            return bad_input("puts an end on more than " + counted(most_shafts_of_end, "shaft"), place(entry.line));
-        for (const std::uint32_t shaft : numbers) on_shaft[shaft].ends.push_back(static_cast<std::uint32_t>(end));
+            return bad_input("puts an end on more than " + counted(most_shafts_of_end, "shaft"),
+                             place(entry.line));
+        for (const std::uint32_t shaft : numbers)
+            on_shaft[shaft].ends.push_back(static_cast<std::uint32_t>(end));
     }
     for (EndSet& set : on_shaft) pack(set, (ends.count + 7) / 8);
     return on_shaft;
 }
 
 /// For each treadle, from 1, the ends on the shafts that are tied to it.
-Result<std::vector<EndSet>> read_tie_up(const File& file, std::uint32_t treadles, const std::vector<EndSet>& on_shaft,
-                                        std::size_t row_bytes, Budget& budget, Warnings& warnings) {
+Result<std::vector<EndSet>> read_tie_up(const File& file, std::uint32_t treadles,
+                                        const std::vector<EndSet>& on_shaft, std::size_t row_bytes,
+                                        Budget& budget, Warnings& warnings) {
     WEAVE_TRY(const auto lines, per_thread(*file.find("tieup"), {treadles, false}, warnings));
     std::vector<EndSet> on_treadle(std::size_t{treadles} + 1);
     std::size_t bytes = 0;
     for (const auto& [treadle, entry] : lines) {
-        WEAVE_TRY(auto shafts, whole_list(entry.value, entry.line, static_cast<std::uint32_t>(on_shaft.size() - 1)));
+        WEAVE_TRY(auto shafts,
+                  whole_list(entry.value, entry.line, static_cast<std::uint32_t>(on_shaft.size() - 1)));
         sort_out(shafts);
         if (shafts.empty()) continue;
         bytes += row_bytes;
@@ -164,7 +175,8 @@ Result<bool> is_rising(const File& file, Warnings& warnings) {
     const Section* weaving = file.find("weaving");
     const Entry* entry = weaving == nullptr ? nullptr : weaving->find("rising shed");
     if (entry != nullptr) return boolean(*entry);
-    warnings.add(weaving == nullptr ? 1 : weaving->line, "[WEAVING] does not say Rising Shed; read as a rising shed");
+    warnings.add(weaving == nullptr ? 1 : weaving->line,
+                 "[WEAVING] does not say Rising Shed; read as a rising shed");
     return true;
 }
 
@@ -183,13 +195,16 @@ Result<Drive> drive_of(const File& file, Warnings& warnings) {
     if (treadled) return Drive::treadles;
     if (holds("liftplan")) return Drive::lift_plan;
     if (holds("treadling"))
-        return bad_input("[TREADLING] has no [TIEUP] that says what the treadles move", place(file.find("treadling")->line));
-    return bad_input("has neither [TIEUP] and [TREADLING] nor [LIFTPLAN], so nothing says how it is woven", place(1));
+        return bad_input("[TREADLING] has no [TIEUP] that says what the treadles move",
+                         place(file.find("treadling")->line));
+    return bad_input("has neither [TIEUP] and [TREADLING] nor [LIFTPLAN], so nothing says how it is woven",
+                     place(1));
 }
 
 Result<Threads> ends_of(const File& file, Warnings& warnings) {
     const Section* threading = file.find("threading");
-    if (threading == nullptr) return bad_input("has no [THREADING], so nothing says which shaft an end is on", place(1));
+    if (threading == nullptr)
+        return bad_input("has no [THREADING], so nothing says which shaft an end is on", place(1));
     return threads_of(file, "warp", "threading", warnings);
 }
 
@@ -201,14 +216,16 @@ Result<std::vector<std::pair<std::size_t, Entry>>> per_thread(const Section& sec
                                                               Warnings& warnings) {
     WEAVE_TRY(auto lines, numbered(section, warnings));
     const std::size_t first =
-        from_zero(lines.empty() ? Listed{} : Listed{true, lines.front().first, lines.back().first}, threads) ? 0 : 1;
+        from_zero(lines.empty() ? Listed{} : Listed{true, lines.front().first, lines.back().first}, threads)
+            ? 0
+            : 1;
     if (first == 0 && !threads.from_zero)
         warnings.add(lines.front().second.line, shown(section.name) + " counts from 0; read as from 1");
     for (auto& [number, entry] : lines) {
         number -= first;
         if (number < threads.count) continue;
-        return bad_input(shown(section.name) + " gives number " + std::to_string(number + first) + ", but there are only " +
-                             std::to_string(threads.count),
+        return bad_input(shown(section.name) + " gives number " + std::to_string(number + first) +
+                             ", but there are only " + std::to_string(threads.count),
                          place(entry.line));
     }
     return lines;
@@ -230,7 +247,8 @@ Result<CardImage> drawdown(const File& file, Drive drive, const Threads& ends, c
     WEAVE_TRY(const auto lines, per_thread(plan, picks, warnings));
     CardImage card(picks.count, ends.count);
     for (const auto& [pick, entry] : lines) {
-        WEAVE_TRY(auto numbers, whole_list(entry.value, entry.line, static_cast<std::uint32_t>(moved.size() - 1)));
+        WEAVE_TRY(auto numbers,
+                  whole_list(entry.value, entry.line, static_cast<std::uint32_t>(moved.size() - 1)));
         sort_out(numbers);
         for (const std::uint32_t number : numbers) {
             WEAVE_CHECK_OK(budget.spend(moved[number].work(), entry.line));

@@ -40,7 +40,8 @@ std::size_t character_length(std::string_view text) {
     return overlong || beyond ? 0 : length;
 }
 
-Status open_section(File& file, std::string_view line, std::size_t number, std::size_t offset, std::size_t& open) {
+Status open_section(File& file, std::string_view line, std::size_t number, std::size_t offset,
+                    std::size_t& open) {
     const std::size_t close = line.find(']');
     if (close == std::string_view::npos)
         return bad_input(in_quotes(line) + " opens a section but has no ']'", place(number));
@@ -53,7 +54,8 @@ Status open_section(File& file, std::string_view line, std::size_t number, std::
         return {};
     }
     if (file.sections.size() == most_sections)
-        return bad_input("is the start of more than " + std::to_string(most_sections) + " sections", place(number));
+        return bad_input("is the start of more than " + std::to_string(most_sections) + " sections",
+                         place(number));
     file.sections.push_back({std::move(name), number, offset, {}, {}});
     return {};
 }
@@ -81,8 +83,10 @@ const Section* File::find(std::string_view name) const {
 
 Result<File> split(std::string_view text) {
     const std::string_view start = text.substr(0, 2);
-    if (start == "\xff\xfe" || start == "\xfe\xff" || text.substr(0, 4096).find('\0') != std::string_view::npos)
-        return bad_input("is not plain text; a file saved as Unicode (UTF-16) must be saved as text", place(1));
+    if (start == "\xff\xfe" || start == "\xfe\xff" ||
+        text.substr(0, 4096).find('\0') != std::string_view::npos)
+        return bad_input("is not plain text; a file saved as Unicode (UTF-16) must be saved as text",
+                         place(1));
     File file;
     std::size_t open = 0, number = 0, lines = 0;
     for (std::size_t at = start == "\xef\xbb" && text.substr(2, 1) == "\xbf" ? 3 : 0; at < text.size();) {
@@ -92,7 +96,8 @@ Result<File> split(std::string_view text) {
         ++number;
         if (line.empty() || line.front() == ';') continue;
         if (++lines > most_lines)
-            return bad_input("is more than the limit of " + std::to_string(most_lines) + " lines", place(number));
+            return bad_input("is more than the limit of " + std::to_string(most_lines) + " lines",
+                             place(number));
         if (line.front() == '[') {
             WEAVE_CHECK_OK(open_section(file, line, number, begin, open));
         } else if (file.sections.empty()) {
@@ -194,8 +199,8 @@ Result<std::int64_t> whole(const Entry& entry, std::int64_t low, std::int64_t hi
     const std::optional<std::int64_t> number = parse_whole(text);
     if (!number) return bad_input(in_quotes(entry.value) + " is not a whole number", place(entry.line));
     if (*number < low || *number > high) {
-        return bad_input(in_quotes(entry.key) + " must be from " + std::to_string(low) + " to " + std::to_string(high) +
-                             ", not " + std::to_string(*number),
+        return bad_input(in_quotes(entry.key) + " must be from " + std::to_string(low) + " to " +
+                             std::to_string(high) + ", not " + std::to_string(*number),
                          place(entry.line));
     }
     return *number;
@@ -217,11 +222,12 @@ Result<std::vector<std::uint32_t>> whole_list(std::string_view value, std::size_
         rest.remove_prefix(std::min(comma + 1, rest.size()));
         if (word.empty()) continue;
         const std::optional<std::int64_t> number = parse_whole(word);
-        if (!number || *number < 0) return bad_input(in_quotes(word) + " is not a number from 0 up", place(line));
+        if (!number || *number < 0)
+            return bad_input(in_quotes(word) + " is not a number from 0 up", place(line));
         if (*number > high) {
-            return bad_input("names number " + std::to_string(*number) + ", but the highest is " +
-                                 std::to_string(high),
-                             place(line));
+            return bad_input(
+                "names number " + std::to_string(*number) + ", but the highest is " + std::to_string(high),
+                place(line));
         }
         list.push_back(static_cast<std::uint32_t>(*number));
     }
@@ -234,12 +240,14 @@ Result<std::vector<std::pair<std::size_t, Entry>>> numbered(const Section& secti
     for (const Entry& entry : section.entries) {
         const std::optional<std::int64_t> number = parse_whole(entry.key);
         if (!entry.assigns || !number || *number < 0) {
-            return bad_input(in_quotes(entry.key) + " in " + shown(section.name) + " is not a number and its value",
-                             place(entry.line));
+            return bad_input(
+                in_quotes(entry.key) + " in " + shown(section.name) + " is not a number and its value",
+                place(entry.line));
         }
         lines.emplace_back(static_cast<std::size_t>(*number), entry);
     }
-    std::stable_sort(lines.begin(), lines.end(), [](const auto& a, const auto& b) { return a.first < b.first; });
+    std::stable_sort(lines.begin(), lines.end(),
+                     [](const auto& a, const auto& b) { return a.first < b.first; });
     for (std::size_t k = 1; k < lines.size(); ++k) {
         if (lines[k].first != lines[k - 1].first) continue;
         const Entry &earlier = lines[k - 1].second, &later = lines[k].second;

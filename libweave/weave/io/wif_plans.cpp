@@ -41,7 +41,8 @@ struct Look {
 Result<std::vector<std::uint32_t>> triple(const Entry& entry, std::size_t wanted) {
     WEAVE_TRY(auto numbers, whole_list(entry.value, entry.line, 0x7fffffff));
     if (numbers.size() == wanted) return numbers;
-    return bad_input(in_quotes(entry.value) + " is not " + counted(wanted, "number") + " of a colour", place(entry.line));
+    return bad_input(in_quotes(entry.value) + " is not " + counted(wanted, "number") + " of a colour",
+                     place(entry.line));
 }
 
 std::uint8_t scaled(double value, std::pair<double, double> range) {
@@ -49,11 +50,14 @@ std::uint8_t scaled(double value, std::pair<double, double> range) {
     return static_cast<std::uint8_t>(std::lround(std::clamp(part, 0.0, 1.0) * 255));
 }
 
-Colour colour_of(const std::vector<std::uint32_t>& numbers, std::size_t first, std::pair<double, double> range) {
-    return {scaled(numbers[first], range), scaled(numbers[first + 1], range), scaled(numbers[first + 2], range)};
+Colour colour_of(const std::vector<std::uint32_t>& numbers, std::size_t first,
+                 std::pair<double, double> range) {
+    return {scaled(numbers[first], range), scaled(numbers[first + 1], range),
+            scaled(numbers[first + 2], range)};
 }
 
-/// Whether the palette is red, green and blue; a file that says otherwise keeps its weave and loses its colours.
+/// Whether the palette is red, green and blue; a file that says otherwise keeps its weave and loses its
+/// colours.
 bool is_rgb(const Section* section, Warnings& warnings) {
     const Entry* form = section == nullptr ? nullptr : section->find("form");
     if (form == nullptr || normal(plain(form->value)) == "rgb") return true;
@@ -66,7 +70,8 @@ Status read_range(const Section* section, Palette& palette) {
     if (entry == nullptr) return {};
     WEAVE_TRY(const auto ends, triple(*entry, 2));
     if (ends[0] >= ends[1])
-        return bad_input("the range of the colours, " + in_quotes(entry->value) + ", does not rise", place(entry->line));
+        return bad_input("the range of the colours, " + in_quotes(entry->value) + ", does not rise",
+                         place(entry->line));
     palette.range = {ends[0], ends[1]};
     return {};
 }
@@ -78,12 +83,14 @@ Status judge_table(const Section* section, const Section* table, const Palette& 
         WEAVE_TRY(const std::int64_t said, whole(*entries, 0, 0x7fffffff));
         const std::size_t listed = palette.colours.size();
         if (static_cast<std::size_t>(said) != listed) {
-            warnings.add(entries->line, "[COLOR PALETTE] says " + counted(static_cast<std::size_t>(said), "colour") +
+            warnings.add(entries->line, "[COLOR PALETTE] says " +
+                                            counted(static_cast<std::size_t>(said), "colour") +
                                             ", but [COLOR TABLE] lists " + std::to_string(listed));
         }
     }
     if (table != nullptr && section == nullptr)
-        warnings.add(table->line, "[COLOR TABLE] has no [COLOR PALETTE] that gives its range; read as 0 to 255 or 999");
+        warnings.add(table->line,
+                     "[COLOR TABLE] has no [COLOR PALETTE] that gives its range; read as 0 to 255 or 999");
     return {};
 }
 
@@ -110,7 +117,8 @@ Result<Palette> read_palette(const File& file, Warnings& warnings) {
                                             std::string(highest > 255 ? "999" : "255"));
         if (!palette.range) palette.range = {0, highest > 255 ? 999 : 255};
         for (const auto& [number, numbers] : raw)
-            palette.colours.emplace_hint(palette.colours.end(), number, colour_of(numbers, 0, *palette.range));
+            palette.colours.emplace_hint(palette.colours.end(), number,
+                                         colour_of(numbers, 0, *palette.range));
     }
     WEAVE_CHECK_OK(judge_table(section, table, palette, warnings));
     return palette;
@@ -122,13 +130,15 @@ Status read_default_colour(const Section& section, const Palette& palette, Look&
     if (entry == nullptr) return {};
     WEAVE_TRY(const auto numbers, whole_list(entry->value, entry->line, 0x7fffffff));
     if (numbers.size() != 1 && numbers.size() != 4)
-        return bad_input(in_quotes(entry->value) + " is neither the number of a colour nor index,R,G,B", place(entry->line));
+        return bad_input(in_quotes(entry->value) + " is neither the number of a colour nor index,R,G,B",
+                         place(entry->line));
     look.colour = numbers[0];
     look.colour_line = entry->line;
     if (numbers.size() == 1) return {};
     warnings.add(entry->line, "Color= spells its colour out, as older files do");
     const std::uint32_t highest = *std::max_element(numbers.begin() + 1, numbers.end());
-    look.spelled_out = colour_of(numbers, 1, palette.range.value_or(std::pair(0.0, highest > 255 ? 999.0 : 255.0)));
+    look.spelled_out =
+        colour_of(numbers, 1, palette.range.value_or(std::pair(0.0, highest > 255 ? 999.0 : 255.0)));
     return {};
 }
 
@@ -147,7 +157,8 @@ Result<double> unit_mm(const Section& section) {
         if (word == mm) return 1.0;
     }
     if (word == "decipoints" || word == "decipoint") return 25.4 / 720;
-    return bad_input(in_quotes(entry->value) + " is no unit: centimeters, inches or decipoints", place(entry->line));
+    return bad_input(in_quotes(entry->value) + " is no unit: centimeters, inches or decipoints",
+                     place(entry->line));
 }
 
 /// A measure in mm, or 0, with a warning, where it is of no use.
@@ -156,7 +167,8 @@ Result<double> measure(const Entry& entry, double unit, Warnings& warnings) {
     WEAVE_TRY(const double value, decimal(entry));
     const double mm = value * unit;
     if (mm >= 1e-3 && mm <= 200) return mm;
-    if (unit > 0) warnings.add(entry.line, in_quotes(entry.value) + " is no size of a yarn or spacing; it is not used");
+    if (unit > 0)
+        warnings.add(entry.line, in_quotes(entry.value) + " is no size of a yarn or spacing; it is not used");
     return 0.0;
 }
 
@@ -194,8 +206,8 @@ double mean_of_known(const std::vector<double>& sizes) {
     return known == 0 ? 0 : sum / static_cast<double>(known);
 }
 
-Result<Look> read_look(const File& file, const std::string& system, const Threads& threads, const Palette& palette,
-                       Warnings& warnings) {
+Result<Look> read_look(const File& file, const std::string& system, const Threads& threads,
+                       const Palette& palette, Warnings& warnings) {
     Look look;
     Section none;
     none.name = system;
@@ -218,7 +230,8 @@ Result<Look> read_look(const File& file, const std::string& system, const Thread
 }
 
 /// Finds out whether threads and table count colours alike, and from where.
-Status align(Palette& palette, const std::array<const Look*, 2>& looks, const File& file, Warnings& warnings) {
+Status align(Palette& palette, const std::array<const Look*, 2>& looks, const File& file,
+             Warnings& warnings) {
     std::uint32_t low = 0xffffffff, high = 0, low_line = 0;
     const auto note = [&](std::uint32_t colour, std::uint32_t line) {
         if (colour < low) low_line = line;
@@ -227,7 +240,8 @@ Status align(Palette& palette, const std::array<const Look*, 2>& looks, const Fi
     };
     for (const Look* look : looks) {
         if (look->colour && !look->spelled_out) note(*look->colour, look->colour_line);
-        for (std::size_t k = 0; k < look->colours.size(); ++k) note(look->colours[k].second, look->colour_lines[k]);
+        for (std::size_t k = 0; k < look->colours.size(); ++k)
+            note(look->colours[k].second, look->colour_lines[k]);
     }
     if (palette.colours.empty() || low > high) return {};
     const std::size_t first = palette.colours.begin()->first, last = palette.colours.rbegin()->first;
@@ -244,14 +258,14 @@ Status align(Palette& palette, const std::array<const Look*, 2>& looks, const Fi
 }
 
 /// The colour of each thread.
-std::vector<Colour> colours_of(const Look& look, const Palette& palette, const Threads& threads, Colour standard,
-                               Warnings& warnings) {
+std::vector<Colour> colours_of(const Look& look, const Palette& palette, const Threads& threads,
+                               Colour standard, Warnings& warnings) {
     std::map<std::uint32_t, bool> missed;
     const auto find = [&](std::uint32_t number, std::uint32_t line) {
         if (const Colour* colour = palette.find(number)) return *colour;
         if (!std::exchange(missed[number], true))
-            warnings.add(line, "colour " + std::to_string(number) + " is not in [COLOR TABLE]; " + to_text(standard) +
-                                   " stands for it");
+            warnings.add(line, "colour " + std::to_string(number) + " is not in [COLOR TABLE]; " +
+                                   to_text(standard) + " stands for it");
         return standard;
     };
     Colour unlisted = standard;
@@ -276,7 +290,8 @@ template <class Value>
 class Numbering {
   public:
     std::uint32_t number_of(const Value& value) {
-        const auto [entry, is_new] = m_numbers.try_emplace(value, static_cast<std::uint32_t>(m_values.size()));
+        const auto [entry, is_new] =
+            m_numbers.try_emplace(value, static_cast<std::uint32_t>(m_values.size()));
         if (is_new) m_values.push_back(value);
         return entry->second;
     }
@@ -338,9 +353,8 @@ std::uint32_t nearest(const std::vector<WeftYarn>& yarns, Colour colour) {
         return red * red + green * green + blue * blue;
     };
     const auto end = yarns.begin() + static_cast<std::ptrdiff_t>(std::min(yarns.size(), most_feeders));
-    const auto best = std::min_element(yarns.begin(), end, [&](const WeftYarn& a, const WeftYarn& b) {
-        return distance(a) < distance(b);
-    });
+    const auto best = std::min_element(
+        yarns.begin(), end, [&](const WeftYarn& a, const WeftYarn& b) { return distance(a) < distance(b); });
     return static_cast<std::uint32_t>(best - yarns.begin());
 }
 
@@ -354,8 +368,9 @@ void fill_weft(WeftPlan& weft, const Look& look, const std::vector<Colour>& colo
     for (std::uint32_t k = 0; k < all.size(); ++k)
         feeder_of.push_back(k < most_feeders ? k : nearest(all, all[k].first));
     if (all.size() > most_feeders) {
-        warnings.add("the picks use " + std::to_string(all.size()) + " different yarns, but a design has at most " +
-                     std::to_string(most_feeders) + " feeders; the others come from the feeder of the nearest colour");
+        warnings.add("the picks use " + std::to_string(all.size()) +
+                     " different yarns, but a design has at most " + std::to_string(most_feeders) +
+                     " feeders; the others come from the feeder of the nearest colour");
     }
     const YarnType standard = weft.yarns.front();
     weft.yarns.clear();
@@ -368,7 +383,8 @@ void fill_weft(WeftPlan& weft, const Look& look, const std::vector<Colour>& colo
         set_thickness(yarn, all[k].second);
         weft.feeders.push_back({"shuttle " + std::to_string(k + 1), k});
     }
-    for (const std::uint32_t feeder : short_form(std::move(order)).once) weft.feeder_order.push_back({feeder_of[feeder]});
+    for (const std::uint32_t feeder : short_form(std::move(order)).once)
+        weft.feeder_order.push_back({feeder_of[feeder]});
     weft.density_picks_per_cm = density_of(look.spacing_mm, weft.density_picks_per_cm);
 }
 
@@ -381,7 +397,8 @@ Result<Plans> read_plans(const File& file, const Threads& ends, const Threads& p
     WEAVE_TRY(const Look weft, read_look(file, "weft", picks, palette, warnings));
     WEAVE_CHECK_OK(align(palette, {&warp, &weft}, file, warnings));
     fill_warp(plans.warp, warp, colours_of(warp, palette, ends, plans.warp.yarns[0].colour, warnings));
-    fill_weft(plans.weft, weft, colours_of(weft, palette, picks, plans.weft.yarns[0].colour, warnings), warnings);
+    fill_weft(plans.weft, weft, colours_of(weft, palette, picks, plans.weft.yarns[0].colour, warnings),
+              warnings);
     return plans;
 }
 

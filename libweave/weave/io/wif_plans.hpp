@@ -12,9 +12,9 @@ struct Plans {
 };
 
 /// A yarn type for each thickness of the warp, a feeder for each weft yarn (colour and thickness), ends that
-/// differ in colour through colour_order, mean spacing as density. What a file does not tell, or tells without
-/// its unit, stays as in the default plans. At most 64 feeders: further weft yarns come from the feeder whose
-/// colour is nearest, with a warning.
+/// differ in colour through colour_order, mean spacing as density. What a file does not tell, or tells
+/// without its unit, stays as in the default plans. At most 64 feeders: further weft yarns come from the
+/// feeder whose colour is nearest, with a warning.
 Result<Plans> read_plans(const File& file, const Threads& ends, const Threads& picks, Warnings& warnings);
 
 }  // namespace weave::wif

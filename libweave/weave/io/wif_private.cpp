@@ -34,15 +34,17 @@ std::vector<std::uint32_t> period(std::span<const std::uint32_t> counts) {
 }
 
 /// t or p: repeated whole, it must come out even.
-Result<std::vector<std::uint32_t>> read_counts(const Section& section, std::string_view key, std::size_t threads) {
+Result<std::vector<std::uint32_t>> read_counts(const Section& section, std::string_view key,
+                                               std::size_t threads) {
     const Entry* entry = section.find(key);
-    if (entry == nullptr) return bad_input(shown(section.name) + " lacks '" + std::string(key) + "'", place(section.line));
+    if (entry == nullptr)
+        return bad_input(shown(section.name) + " lacks '" + std::string(key) + "'", place(section.line));
     Result<Sequence> counts = parse_sequence(entry->value, static_cast<std::uint32_t>(threads) + 1);
     if (!counts) return bad_input("'" + std::string(key) + "' " + counts.error().message, place(entry->line));
     const std::size_t sum = std::accumulate(counts->once.begin(), counts->once.end(), std::size_t{0});
     if (sum == 0 || threads % sum != 0) {
-        return bad_input("'" + std::string(key) + "' counts " + std::to_string(sum) + ", which does not divide " +
-                             std::to_string(threads),
+        return bad_input("'" + std::string(key) + "' counts " + std::to_string(sum) +
+                             ", which does not divide " + std::to_string(threads),
                          place(entry->line));
     }
     return std::move(counts->once);
@@ -61,7 +63,8 @@ Result<Json> read_pieces(const Section& section) {
         ++next;
     }
     Result<Json> json = parse_json(text);
-    if (!json) return bad_input("what stands here cannot be read: " + json.error().text(), place(section.line));
+    if (!json)
+        return bad_input("what stands here cannot be read: " + json.error().text(), place(section.line));
     return json;
 }
 
@@ -89,7 +92,8 @@ bool says(const Section& section, std::string_view key, const std::string& value
 
 }  // namespace
 
-std::string private_section(const Design& design, const Block& block, const CardImage& card, std::string_view before) {
+std::string private_section(const Design& design, const Block& block, const CardImage& card,
+                            std::string_view before) {
     const Json json{{"title", design.title},
                     {"notes", design.notes},
                     {"warp", to_json(design.warp)},
@@ -108,7 +112,8 @@ Status apply_private(std::string_view text, const File& file, Design& design, Wa
     const Section* section = file.find(private_name);
     if (section == nullptr) return {};
     if (!says(*section, "version", "1")) {
-        warnings.add(section->line, shown(private_name) + " is of a version that this program does not know; not read");
+        warnings.add(section->line,
+                     shown(private_name) + " is of a version that this program does not know; not read");
         return {};
     }
     const CardLeaf& bare = std::get<CardLeaf>(design.blocks.at(design.root)->source);
@@ -121,8 +126,9 @@ Status apply_private(std::string_view text, const File& file, Design& design, Wa
     WEAVE_TRY(leaf.t, read_counts(*section, "picks of rows", bare.card->picks()));
     WEAVE_TRY(leaf.p, read_counts(*section, "ends of columns", bare.card->ends()));
     if (!says(*section, "text sha-256", text_hash(text.substr(0, section->offset)))) {
-        warnings.add(section->line, "the file was changed since " + shown(private_name) +
-                                        " was written; only the picks of rows and ends of columns are read from it");
+        warnings.add(section->line,
+                     "the file was changed since " + shown(private_name) +
+                         " was written; only the picks of rows and ends of columns are read from it");
     } else {
         WEAVE_CHECK_OK(read_plans_of_ours(*section, design));
     }

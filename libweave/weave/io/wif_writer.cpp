@@ -36,8 +36,8 @@ class Text {
 
 /// Different columns of the card, each a shaft.
 struct Shafts {
-    std::vector<std::uint32_t> of_end;      ///< from 0
-    std::vector<std::size_t> first_end;     ///< of each shaft an end on it
+    std::vector<std::uint32_t> of_end;   ///< from 0
+    std::vector<std::size_t> first_end;  ///< of each shaft an end on it
 };
 
 Shafts shafts_of(const CardImage& card) {
@@ -56,7 +56,8 @@ Shafts shafts_of(const CardImage& card) {
 
 /// Free text on one line: what would end the line becomes a blank.
 std::string one_line(std::string text) {
-    std::replace_if(text.begin(), text.end(), [](char c) { return static_cast<unsigned char>(c) < ' '; }, ' ');
+    std::replace_if(
+        text.begin(), text.end(), [](char c) { return static_cast<unsigned char>(c) < ' '; }, ' ');
     return text;
 }
 
@@ -88,13 +89,15 @@ ThreadLooks looks_of_picks(const WeftPlan& weft, const Block& block) {
         looks.colours.push_back(yarn.colour);
         looks.thickness_cm.push_back(yarn.radius_mm / 5);
     }
-    looks.spacing_cm = static_cast<double>(block.rows()) / static_cast<double>(block.picks()) / weft.density_picks_per_cm;
+    looks.spacing_cm =
+        static_cast<double>(block.rows()) / static_cast<double>(block.picks()) / weft.density_picks_per_cm;
     return looks;
 }
 
 using ColourNumbers = std::map<Colour, std::size_t>;
 
-void write_system(Text& text, const std::string& name, const ThreadLooks& looks, const ColourNumbers& numbers) {
+void write_system(Text& text, const std::string& name, const ThreadLooks& looks,
+                  const ColourNumbers& numbers) {
     text.section(name);
     text.line("Threads", std::to_string(looks.colours.size()));
     text.line("Color", std::to_string(numbers.at(looks.colours.front())));
@@ -182,7 +185,8 @@ Result<std::string> write_wif(const Design& design, const Block& block, const Ca
     const Shafts shafts = shafts_of(card);
     const std::size_t count = shafts.first_end.size();
     if (count > most_shafts) return invalid("lifts its ends in too many ways for a WIF file");
-    const ThreadLooks warp = looks_of_ends(design.warp, card.ends()), weft = looks_of_picks(design.weft, block);
+    const ThreadLooks warp = looks_of_ends(design.warp, card.ends()),
+                      weft = looks_of_picks(design.weft, block);
     Text text;
     const ColourNumbers numbers = write_palette(text, warp, weft);
     text.section("TEXT");
@@ -195,11 +199,13 @@ Result<std::string> write_wif(const Design& design, const Block& block, const Ca
     write_system(text, "WARP", warp, numbers);
     write_system(text, "WEFT", weft, numbers);
     text.section("THREADING");
-    for (std::size_t end = 0; end < card.ends(); ++end) text.line(end + 1, std::to_string(shafts.of_end[end] + 1));
+    for (std::size_t end = 0; end < card.ends(); ++end)
+        text.line(end + 1, std::to_string(shafts.of_end[end] + 1));
     WEAVE_CHECK_OK(write_lift_plan(text, card, shafts));
-    std::string file = "[WIF]\r\nVersion=1.1\r\nDate=April 20, 1997\r\nDevelopers=wif@mhsoft.com\r\n"
-                       "Source Program=weave\r\n\r\n[CONTENTS]\r\n" +
-                       text.contents() + "PRIVATE WEAVE DESIGN=true\r\n" + text.body() + "\r\n";
+    std::string file =
+        "[WIF]\r\nVersion=1.1\r\nDate=April 20, 1997\r\nDevelopers=wif@mhsoft.com\r\n"
+        "Source Program=weave\r\n\r\n[CONTENTS]\r\n" +
+        text.contents() + "PRIVATE WEAVE DESIGN=true\r\n" + text.body() + "\r\n";
     file += private_section(design, block, card, file);
     return file;
 }

@@ -48,7 +48,11 @@ void try_colours(std::string_view bytes) {
 
 }  // namespace
 
-void try_picture(std::string_view bytes, BitmapFormat format) {
+void try_picture(std::string_view bytes, BitmapFormat format, std::uint64_t claimed_pixels) {
+    if (claimed_pixels > most_pixels) {
+        try_card(bytes, format, {});
+        return;
+    }
     for (unsigned number = 0; number < 8; ++number) try_card(bytes, format, reading_of(number));
     try_colours(bytes);
 }
