@@ -374,6 +374,51 @@ TEST_CASE("check finds what an editor could do wrong, so that every sound design
     refused([&](Design& d) { d.notes.assign(65537, 'x'); }, "notes");
     refused([&](Design& d) { d.root = "none"; }, "root");
     refused([&](Design& d) { d.blocks["-a"] = plain(); }, "blocks");
+    refused([&](Design& d) { d.blocks["toe"] = nullptr; }, "blocks.toe");
+    refused([&](Design& d) { d.title = "caf\xe9"; }, "title");
+    refused([&](Design& d) { d.warp.beams[0].name = "\xed\xa0\x80"; }, "warp.beams[0].name");
+    refused([&](Design& d) { d.view = 3; }, "view");
+}
+
+TEST_CASE("check finds what is wrong with a single block, with its place") {
+    constexpr std::size_t far = std::size_t{1} << 40;
+    const auto refused = [](NodeSource source, const std::string& where, std::vector<Flip> flips = {}) {
+        Design design = design_of({{"a", plain()}, {"toe", node(std::move(source), std::move(flips))}}, "a");
+        const Status status = check(design);
+        INFO(where);
+        REQUIRE_FALSE(status);
+        CHECK(status.error().code == ErrorCode::bad_input);
+        CHECK(status.error().where == "blocks.toe." + where);
+        CHECK_FALSE(status.error().message.empty());
+    };
+    const auto card = std::make_shared<const CardImage>(2, 3);
+    const auto map = [](std::size_t rows, std::size_t columns, std::vector<std::uint16_t> numbers) {
+        return std::make_shared<const StencilMap>(StencilMap{rows, columns, std::move(numbers)});
+    };
+    refused(StacksLeaf{}, "stacks");
+    refused(CardLeaf{}, "card");
+    refused(CardLeaf{std::make_shared<const CardImage>(), {1}, {1}}, "card");
+    refused(CardLeaf{card, {}, {1}}, "t");
+    refused(CardLeaf{card, {1}, {1, 1U << 28}}, "p[1]");
+    refused(PresetLeaf{{std::string(101, 'x'), {}}}, "family");
+    refused(PresetLeaf{{"\xff", {}}}, "family");
+    refused(PresetLeaf{{"twill", {{"up", std::int64_t{1} << 41}}}}, "options.up");
+    refused(PresetLeaf{{"twill", {{"up", -(std::int64_t{1} << 41)}}}}, "options.up");
+    refused(PresetLeaf{{"twill", {{"\xff", 1}}}}, "options");
+    refused(TileOperation{"a", 0, 1, 1}, "x");
+    refused(TileOperation{"a", 1, far, 1}, "y");
+    refused(TileOperation{"a", 1, 1, far}, "z");
+    refused(AttachOperation{"a", "a", static_cast<Face>(6)}, "face");
+    refused(StencilOperation{{}, map(1, 1, {0})}, "of");
+    refused(StencilOperation{{"a"}, nullptr}, "map");
+    refused(StencilOperation{{"a"}, map(0, 0, {})}, "map");
+    refused(StencilOperation{{"a"}, map(2, 2, {0, 0, 0})}, "map");
+    refused(StencilOperation{{"a"}, map(2, 2, {0, 0, 0, 1})}, "map[1]");
+    refused(StencilOperation{{"a"}, map(1, longest_sequence + 1, {})}, "map");
+    refused(RenumberOperation{"a", System::weft, far, {0}}, "row");
+    refused(RenumberOperation{"a", System::warp, far, {0}}, "column");
+    refused(RenumberOperation{"a", System::weft, 0, {0, far}}, "order[1]");
+    refused(TileOperation{"a", 1, 1, 1}, "flips[1]", {{0, 0, true}, {0, far, true}});
 }
 
 TEST_CASE("block names are plain words") {

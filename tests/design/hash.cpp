@@ -30,7 +30,8 @@ Json shuffled(Random& random, const Json& value) {
 TEST_CASE("hashes do not depend on the order of members nor on spaces") {
     for_all(
         [](Random& random) {
-            const Design design = random_design(random);
+            Design design = random_design(random);
+            design.view = Json::object();  // its order is the program's own and is kept
             const Json document = parse_json(write_document(design)).value();
             const Result<Design> other =
                 read_document(shuffled(random, document).dump(static_cast<int>(random.between(0, 4)) - 1));
