@@ -1,10 +1,9 @@
-#include <design/random_design.hpp>
-
 #include <weave/design/document.hpp>
 #include <weave/design/evaluate.hpp>
 
 #include <catch2/catch.hpp>
 
+#include <design/random_design.hpp>
 #include <filesystem>
 #include <fstream>
 
@@ -81,7 +80,8 @@ TEST_CASE("a document with every kind of block is read, and evaluates where it m
     CHECK(design->title == "shoe");
     CHECK(design->blocks.size() == 8);
     CHECK(design->weft.feeder_order == std::vector<FeederSet>{{0}, {1}, {0, 1}, {}, {}});
-    CHECK(design->weft.directions == std::vector<Direction>{Direction::left_to_right, Direction::right_to_left});
+    CHECK(design->weft.directions ==
+          std::vector<Direction>{Direction::left_to_right, Direction::right_to_left});
     CHECK(design->weft.take_up == std::vector<bool>{true, false});
     CHECK(design->weft.feeders[1].yarn == 0);
     CHECK(design->scene.boundary_x == Boundary::frozen);
@@ -129,7 +129,8 @@ TEST_CASE("what is not JSON is refused with line and column, or with what is odd
     const auto message = [](std::string text) { return read_document(text).error().text(); };
     CHECK_THAT(message("{\n \"format\" \"weave\"}"), Catch::Contains("line 2"));
     CHECK_THAT(message(""), Catch::Contains("is not JSON"));
-    CHECK_THAT(message("{\"format\": \"weave\", \"format\": \"weave\"}"), Catch::Contains("repeats the member 'format'"));
+    CHECK_THAT(message("{\"format\": \"weave\", \"format\": \"weave\"}"),
+               Catch::Contains("repeats the member 'format'"));
     CHECK_THAT(message(std::string(100000, '[')), Catch::Contains("nests deeper than 64 levels"));
     CHECK_THAT(message("{\"title\": \"\xff\"}"), Catch::Contains("is not JSON"));
     CHECK_THAT(message(R"({"format": "weave", "version": 1, "blocks": {"a": {}, "a": {}}})"),
@@ -160,10 +161,10 @@ TEST_CASE("unknown members are refused wherever they stand") {
 }
 
 TEST_CASE("missing members are named with their place") {
-    for (const char* place : {"root", "blocks", "blocks/toe/kind", "blocks/card/ends", "blocks/family/family",
-                              "blocks/cut/dots", "blocks/tiled/of", "blocks/joined/other", "blocks/joined/face",
-                              "blocks/moved/order", "blocks/tiled/flips/0/weft", "scene/pins/0/number",
-                              "scene/fields/0/radius_mm"}) {
+    for (const char* place :
+         {"root", "blocks", "blocks/toe/kind", "blocks/card/ends", "blocks/family/family", "blocks/cut/dots",
+          "blocks/tiled/of", "blocks/joined/other", "blocks/joined/face", "blocks/moved/order",
+          "blocks/tiled/flips/0/weft", "scene/pins/0/number", "scene/fields/0/radius_mm"}) {
         std::string where = place;
         std::replace(where.begin(), where.end(), '/', '.');
         if (const auto at = where.find(".0."); at != std::string::npos) where.replace(at, 3, "[0].");
@@ -212,7 +213,8 @@ TEST_CASE("wrong types are refused wherever they stand") {
 
 TEST_CASE("values out of range are refused wherever they stand") {
     refuses({"/warp/yarns/0/radius_mm", "0", "warp.yarns[0].radius_mm", "a number from 0.0001 to 100"});
-    refuses({"/warp/yarns/0/radius_mm", "\"thick\"", "warp.yarns[0].radius_mm", "a number from 0.0001 to 100"});
+    refuses(
+        {"/warp/yarns/0/radius_mm", "\"thick\"", "warp.yarns[0].radius_mm", "a number from 0.0001 to 100"});
     refuses({"/warp/yarns", "[]", "warp.yarns", "needs at least one yarn"});
     refuses({"/warp/yarns/0/colour", "\"orange\"", "warp.yarns[0].colour", "'orange' is not a colour"});
     refuses({"/warp/order", "\"0 1\"", "warp.order", "names number 1, but there are only 1, counted from 0"});
@@ -238,7 +240,8 @@ TEST_CASE("values out of range are refused wherever they stand") {
     refuses({"/blocks/tiled/x", "0", "blocks.tiled.x", "whole number from 1"});
     refuses({"/blocks/joined/face", "\"top\"", "blocks.joined.face", "must be one of +x"});
     refuses({"/title", "\"" + std::string(1001, 'x') + "\"", "title", "longer than 1000 bytes"});
-    refuses({"/warp/beams/0/name", "\"" + std::string(201, 'x') + "\"", "warp.beams[0].name", "longer than 200"});
+    refuses(
+        {"/warp/beams/0/name", "\"" + std::string(201, 'x') + "\"", "warp.beams[0].name", "longer than 200"});
 }
 
 TEST_CASE("a wrong stack is named by row and column") {
@@ -276,14 +279,17 @@ TEST_CASE("a wrong stack is named by row and column") {
 }
 
 TEST_CASE("a wrong card, map or slice is named by its row") {
-    refuses({"/blocks/card/card/1", "\"5\"", "blocks.card.card[1]", "must be 2 lower-case hexadecimal digits"});
-    refuses({"/blocks/card/card/0", "\"5\"", "blocks.card.card[0]", "two hexadecimal digits for each 8 ends"});
+    refuses(
+        {"/blocks/card/card/1", "\"5\"", "blocks.card.card[1]", "must be 2 lower-case hexadecimal digits"});
+    refuses(
+        {"/blocks/card/card/0", "\"5\"", "blocks.card.card[0]", "two hexadecimal digits for each 8 ends"});
     refuses({"/blocks/card/card/1", "\"A0\"", "blocks.card.card[1]", "lower-case"});
     refuses({"/blocks/card/card/1", "\"a8\"", "blocks.card.card[1]", "the padding 0"});
     refuses({"/blocks/card/ends", "268435455", "blocks.card.card[0]", "hexadecimal digits"});
     refuses({"/blocks/card/ends", "0", "blocks.card.ends", "whole number from 1"});
     refuses({"/blocks/cloth/map/1", "\"0 1\"", "blocks.cloth.map[1]", "has 2 stacks, but row 0 has 4"});
-    refuses({"/blocks/cloth/map/1", "\"0*3 2\"", "blocks.cloth.map[1]", "names number 2, but there are only 2"});
+    refuses(
+        {"/blocks/cloth/map/1", "\"0*3 2\"", "blocks.cloth.map[1]", "names number 2, but there are only 2"});
     refuses({"/blocks/cloth/map/0", "\"0*99999999\"", "blocks.cloth.map[0]", "is longer than 4194304"});
     refuses({"/blocks/cut/positions/1", "\"P0 X\"", "blocks.cut.positions[1]", "'X' is not a yarn"});
 }
@@ -303,10 +309,9 @@ TEST_CASE("a circle of blocks is named as a chain") {
     document["blocks"]["sole"] = {{"kind", "tile"}, {"of", "toe"}};
     const Result<Design> design = read_document(document.dump());
     REQUIRE_FALSE(design);
-    CHECK_THAT(design.error().message,
-               Catch::Contains("in a circle: toe > heel > sole > toe") ||
-                   Catch::Contains("in a circle: heel > sole > toe > heel") ||
-                   Catch::Contains("in a circle: sole > toe > heel > sole"));
+    CHECK_THAT(design.error().message, Catch::Contains("in a circle: toe > heel > sole > toe") ||
+                                           Catch::Contains("in a circle: heel > sole > toe > heel") ||
+                                           Catch::Contains("in a circle: sole > toe > heel > sole"));
     CHECK_THAT(design.error().where, Catch::StartsWith("blocks."));
 }
 
@@ -328,7 +333,8 @@ TEST_CASE("deep trees neither overflow nor tire the reader") {
 }
 
 TEST_CASE("a hand-written leaf may leave out what follows from it, and keeps empty slots on top as height") {
-    const Result<Design> design = read_document(R"({"format": "weave", "version": 1, "root": "a", "blocks": {"a":
+    const Result<Design> design =
+        read_document(R"({"format": "weave", "version": 1, "root": "a", "blocks": {"a":
         {"kind": "stacks", "stacks": [["T0 P1 P0 -", "  P2   T0 E E -"]]}}})");
     if (!design) FAIL(design.error().text());
     const Block& block = *evaluate(*design)->block;
@@ -424,19 +430,22 @@ TEST_CASE("check finds what is wrong with a single block, with its place") {
 TEST_CASE("block names are plain words") {
     for (const char* name : {"a", "Z9", "7-up", "a.b_c-d"}) CHECK(check_block_name(name));
     CHECK(check_block_name(std::string(64, 'n')));
-    for (const char* name : {"", "-a", ".a", "_a", "a b", "a/b", "é", "a\n"}) CHECK_FALSE(check_block_name(name));
+    for (const char* name : {"", "-a", ".a", "_a", "a b", "a/b", "é", "a\n"})
+        CHECK_FALSE(check_block_name(name));
     CHECK_FALSE(check_block_name(std::string(65, 'n')));
 }
 
 TEST_CASE("files: errors name the file, and saving replaces it whole") {
-    const std::filesystem::path folder = std::filesystem::temp_directory_path() / ("weave-document-" + std::to_string(run_seed()));
+    const std::filesystem::path folder =
+        std::filesystem::temp_directory_path() / ("weave-document-" + std::to_string(run_seed()));
     std::filesystem::create_directories(folder);
     const auto file = folder / "shoe.weave";
     const Design design = read_document(whole).value();
     REQUIRE(save_design(design, file));
     CHECK(load_design(file).value() == design);
     std::ofstream(file) << damaged({"/warp/yarns/0/radius_mm", "0", "", ""});
-    CHECK_THAT(load_design(file).error().text(), Catch::StartsWith(file.string() + ": warp.yarns[0].radius_mm: must be"));
+    CHECK_THAT(load_design(file).error().text(),
+               Catch::StartsWith(file.string() + ": warp.yarns[0].radius_mm: must be"));
     REQUIRE(save_design(design, file));
     CHECK(load_design(file).value() == design);
     CHECK(load_design(folder / "none.weave").error().where == (folder / "none.weave").string());

@@ -1,9 +1,9 @@
-#include <design/random_design.hpp>
-
 #include <weave/design/document.hpp>
 #include <weave/design/edit.hpp>
 
 #include <catch2/catch.hpp>
+
+#include <design/random_design.hpp>
 
 using namespace weave;
 using namespace weave::testing;
@@ -24,7 +24,7 @@ Design small() {
 /// The error of an edit that must be refused and leave the design as it was.
 std::string refusal(const Design& before, const Edit& edit) {
     Design design = before;
-    const Result<Edit> undo = apply(design, edit);
+    const Result<Edit> undo = weave::apply(design, edit);
     REQUIRE_FALSE(undo);
     CHECK(design == before);
     CHECK(write_document(design) == write_document(before));
@@ -32,7 +32,8 @@ std::string refusal(const Design& before, const Edit& edit) {
 }
 
 std::string any_name(Random& random, const Design& design) {
-    if (random.between(0, 9) == 0) return random.coin() ? "nobody" : "fresh-" + std::to_string(random.between(0, 3));
+    if (random.between(0, 9) == 0)
+        return random.coin() ? "nobody" : "fresh-" + std::to_string(random.between(0, 3));
     auto at = design.blocks.begin();
     std::advance(at, static_cast<std::ptrdiff_t>(random.between(0, design.blocks.size() - 1)));
     return at->first;
@@ -49,12 +50,14 @@ Edit random_edit(Random& random, const Design& design) {
         case 1:
             return RemoveBlock{any_name(random, design)};
         case 2:
-            return RenameBlock{any_name(random, design), random.coin() ? any_name(random, design)
-                                                                       : "n" + std::to_string(random.between(0, 99))};
+            return RenameBlock{any_name(random, design), random.coin()
+                                                             ? any_name(random, design)
+                                                             : "n" + std::to_string(random.between(0, 99))};
         case 3:
             return SetRoot{any_name(random, design)};
         case 4:
-            return PutFlip{any_name(random, design), {random.between(0, 5), random.between(0, 5), random.coin()}};
+            return PutFlip{any_name(random, design),
+                           {random.between(0, 5), random.between(0, 5), random.coin()}};
         case 5: {
             const std::string name = any_name(random, design);
             const auto found = design.blocks.find(name);
@@ -86,7 +89,7 @@ TEST_CASE("edits undone in reverse give back the design, byte for byte") {
             for (std::size_t step = random.between(1, 10); step > 0; --step) {
                 const Design before = design;
                 const Edit edit = random_edit(random, design);
-                Result<Edit> inverse = apply(design, edit);
+                Result<Edit> inverse = weave::apply(design, edit);
                 if (inverse) {
                     ++made;
                     stages.push_back(before);
@@ -101,14 +104,14 @@ TEST_CASE("edits undone in reverse give back the design, byte for byte") {
             std::vector<Edit> redo;
             const Design end = design;
             for (; !undo.empty(); undo.pop_back(), stages.pop_back()) {
-                Result<Edit> inverse = apply(design, undo.back());
+                Result<Edit> inverse = weave::apply(design, undo.back());
                 if (!inverse) FAIL(inverse.error().text());
                 REQUIRE(design == stages.back());
                 redo.push_back(std::move(inverse).value());
             }
             REQUIRE(design == start);
             REQUIRE(write_document(design) == text);
-            for (; !redo.empty(); redo.pop_back()) REQUIRE(apply(design, redo.back()));
+            for (; !redo.empty(); redo.pop_back()) REQUIRE(weave::apply(design, redo.back()));
             REQUIRE(design == end);
             REQUIRE(write_document(design) == write_document(end));
         },
@@ -128,7 +131,7 @@ TEST_CASE("an edit that went through JSON has the same effect, and so has its in
             REQUIRE(to_json(*read) == json);
             Design other = design;
             const Design before = design;
-            const Result<Edit> undo = apply(design, edit), other_undo = apply(other, *read);
+            const Result<Edit> undo = weave::apply(design, edit), other_undo = weave::apply(other, *read);
             REQUIRE(bool(undo) == bool(other_undo));
             REQUIRE(design == other);
             if (!undo) {
@@ -137,7 +140,7 @@ TEST_CASE("an edit that went through JSON has the same effect, and so has its in
             }
             const Result<Edit> back = edit_from_json(parse_json(to_json(*undo).dump()).value());
             REQUIRE(back);
-            REQUIRE(apply(design, *back));
+            REQUIRE(weave::apply(design, *back));
             REQUIRE(design == before);
             REQUIRE(write_document(design) == write_document(before));
         },
@@ -168,17 +171,20 @@ TEST_CASE("blocks: what cannot be put, removed, renamed or made the cloth") {
     CHECK(refusal(design, SetRoot{std::string(500, 'n')}).size() < 200);
 
     Design full = design;
-    for (std::size_t k = full.blocks.size(); k < most_blocks; ++k) full.blocks["b" + std::to_string(k)] = plain();
+    for (std::size_t k = full.blocks.size(); k < most_blocks; ++k)
+        full.blocks["b" + std::to_string(k)] = plain();
     CHECK(refusal(full, PutBlock{"new", plain()}) == "a design has at most 4096 blocks");
-    CHECK(apply(full, PutBlock{"b10", node(TileOperation{"toe", 1, 1, 1})}));
+    CHECK(weave::apply(full, PutBlock{"b10", node(TileOperation{"toe", 1, 1, 1})}));
 }
 
 TEST_CASE("flips, texts and plans: what is refused") {
     const Design design = small();
     const std::size_t far = std::size_t{1} << 30;
     CHECK(refusal(design, PutFlip{"none", {0, 0, true}}) == "'none' is not a block of this design");
-    CHECK(refusal(design, PutFlip{"toe", {far, 0, true}}) == "no cloth has a crossing of pick 1073741825 and end 1");
-    CHECK(refusal(design, PutFlip{"toe", {0, far, true}}) == "no cloth has a crossing of pick 1 and end 1073741825");
+    CHECK(refusal(design, PutFlip{"toe", {far, 0, true}}) ==
+          "no cloth has a crossing of pick 1073741825 and end 1");
+    CHECK(refusal(design, PutFlip{"toe", {0, far, true}}) ==
+          "no cloth has a crossing of pick 1 and end 1073741825");
     CHECK(refusal(design, RemoveFlip{"none", 0, 0}) == "'none' is not a block of this design");
     CHECK(refusal(design, RemoveFlip{"toe", 2, 3}) == "'toe' has no flip at pick 3 and end 4");
     CHECK(refusal(design, SetTitle{std::string(1001, 'x'), ""}) == "title: is longer than 1000 bytes");
@@ -189,7 +195,8 @@ TEST_CASE("flips, texts and plans: what is refused") {
     CHECK(refusal(design, SetWarp{warp}) == "warp.beams: needs at least one beam");
     WeftPlan weft = design.weft;
     weft.feeder_order = {{0}, {5}};
-    CHECK(refusal(design, SetWeft{weft}) == "weft.feeder_order: names feeder 5, but there are only 1, counted from 0");
+    CHECK(refusal(design, SetWeft{weft}) ==
+          "weft.feeder_order: names feeder 5, but there are only 1, counted from 0");
     Scene scene;
     scene.friction = -1;
     CHECK(refusal(design, SetScene{scene}) == "scene.friction: must be from 0 to 100");
@@ -197,29 +204,30 @@ TEST_CASE("flips, texts and plans: what is refused") {
 
 TEST_CASE("renaming takes every reference along, and a name may stay") {
     Design design = small();
-    REQUIRE(apply(design, RenameBlock{"toe", "tip"}));
+    REQUIRE(weave::apply(design, RenameBlock{"toe", "tip"}));
     CHECK(children_of(*design.blocks.at("heel")) == std::vector<std::string>{"tip"});
     CHECK(children_of(*design.blocks.at("cloth")) == std::vector<std::string>{"heel", "tip"});
     CHECK_FALSE(design.blocks.contains("toe"));
-    REQUIRE(apply(design, RenameBlock{"cloth", "boot"}));
+    REQUIRE(weave::apply(design, RenameBlock{"cloth", "boot"}));
     CHECK(design.root == "boot");
     CHECK(check(design));
     const Design before = design;
-    REQUIRE(apply(design, RenameBlock{"heel", "heel"}));
+    REQUIRE(weave::apply(design, RenameBlock{"heel", "heel"}));
     CHECK(design == before);
 }
 
 TEST_CASE("a flip at a crossing that has one takes its place; undo brings back order and all") {
     Design design = small();
-    for (const Flip flip : {Flip{0, 0, true}, Flip{0, 1, true}, Flip{1, 0, false}}) REQUIRE(apply(design, PutFlip{"toe", flip}));
+    for (const Flip flip : {Flip{0, 0, true}, Flip{0, 1, true}, Flip{1, 0, false}})
+        REQUIRE(weave::apply(design, PutFlip{"toe", flip}));
     const Design before = design;
-    const Edit undo = apply(design, PutFlip{"toe", {0, 0, false}}).value();
+    const Edit undo = weave::apply(design, PutFlip{"toe", {0, 0, false}}).value();
     CHECK(design.blocks.at("toe")->flips == std::vector<Flip>{{0, 1, true}, {1, 0, false}, {0, 0, false}});
-    REQUIRE(apply(design, undo));
+    REQUIRE(weave::apply(design, undo));
     CHECK(design == before);
-    const Edit again = apply(design, RemoveFlip{"toe", 0, 1}).value();
+    const Edit again = weave::apply(design, RemoveFlip{"toe", 0, 1}).value();
     CHECK(design.blocks.at("toe")->flips == std::vector<Flip>{{0, 0, true}, {1, 0, false}});
-    REQUIRE(apply(design, again));
+    REQUIRE(weave::apply(design, again));
     CHECK(write_document(design) == write_document(before));
 }
 
@@ -232,7 +240,8 @@ TEST_CASE("JSON that is no edit is refused with its place") {
     };
     CHECK_THAT(error("[]"), Catch::Contains("must be an object"));
     CHECK(error("{}") == "edit: is missing");
-    CHECK_THAT(error(R"({"edit": "paint"})"), Catch::StartsWith("edit: must be one of put-block, remove-block"));
+    CHECK_THAT(error(R"({"edit": "paint"})"),
+               Catch::StartsWith("edit: must be one of put-block, remove-block"));
     CHECK(error(R"({"edit": "put-block", "name": "a"})") == "node: is missing");
     CHECK(error(R"({"edit": "put-block", "name": "a", "node": 3})") == "node: must be an object");
     CHECK_THAT(error(R"({"edit": "put-block", "name": "a", "node": {"kind": "tile", "of": "b", "x": 0}})"),
@@ -250,5 +259,6 @@ TEST_CASE("JSON that is no edit is refused with its place") {
     CHECK(error(R"({"edit": "set-title", "title": "a"})") == "notes: is missing");
     CHECK(error(R"({"edit": "set-warp"})") == "warp: is missing");
     CHECK(error(R"({"edit": "set-weft", "weft": {"feeders": 1}})") == "weft.feeders: must be a list");
-    CHECK(error(R"({"edit": "set-scene", "scene": {"gravity": 1}})") == "scene.gravity: must be true or false");
+    CHECK(error(R"({"edit": "set-scene", "scene": {"gravity": 1}})") ==
+          "scene.gravity: must be true or false");
 }

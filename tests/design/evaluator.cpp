@@ -1,14 +1,13 @@
-#include <design/random_design.hpp>
-
 #include <weave/design/document.hpp>
 #include <weave/design/edit.hpp>
 #include <weave/design/evaluate.hpp>
 #include <weave/design/tree.hpp>
 
-#include <algorithm>
-#include <set>
-
 #include <catch2/catch.hpp>
+
+#include <algorithm>
+#include <design/random_design.hpp>
+#include <set>
 
 using namespace weave;
 using namespace weave::testing;
@@ -37,7 +36,7 @@ Block cloth_of(Evaluator& evaluator, const Design& design) {
 }
 
 Edit edited(Design& design, const Edit& edit) {
-    Result<Edit> undo = apply(design, edit);
+    Result<Edit> undo = weave::apply(design, edit);
     if (!undo) FAIL(undo.error().text());
     return std::move(undo).value();
 }
@@ -61,7 +60,8 @@ NodePtr random_square(Random& random, const std::vector<std::string>& blocks) {
                         std::move(flips));
         case 1: {
             StencilMap map{2, 2, {}};
-            for (int k = 0; k < 4; ++k) map.blocks.push_back(static_cast<std::uint16_t>(random.between(0, 1)));
+            for (int k = 0; k < 4; ++k)
+                map.blocks.push_back(static_cast<std::uint16_t>(random.between(0, 1)));
             return node(StencilOperation{{one(), one()}, std::make_shared<const StencilMap>(std::move(map))},
                         std::move(flips));
         }
@@ -135,8 +135,9 @@ TEST_CASE("undoing an edit, and making it again, computes nothing") {
     Design design = shoe();
     Evaluator evaluator;
     const Block before = cloth_of(evaluator, design);
-    for (const Edit& edit : {Edit(PutBlock{"toe", reversed()}), Edit(PutFlip{"toe", {0, 0, true}}),
-                             Edit(PutBlock{"heel", node(TileOperation{"toe", 2, 7, 1})}), Edit(SetRoot{"sole"})}) {
+    for (const Edit& edit :
+         {Edit(PutBlock{"toe", reversed()}), Edit(PutFlip{"toe", {0, 0, true}}),
+          Edit(PutBlock{"heel", node(TileOperation{"toe", 2, 7, 1})}), Edit(SetRoot{"sole"})}) {
         const Edit undo = edited(design, edit);
         const Block after = cloth_of(evaluator, design);
         const Edit redo = edited(design, undo);
@@ -149,7 +150,8 @@ TEST_CASE("undoing an edit, and making it again, computes nothing") {
     }
 }
 
-TEST_CASE("renaming a block computes nothing but that block and those made from it, and back again nothing wrong") {
+TEST_CASE(
+    "renaming a block computes nothing but that block and those made from it, and back again nothing wrong") {
     Design design = shoe();
     Evaluator evaluator;
     const Block before = cloth_of(evaluator, design);
@@ -212,8 +214,8 @@ TEST_CASE("a flip that no longer applies is reported with its reason, kept in th
 }
 
 TEST_CASE("a flip that is blocked names the yarns in the way; one of several may be lost") {
-    const Design design =
-        design_of({{"toe", node(leaf({{"T0 P0 T1 P1"}})->source, {{0, 1, true}, {0, 0, true}, {1, 1, true}})}}, "toe");
+    const Design design = design_of(
+        {{"toe", node(leaf({{"T0 P0 T1 P1"}})->source, {{0, 1, true}, {0, 0, true}, {1, 1, true}})}}, "toe");
     const Evaluation cloth = evaluate(design).value();
     REQUIRE(cloth.lost_flips.size() == 1);
     CHECK(cloth.lost_flips[0].flip == Flip{0, 1, true});
@@ -254,9 +256,11 @@ TEST_CASE("a design that does not evaluate says which block and why, and evaluat
         wrong.blocks["toe"] = node(std::move(source));
         return evaluate(wrong).error().text();
     };
-    CHECK_THAT(where(PresetLeaf{{"tartan", {}}}), Catch::StartsWith("blocks.toe") && Catch::Contains("tartan"));
+    CHECK_THAT(where(PresetLeaf{{"tartan", {}}}),
+               Catch::StartsWith("blocks.toe") && Catch::Contains("tartan"));
     CHECK_THAT(where(SliceLeaf{}), Catch::StartsWith("blocks.toe"));
-    CHECK_THAT(where(CardLeaf{std::make_shared<const CardImage>(3, 2), {2}, {1}}), Catch::StartsWith("blocks.toe"));
+    CHECK_THAT(where(CardLeaf{std::make_shared<const CardImage>(3, 2), {2}, {1}}),
+               Catch::StartsWith("blocks.toe"));
     CHECK(evaluator.evaluate(design, "none").error().text() == "'none' is not a block of this design");
     design.root = "none";
     CHECK(evaluator.evaluate(design).error().where == "root");
@@ -329,7 +333,8 @@ TEST_CASE("remembering never changes the cloth, and computes no more than what d
             static_cast<void>(cloth_of(evaluator, design));
             for (std::size_t step = 0; step < 6; ++step) {
                 const std::size_t at = random.between(0, names.size() - 1);
-                const std::vector<std::string> below(names.begin(), names.begin() + static_cast<std::ptrdiff_t>(at));
+                const std::vector<std::string> below(names.begin(),
+                                                     names.begin() + static_cast<std::ptrdiff_t>(at));
                 std::size_t most = 0;
                 const std::vector<std::string> before = bottom_up(design, design.root);
                 const Edit undo = edited(design, PutBlock{names[at], random_square(random, below)});

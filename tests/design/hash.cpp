@@ -1,8 +1,8 @@
-#include <design/random_design.hpp>
-
 #include <weave/design/document.hpp>
 
 #include <catch2/catch.hpp>
+
+#include <design/random_design.hpp>
 
 using namespace weave;
 using namespace weave::testing;
@@ -71,7 +71,8 @@ TEST_CASE("scene and view leave the design's hash alone; anything else changes i
                 flipped.flips.push_back({0, 0, true});
                 d.blocks[d.root] = std::make_shared<const Node>(flipped);
             }));
-            CHECK(changed([](Design& d) { d.warp.yarns[0].radius_mm = d.warp.yarns[0].radius_mm == 1 ? 2 : 1; }));
+            CHECK(changed(
+                [](Design& d) { d.warp.yarns[0].radius_mm = d.warp.yarns[0].radius_mm == 1 ? 2 : 1; }));
             CHECK(changed([](Design& d) { d.warp.order.once.push_back(0); }));
             CHECK(changed([](Design& d) { d.warp.beams.push_back({"more"}); }));
             CHECK(changed([](Design& d) { ++d.warp.ends_per_dent; }));

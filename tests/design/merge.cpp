@@ -1,10 +1,10 @@
-#include <design/random_design.hpp>
-
 #include <weave/design/document.hpp>
 #include <weave/design/evaluate.hpp>
 #include <weave/design/merge.hpp>
 
 #include <catch2/catch.hpp>
+
+#include <design/random_design.hpp>
 
 using namespace weave;
 using namespace weave::testing;
@@ -12,7 +12,8 @@ using namespace weave::testing;
 namespace {
 
 Design pair_of(NodePtr toe) {
-    return design_of({{"toe", std::move(toe)}, {"cloth", node(AttachOperation{"toe", "toe", Face::plus_x})}}, "cloth");
+    return design_of({{"toe", std::move(toe)}, {"cloth", node(AttachOperation{"toe", "toe", Face::plus_x})}},
+                     "cloth");
 }
 
 NodePtr other_plain() {
@@ -61,7 +62,8 @@ TEST_CASE("equal blocks are shared, those of the same name that differ come in u
     CHECK(into == twice);
 
     // A part that is equal is shared even where the cloth differs; what the cloth does not need stays out.
-    Design third = design_of({{"toe", plain()}, {"aside", plain()}, {"cloth", node(TileOperation{"toe", 3, 1, 1})}}, "cloth");
+    Design third = design_of(
+        {{"toe", plain()}, {"aside", plain()}, {"cloth", node(TileOperation{"toe", 3, 1, 1})}}, "cloth");
     CHECK(bring_in(into, third) == "cloth-3");
     CHECK(children_of(*into.blocks.at("cloth-3")) == std::vector<std::string>{"toe"});
     CHECK_FALSE(into.blocks.contains("aside"));
@@ -102,7 +104,8 @@ TEST_CASE("two long names that are cut alike do not become one block") {
     CHECK(into.blocks.size() == 5);
 }
 
-TEST_CASE("what is brought in evaluates to the same cloth, changes nothing that was there, and comes in once") {
+TEST_CASE(
+    "what is brought in evaluates to the same cloth, changes nothing that was there, and comes in once") {
     for_all(
         [](Random& random) {
             Design into = random_design(random);

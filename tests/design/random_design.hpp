@@ -1,12 +1,11 @@
 #pragma once
 
-#include <design/text_node.hpp>
-#include <support/random.hpp>
-
 #include <weave/design/design.hpp>
 
+#include <design/text_node.hpp>
 #include <memory>
 #include <string>
+#include <support/random.hpp>
 #include <vector>
 
 namespace weave::testing {
@@ -19,10 +18,12 @@ inline double random_number(Random& random, double low, double high) {
 }
 
 inline std::string random_text(Random& random, std::size_t most = 12) {
-    static const std::vector<std::string> pieces{"a", "Z", " ",  "\"",   "\\",         "\n",         "\t",
-                                                 "é", "布", "/", "\x01", "\xe2\x80\xa8", "\xf0\x9f\xa7\xb5", "7"};
+    static const std::vector<std::string> pieces{
+        "a", "Z", " ", "\"", "\\", "\n", "\t", "é", "布", "/", "\x01", "\xe2\x80\xa8", "\xf0\x9f\xa7\xb5",
+        "7"};
     std::string text;
-    for (std::size_t k = random.between(0, most); k > 0; --k) text += pieces[random.between(0, pieces.size() - 1)];
+    for (std::size_t k = random.between(0, most); k > 0; --k)
+        text += pieces[random.between(0, pieces.size() - 1)];
     return text;
 }
 
@@ -91,7 +92,8 @@ inline NodePtr random_node(Random& random, const std::vector<std::string>& block
             node.source = random_slice_leaf(random);
             break;
         case 4:
-            node.source = TileOperation{one(), random.between(1, 3), random.between(1, 3), random.between(1, 3)};
+            node.source =
+                TileOperation{one(), random.between(1, 3), random.between(1, 3), random.between(1, 3)};
             break;
         case 5:
             node.source = AttachOperation{one(), one(), static_cast<Face>(random.between(0, 5))};
@@ -106,7 +108,8 @@ inline NodePtr random_node(Random& random, const std::vector<std::string>& block
             std::vector<std::size_t> order(random.between(1, 4));
             for (std::size_t k = 0; k < order.size(); ++k) order[k] = k;
             random.shuffle(order);
-            node.source = RenumberOperation{one(), random.coin() ? System::weft : System::warp, random.between(0, 2), order};
+            node.source = RenumberOperation{one(), random.coin() ? System::weft : System::warp,
+                                            random.between(0, 2), order};
         }
     }
     for (std::size_t k = random.between(0, 2); k > 0; --k)
@@ -117,7 +120,8 @@ inline NodePtr random_node(Random& random, const std::vector<std::string>& block
 inline Sequence random_sequence(Random& random, std::size_t below) {
     Sequence sequence{{}};
     for (std::size_t k = random.between(1, 6); k > 0; --k) {
-        sequence.once.insert(sequence.once.end(), random.between(1, 3), static_cast<std::uint32_t>(random.between(0, below - 1)));
+        sequence.once.insert(sequence.once.end(), random.between(1, 3),
+                             static_cast<std::uint32_t>(random.between(0, below - 1)));
     }
     return sequence;
 }
@@ -155,13 +159,15 @@ inline WeftPlan random_weft(Random& random) {
     WeftPlan weft;
     weft.yarns = random_yarns(random);
     for (std::size_t k = random.between(1, 4); k > 0; --k)
-        weft.feeders.push_back({random_text(random), static_cast<std::uint32_t>(random.between(0, weft.yarns.size() - 1))});
+        weft.feeders.push_back(
+            {random_text(random), static_cast<std::uint32_t>(random.between(0, weft.yarns.size() - 1))});
     weft.feeder_order.assign(random.between(1, 6), {});
     for (FeederSet& set : weft.feeder_order) {
         const auto last = weft.feeders.size() - 1;
         const std::size_t first = random.between(0, last);
         if (random.between(0, 3) > 0) set.push_back(static_cast<std::uint32_t>(first));
-        if (set.size() == 1 && last > 0 && random.coin()) set.push_back(static_cast<std::uint32_t>((first + 1) % (last + 1)));
+        if (set.size() == 1 && last > 0 && random.coin())
+            set.push_back(static_cast<std::uint32_t>((first + 1) % (last + 1)));
     }
     for (std::size_t k = random.between(0, 4); k > 0; --k)
         weft.directions.push_back(static_cast<Direction>(random.between(0, 1)));
@@ -181,8 +187,10 @@ inline Scene random_scene(Random& random) {
     scene.weft_mode = static_cast<WeftMode>(random.between(0, 1));
     scene.insertion = static_cast<Insertion>(random.between(0, 2));
     for (SystemScene* system : {&scene.warp, &scene.weft})
-        maybe(system->strain, 1, 2), maybe(system->stiffness_scale, 1e-9, 1e9), maybe(system->radius_scale, 0.1, 10);
-    for (std::size_t k = random.between(0, 2); k > 0; --k) scene.pins.push_back({random.coin(), random.between(0, 99)});
+        maybe(system->strain, 1, 2), maybe(system->stiffness_scale, 1e-9, 1e9),
+            maybe(system->radius_scale, 0.1, 10);
+    for (std::size_t k = random.between(0, 2); k > 0; --k)
+        scene.pins.push_back({random.coin(), random.between(0, 99)});
     for (std::size_t k = random.between(0, 2); k > 0; --k) {
         scene.fields.push_back({{random_number(random, -9, 9), 0, random_number(random, -1e9, 1e9)},
                                 random_number(random, 1e-6, 1e6),
@@ -210,7 +218,8 @@ inline Design random_design(Random& random, std::size_t most_nodes = 6) {
     design.warp = random_warp(random);
     design.weft = random_weft(random);
     design.scene = random_scene(random);
-    if (random.coin()) design.view = {{"zoom", random_number(random, 0, 1)}, {"open", {"a", 1, true, nullptr}}};
+    if (random.coin())
+        design.view = {{"zoom", random_number(random, 0, 1)}, {"open", {"a", 1, true, nullptr}}};
     return design;
 }
 

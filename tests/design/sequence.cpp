@@ -1,9 +1,9 @@
-#include <design/random_design.hpp>
-
 #include <weave/design/document.hpp>
 #include <weave/design/plan_json.hpp>
 
 #include <catch2/catch.hpp>
+
+#include <design/random_design.hpp>
 
 using namespace weave;
 using namespace weave::testing;
@@ -47,10 +47,11 @@ TEST_CASE("sequences are numbers with runs, and repeat for ever") {
 }
 
 TEST_CASE("text that is no sequence is refused with the word at fault") {
-    for (const char* word : {"x", "0*", "*3", "0*0", "0*-1", "-1", "+1", "1.5", "0**2", "0*2*2", "0*2x", "0x1", "0,1",
-                             "99999999999", "0*99999999999", "0\t1", "0\n"}) {
+    for (const char* word : {"x", "0*", "*3", "0*0", "0*-1", "-1", "+1", "1.5", "0**2", "0*2*2", "0*2x",
+                             "0x1", "0,1", "99999999999", "0*99999999999", "0\t1", "0\n"}) {
         INFO(word);
-        CHECK(error_of("1 " + std::string(word)) == "'" + std::string(word) + "' is neither a number nor a run such as 0*12");
+        CHECK(error_of("1 " + std::string(word)) ==
+              "'" + std::string(word) + "' is neither a number nor a run such as 0*12");
     }
     CHECK(error_of("") == "is empty, but needs at least one number");
     CHECK(error_of("   ") == "is empty, but needs at least one number");
@@ -67,7 +68,8 @@ TEST_CASE("a sequence reads back as it was, and its text is as short as runs mak
         const std::string text = to_text(sequence);
         REQUIRE(parse_sequence(text, static_cast<std::uint32_t>(below)).value() == sequence);
         std::size_t runs = 1;
-        for (std::size_t k = 1; k < sequence.once.size(); ++k) runs += sequence.once[k] != sequence.once[k - 1] ? 1 : 0;
+        for (std::size_t k = 1; k < sequence.once.size(); ++k)
+            runs += sequence.once[k] != sequence.once[k - 1] ? 1 : 0;
         REQUIRE(static_cast<std::size_t>(std::count(text.begin(), text.end(), ' ')) == runs - 1);
     });
 }
@@ -94,11 +96,12 @@ TEST_CASE("a feeder order gives each pick no feeder, one, or two") {
 }
 
 TEST_CASE("text that is no feeder order is refused with the word at fault") {
-    for (const char* word : {"x", "--", "-+1", "0+", "+0", "0+1+2", "0+-", "0*", "0*0", "*2", "0*2*2", "0*-1", "0+1*x",
-                             "-0", "0;1", "99999999999"}) {
+    for (const char* word : {"x", "--", "-+1", "0+", "+0", "0+1+2", "0+-", "0*", "0*0", "*2", "0*2*2", "0*-1",
+                             "0+1*x", "-0", "0;1", "99999999999"}) {
         INFO(word);
-        CHECK(weft_error("1 " + std::string(word)) == "weft.feeder_order: '" + std::string(word) +
-                                                          "' is not a pick's feeders such as 0, 0+1, - or 0*12");
+        CHECK(weft_error("1 " + std::string(word)) ==
+              "weft.feeder_order: '" + std::string(word) +
+                  "' is not a pick's feeders such as 0, 0+1, - or 0*12");
     }
     CHECK(weft_error("0*4194305") == "weft.feeder_order: is longer than 4194304 picks");
     CHECK(weft_error("-*4194304 0") == "weft.feeder_order: is longer than 4194304 picks");

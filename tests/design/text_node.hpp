@@ -2,11 +2,11 @@
 
 #include <weave/design/design.hpp>
 
+#include <catch2/catch.hpp>
+
 #include <memory>
 #include <string>
 #include <vector>
-
-#include <catch2/catch.hpp>
 
 namespace weave::testing {
 
@@ -18,7 +18,8 @@ inline NodePtr node(NodeSource source, std::vector<Flip> flips = {}) {
 inline NodePtr leaf(const std::vector<std::vector<std::string>>& rows) {
     std::vector<std::uint32_t> t, p;
     for (const auto& row : rows) t.push_back(static_cast<std::uint32_t>(parse_stack(row[0]).value().wefts()));
-    for (const auto& stack : rows[0]) p.push_back(static_cast<std::uint32_t>(parse_stack(stack).value().warps()));
+    for (const auto& stack : rows[0])
+        p.push_back(static_cast<std::uint32_t>(parse_stack(stack).value().warps()));
     const Result<Block> block =
         make_block(t, p, [&](std::size_t i, std::size_t j) { return parse_stack(rows[i][j]).value(); });
     REQUIRE(block);
@@ -32,8 +33,8 @@ inline NodePtr plain() {
 
 inline NodePtr stencil_of(std::vector<std::string> of, std::size_t rows, std::size_t columns,
                           std::vector<std::uint16_t> numbers) {
-    return node(StencilOperation{std::move(of), std::make_shared<const StencilMap>(
-                                                    StencilMap{rows, columns, std::move(numbers)})});
+    return node(StencilOperation{
+        std::move(of), std::make_shared<const StencilMap>(StencilMap{rows, columns, std::move(numbers)})});
 }
 
 inline Design design_of(std::map<std::string, NodePtr> blocks, std::string root) {

@@ -1,11 +1,10 @@
-#include <design/random_design.hpp>
-
 #include <weave/design/tree.hpp>
 
-#include <algorithm>
-#include <set>
-
 #include <catch2/catch.hpp>
+
+#include <algorithm>
+#include <design/random_design.hpp>
+#include <set>
 
 using namespace weave;
 using namespace weave::testing;
@@ -18,7 +17,8 @@ TEST_CASE("bottom up each block comes once, after all that it is made from, the 
             REQUIRE(order.back() == design.root);
             std::set<std::string> done;
             for (const std::string& name : order) {
-                for (const std::string& child : children_of(*design.blocks.at(name))) REQUIRE(done.contains(child));
+                for (const std::string& child : children_of(*design.blocks.at(name)))
+                    REQUIRE(done.contains(child));
                 REQUIRE(done.insert(name).second);
             }
             // No more than the root needs: all but the root have a user.
@@ -55,7 +55,8 @@ TEST_CASE("children are exchanged by name in every kind of operation, and otherw
     CHECK(children(node(AttachOperation{"a", "b", Face::plus_z})) == Names{"x", "b"});
     CHECK(children(node(AttachOperation{"c", "a", Face::plus_z})) == Names{"c", "x"});
     CHECK(children(stencil_of({"a", "c", "a"}, 1, 3, {0, 1, 2})) == Names{"x", "c", "x"});
-    for (const NodePtr& same : {plain(), node(TileOperation{"b", 2, 3, 4}), node(AttachOperation{"c", "c", Face::plus_x})})
+    for (const NodePtr& same :
+         {plain(), node(TileOperation{"b", 2, 3, 4}), node(AttachOperation{"c", "c", Face::plus_x})})
         CHECK(with_renamed_children(same, names) == same);
     const NodePtr old = node(TileOperation{"a", 2, 3, 4}, {{1, 2, true}});
     const NodePtr renamed = with_renamed_children(old, names);

@@ -12,7 +12,9 @@ std::optional<std::int64_t> parse_whole(std::string_view text) {
 }
 
 bool is_utf8(std::string_view text) {
-    const auto byte = [&](std::size_t i) { return i < text.size() ? static_cast<unsigned char>(text[i]) : 0U; };
+    const auto byte = [&](std::size_t i) {
+        return i < text.size() ? static_cast<unsigned char>(text[i]) : 0U;
+    };
     for (std::size_t i = 0; i < text.size();) {
         const unsigned lead = byte(i), second = byte(i + 1);
         if (lead < 0x80) {

@@ -89,7 +89,8 @@ bool within(double value, double low, double high) {
 }
 
 Status check_text(const std::string& text, std::size_t longest, const std::string& where) {
-    if (text.size() > longest) return bad_input("is longer than " + std::to_string(longest) + " bytes", where);
+    if (text.size() > longest)
+        return bad_input("is longer than " + std::to_string(longest) + " bytes", where);
     if (!is_utf8(text)) return bad_input("is not UTF-8", where);
     return {};
 }
@@ -134,8 +135,8 @@ Status check_warp(const WarpPlan& warp) {
     WEAVE_CHECK_OK(check_yarns(warp.yarns, "warp.yarns"));
     if (warp.beams.empty()) return bad_input("needs at least one beam", "warp.beams");
     for (std::size_t k = 0; k < warp.beams.size(); ++k) {
-        WEAVE_CHECK_OK(check_text(warp.beams[k].name, longest_yarn_name,
-                                    "warp.beams[" + std::to_string(k) + "].name"));
+        WEAVE_CHECK_OK(
+            check_text(warp.beams[k].name, longest_yarn_name, "warp.beams[" + std::to_string(k) + "].name"));
     }
     WEAVE_CHECK_OK(check_sequence(warp.order, warp.yarns.size(), "warp.order"));
     WEAVE_CHECK_OK(check_sequence(warp.beam_order, warp.beams.size(), "warp.beam_order"));
@@ -154,7 +155,7 @@ Status check_weft(const WeftPlan& weft) {
         return bad_input("needs 1 to 64 feeders", "weft.feeders");
     for (std::size_t k = 0; k < weft.feeders.size(); ++k) {
         WEAVE_CHECK_OK(check_text(weft.feeders[k].name, longest_yarn_name,
-                                    "weft.feeders[" + std::to_string(k) + "].name"));
+                                  "weft.feeders[" + std::to_string(k) + "].name"));
         if (weft.feeders[k].yarn >= weft.yarns.size()) {
             return bad_input("names yarn " + std::to_string(weft.feeders[k].yarn) + ", but there are only " +
                                  std::to_string(weft.yarns.size()) + ", counted from 0",
@@ -164,7 +165,8 @@ Status check_weft(const WeftPlan& weft) {
     if (weft.feeder_order.empty())
         return bad_input("is empty, but needs at least one pick", "weft.feeder_order");
     if (weft.feeder_order.size() > longest_sequence)
-        return bad_input("is longer than " + std::to_string(longest_sequence) + " picks", "weft.feeder_order");
+        return bad_input("is longer than " + std::to_string(longest_sequence) + " picks",
+                         "weft.feeder_order");
     for (const FeederSet& set : weft.feeder_order) {
         if (set.size() > 2) return bad_input("gives a pick more than two feeders", "weft.feeder_order");
         if (set.size() == 2 && set[0] == set[1])
@@ -178,8 +180,8 @@ Status check_weft(const WeftPlan& weft) {
         }
     }
     if (weft.directions.size() > longest_sequence || weft.take_up.size() > longest_sequence) {
-        return bad_input("has directions or take-up for more than " + std::to_string(longest_sequence) + " picks",
-                         "weft");
+        return bad_input(
+            "has directions or take-up for more than " + std::to_string(longest_sequence) + " picks", "weft");
     }
     if (!within(weft.density_picks_per_cm, 0.01, 1e4)) {
         return bad_input("must be from 0.01 to 10000", "weft.density_picks_per_cm");
@@ -209,7 +211,8 @@ Status check_scene(const Scene& scene) {
     WEAVE_CHECK_OK(check_system(scene.weft, "scene.weft"));
     for (std::size_t k = 0; k < scene.pins.size(); ++k) {
         if (scene.pins[k].number > static_cast<std::size_t>(most_yarn_number))
-            return bad_input("names a yarn that no cloth has", "scene.pins[" + std::to_string(k) + "].number");
+            return bad_input("names a yarn that no cloth has",
+                             "scene.pins[" + std::to_string(k) + "].number");
     }
     for (std::size_t k = 0; k < scene.fields.size(); ++k) {
         const ForceField& field = scene.fields[k];

@@ -113,9 +113,9 @@ Status check_texts(const std::string& title, const std::string& notes);
 /// carry their place inside the node, such as `flips[3]`.
 Status check(const Node& node);
 
-/// Everything that can be said without evaluating: nodes that pass check(), a root that exists, children that exist, no cycle (named
-/// as a chain of blocks), indices of yarns, feeders and beams in range, numbers finite and in their ranges,
-/// texts and lists no longer than a document may hold, texts in UTF-8.
+/// Everything that can be said without evaluating: nodes that pass check(), a root that exists, children that
+/// exist, no cycle (named as a chain of blocks), indices of yarns, feeders and beams in range, numbers finite
+/// and in their ranges, texts and lists no longer than a document may hold, texts in UTF-8.
 Status check(const Design& design);
 
 }  // namespace weave

@@ -43,8 +43,9 @@ Status check_source(const PresetLeaf& leaf) {
     for (const auto& [name, value] : preset.options) {
         if (!is_utf8(name)) return bad_input("has a name that is not UTF-8", "options");
         if (value < -most_option || value > most_option) {
-            return bad_input("must be from " + std::to_string(-most_option) + " to " + std::to_string(most_option),
-                             "options." + name);
+            return bad_input(
+                "must be from " + std::to_string(-most_option) + " to " + std::to_string(most_option),
+                "options." + name);
         }
     }
     return {};
@@ -73,7 +74,8 @@ Status check_source(const StencilOperation& stencil) {
         return bad_input("must be a list of 1 to " + std::to_string(most_stencilled) + " block names", "of");
     if (!stencil.map) return bad_input("is missing", "map");
     const StencilMap& map = *stencil.map;
-    if (Status fits = check_card_size(map.rows, map.columns); !fits) return std::move(fits).error().under("map");
+    if (Status fits = check_card_size(map.rows, map.columns); !fits)
+        return std::move(fits).error().under("map");
     if (map.columns > longest_sequence)
         return bad_input("has rows longer than " + std::to_string(longest_sequence) + " stacks", "map");
     if (map.blocks.size() != map.rows * map.columns)
@@ -88,7 +90,8 @@ Status check_source(const StencilOperation& stencil) {
 
 Status check_source(const RenumberOperation& renumber) {
     const char* const line = renumber.system == System::weft ? "row" : "column";
-    if (renumber.line > most_number) return bad_input("must be from 0 to " + std::to_string(most_number), line);
+    if (renumber.line > most_number)
+        return bad_input("must be from 0 to " + std::to_string(most_number), line);
     for (std::size_t k = 0; k < renumber.order.size(); ++k) {
         if (renumber.order[k] > most_number)
             return bad_input("must be from 0 to " + std::to_string(most_number), numbered("order", k));
