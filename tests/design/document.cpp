@@ -108,7 +108,7 @@ TEST_CASE("reading what was written gives an equal design, and writing it again 
             REQUIRE(design_sha256(*back) == design_sha256(design));
             REQUIRE(scene_sha256(*back) == scene_sha256(design));
         },
-        property_cases() / 5);
+        property_cases() / 10);
 }
 
 TEST_CASE("only the format's own documents of known versions are read") {

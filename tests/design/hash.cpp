@@ -40,7 +40,7 @@ TEST_CASE("hashes do not depend on the order of members nor on spaces") {
             REQUIRE(scene_sha256(*other) == scene_sha256(design));
             REQUIRE(write_document(*other) == write_document(design));
         },
-        property_cases() / 20);
+        property_cases() / 10);
 }
 
 TEST_CASE("scene and view leave the design's hash alone; anything else changes it") {
@@ -82,5 +82,5 @@ TEST_CASE("scene and view leave the design's hash alone; anything else changes i
             CHECK(changed([](Design& d) { d.weft.yarns[0].colour.green ^= 1; }));
             CHECK(changed([](Design& d) { d.weft.feeders[0].name += "x"; }));
         },
-        property_cases() / 20);
+        property_cases() / 10);
 }
