@@ -1,3 +1,4 @@
+#include <weave/core/text.hpp>
 #include <weave/design/design.hpp>
 
 #include <algorithm>
@@ -87,13 +88,15 @@ bool within(double value, double low, double high) {
     return value >= low && value <= high;
 }
 
-Status check_length(const std::string& text, std::size_t longest, const std::string& where) {
-    if (text.size() <= longest) return {};
-    return bad_input("is longer than " + std::to_string(longest) + " bytes", where);
+Status check_text(const std::string& text, std::size_t longest, const std::string& where) {
+    if (text.size() > longest)
+        return bad_input("is longer than " + std::to_string(longest) + " bytes", where);
+    if (!is_utf8(text)) return bad_input("is not UTF-8", where);
+    return {};
 }
 
 Status check_yarn(const YarnType& yarn, const std::string& where) {
-    WEAVE_CHECK_OK(check_length(yarn.name, longest_yarn_name, where + ".name"));
+    WEAVE_CHECK_OK(check_text(yarn.name, longest_yarn_name, where + ".name"));
     if (!within(yarn.radius_mm, 1e-4, 100)) return bad_input("needs a radius from 0.0001 to 100 mm", where);
     if (!within(yarn.linear_density_tex, 1e-3, 1e7))
         return bad_input("needs a linear density from 0.001 to 1e7 tex", where);
@@ -132,8 +135,8 @@ Status check_warp(const WarpPlan& warp) {
     WEAVE_CHECK_OK(check_yarns(warp.yarns, "warp.yarns"));
     if (warp.beams.empty()) return bad_input("needs at least one beam", "warp.beams");
     for (std::size_t k = 0; k < warp.beams.size(); ++k) {
-        WEAVE_CHECK_OK(check_length(warp.beams[k].name, longest_yarn_name,
-                                    "warp.beams[" + std::to_string(k) + "].name"));
+        WEAVE_CHECK_OK(
+            check_text(warp.beams[k].name, longest_yarn_name, "warp.beams[" + std::to_string(k) + "].name"));
     }
     WEAVE_CHECK_OK(check_sequence(warp.order, warp.yarns.size(), "warp.order"));
     WEAVE_CHECK_OK(check_sequence(warp.beam_order, warp.beams.size(), "warp.beam_order"));
@@ -151,8 +154,8 @@ Status check_weft(const WeftPlan& weft) {
     if (weft.feeders.empty() || weft.feeders.size() > 64)
         return bad_input("needs 1 to 64 feeders", "weft.feeders");
     for (std::size_t k = 0; k < weft.feeders.size(); ++k) {
-        WEAVE_CHECK_OK(check_length(weft.feeders[k].name, longest_yarn_name,
-                                    "weft.feeders[" + std::to_string(k) + "].name"));
+        WEAVE_CHECK_OK(check_text(weft.feeders[k].name, longest_yarn_name,
+                                  "weft.feeders[" + std::to_string(k) + "].name"));
         if (weft.feeders[k].yarn >= weft.yarns.size()) {
             return bad_input("names yarn " + std::to_string(weft.feeders[k].yarn) + ", but there are only " +
                                  std::to_string(weft.yarns.size()) + ", counted from 0",
@@ -162,7 +165,8 @@ Status check_weft(const WeftPlan& weft) {
     if (weft.feeder_order.empty())
         return bad_input("is empty, but needs at least one pick", "weft.feeder_order");
     if (weft.feeder_order.size() > longest_sequence)
-        return bad_input("is longer than " + std::to_string(longest_sequence) + " picks", "weft.feeder_order");
+        return bad_input("is longer than " + std::to_string(longest_sequence) + " picks",
+                         "weft.feeder_order");
     for (const FeederSet& set : weft.feeder_order) {
         if (set.size() > 2) return bad_input("gives a pick more than two feeders", "weft.feeder_order");
         if (set.size() == 2 && set[0] == set[1])
@@ -176,8 +180,8 @@ Status check_weft(const WeftPlan& weft) {
         }
     }
     if (weft.directions.size() > longest_sequence || weft.take_up.size() > longest_sequence) {
-        return bad_input("has directions or take-up for more than " + std::to_string(longest_sequence) + " picks",
-                         "weft");
+        return bad_input(
+            "has directions or take-up for more than " + std::to_string(longest_sequence) + " picks", "weft");
     }
     if (!within(weft.density_picks_per_cm, 0.01, 1e4)) {
         return bad_input("must be from 0.01 to 10000", "weft.density_picks_per_cm");
@@ -207,7 +211,8 @@ Status check_scene(const Scene& scene) {
     WEAVE_CHECK_OK(check_system(scene.weft, "scene.weft"));
     for (std::size_t k = 0; k < scene.pins.size(); ++k) {
         if (scene.pins[k].number > static_cast<std::size_t>(most_yarn_number))
-            return bad_input("names a yarn that no cloth has", "scene.pins[" + std::to_string(k) + "].number");
+            return bad_input("names a yarn that no cloth has",
+                             "scene.pins[" + std::to_string(k) + "].number");
     }
     for (std::size_t k = 0; k < scene.fields.size(); ++k) {
         const ForceField& field = scene.fields[k];
@@ -267,13 +272,19 @@ Status check_block_name(const std::string& name) {
         "' is not a block name: 1 to 64 letters, digits, '-', '_' or '.', starting with a letter or digit");
 }
 
+Status check_texts(const std::string& title, const std::string& notes) {
+    WEAVE_CHECK_OK(check_text(title, longest_title, "title"));
+    return check_text(notes, longest_notes, "notes");
+}
+
 Status check(const Design& design) {
-    WEAVE_CHECK_OK(check_length(design.title, longest_title, "title"));
-    WEAVE_CHECK_OK(check_length(design.notes, longest_notes, "notes"));
+    WEAVE_CHECK_OK(check_texts(design.title, design.notes));
     if (design.blocks.size() > most_blocks)
         return bad_input("has more than " + std::to_string(most_blocks) + " blocks", "blocks");
     for (const auto& [name, node] : design.blocks) {
-        if (Status fine = check_block_name(name); !fine) return std::move(fine).error().in("blocks");
+        if (Status fine = check_block_name(name); !fine) return std::move(fine).error().under("blocks");
+        if (!node) return bad_input("is missing", "blocks." + name);
+        if (Status fine = check(*node); !fine) return std::move(fine).error().under("blocks." + name);
     }
     if (!design.blocks.contains(design.root)) {
         return bad_input("'" + design.root.substr(0, 80) + "' is not a block of this design", "root");
@@ -281,7 +292,8 @@ Status check(const Design& design) {
     WEAVE_CHECK_OK(check_tree(design));
     WEAVE_CHECK_OK(check_warp(design.warp));
     WEAVE_CHECK_OK(check_weft(design.weft));
-    return check_scene(design.scene);
+    WEAVE_CHECK_OK(check_scene(design.scene));
+    return design.view.is_object() ? Status() : bad_input("must be an object", "view");
 }
 
 }  // namespace weave

@@ -97,14 +97,25 @@ struct Design {
 
 /// Limits of what a document holds, so that whatever is written can be read again.
 inline constexpr std::size_t most_blocks = 4096;
-inline constexpr std::size_t longest_title = 1000, longest_notes = 65536, longest_yarn_name = 200;  ///< bytes
+inline constexpr std::size_t longest_title = 1000, longest_notes = 65536, longest_yarn_name = 200,
+                             longest_family = 100;                  ///< bytes
+inline constexpr std::size_t most_stencilled = 65535;               ///< blocks that one stencil numbers
+inline constexpr std::size_t most_times = std::size_t{1} << 30;     ///< of a tile in each direction
+inline constexpr std::int64_t most_option = std::int64_t{1} << 40;  ///< of a preset, either side of 0
 
 /// Block names: 1 to 64 letters, digits, '-', '_' or '.', the first a letter or digit.
 Status check_block_name(const std::string& name);
 
-/// Everything that can be said without evaluating: a root that exists, children that exist, no cycle (named
-/// as a chain of blocks), indices of yarns, feeders and beams in range, numbers finite and in their ranges,
-/// texts and lists no longer than a document may hold.
+/// Title and notes as a document may hold them: UTF-8, and not too long.
+Status check_texts(const std::string& title, const std::string& notes);
+
+/// What can be said of one block without the others: numbers in their ranges, and nothing missing. Errors
+/// carry their place inside the node, such as `flips[3]`.
+Status check(const Node& node);
+
+/// Everything that can be said without evaluating: nodes that pass check(), a root that exists, children that
+/// exist, no cycle (named as a chain of blocks), indices of yarns, feeders and beams in range, numbers finite
+/// and in their ranges, texts and lists no longer than a document may hold, texts in UTF-8.
 Status check(const Design& design);
 
 }  // namespace weave

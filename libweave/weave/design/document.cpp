@@ -61,7 +61,7 @@ Result<Design> read_document(std::string_view text) {
     JsonReader blocks = reader.object("blocks");
     for (const auto& [name, node] : blocks.named_objects()) {
         if (reader.failed()) break;
-        if (Status fine = check_block_name(name); !fine) return std::move(fine).error().in("blocks");
+        if (Status fine = check_block_name(name); !fine) return std::move(fine).error().under("blocks");
         Result<NodePtr> made = node_from_json(node.json());
         if (!made) return std::move(made).error().under("blocks." + name);
         design.blocks[name] = std::move(made).value();

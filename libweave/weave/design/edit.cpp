@@ -52,6 +52,8 @@ NodePtr with_flips(const Node& node, std::vector<Flip> flips) {
 
 Result<Edit> make(Design& design, const PutBlock& edit) {
     if (Status fine = check_block_name(edit.name); !fine) return std::move(fine).error();
+    if (!edit.node) return invalid("'" + edit.name + "' would be made from nothing");
+    if (Status fine = check(*edit.node); !fine) return std::move(fine).error().under("blocks." + edit.name);
     for (const std::string& child : children_of(*edit.node)) {
         if (!design.blocks.contains(child)) return unknown_block(child);
     }
@@ -130,10 +132,7 @@ Result<Edit> make(Design& design, const RemoveFlip& edit) {
 }
 
 Result<Edit> make(Design& design, const SetTitle& edit) {
-    if (edit.title.size() > longest_title || edit.notes.size() > longest_notes) {
-        return invalid("a title has at most " + std::to_string(longest_title) + " bytes, notes have at most " +
-                       std::to_string(longest_notes));
-    }
+    WEAVE_CHECK_OK(check_texts(edit.title, edit.notes));
     Edit undo = SetTitle{design.title, design.notes};
     design.title = edit.title;
     design.notes = edit.notes;

@@ -67,7 +67,8 @@ Result<Evaluation> Evaluator::evaluate(const Design& design, const std::string& 
     for (const std::string& name : bottom_up(design, block)) {
         WEAVE_CHECK_OK(make_known(name, design.blocks.at(name)));
         const Known& made = known(name);
-        evaluation.lost_flips.insert(evaluation.lost_flips.end(), made.lost_flips.begin(), made.lost_flips.end());
+        evaluation.lost_flips.insert(evaluation.lost_flips.end(), made.lost_flips.begin(),
+                                     made.lost_flips.end());
         evaluation.block = made.block;
     }
     std::erase_if(m_known, [&](const auto& versions) { return !design.blocks.contains(versions.first); });

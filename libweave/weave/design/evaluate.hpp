@@ -24,8 +24,8 @@ struct Evaluation {
 
 /// Turns designs into blocks, remembering every node's block. A node is computed again only when it, or a
 /// block that it is made from, is not remembered; so after an edit only what depends on it is recomputed, and
-/// undoing an edit computes nothing. Of each name the latest versions are remembered: up to 8, fewer of large
-/// blocks.
+/// undoing an edit computes nothing (but after renaming: what carries, or is made from, the new name). Of
+/// each name the latest versions are remembered: up to 8, fewer of large blocks.
 class Evaluator {
   public:
     /// The cloth. Errors carry the place, such as `blocks.toe`.

@@ -11,7 +11,6 @@ const std::vector<std::string> kinds{"stacks", "card",   "preset",  "slice",
                                      "tile",   "attach", "stencil", "renumber"};
 const std::vector<std::string> system_names{"warp", "weft"};
 const std::vector<std::string> side_names{"under", "over"};
-constexpr std::int64_t most_times = std::int64_t{1} << 30;
 
 Error in_list(Error error, const std::string& list, std::size_t i, std::optional<std::size_t> j = {}) {
     error.where = list + "[" + std::to_string(i) + "]" + (j ? "[" + std::to_string(*j) + "]" : "");
@@ -179,10 +178,10 @@ Json write(const PresetLeaf& leaf) {
 }
 
 Result<NodeSource> read_preset(JsonReader& reader) {
-    Preset preset{reader.text("family", {}, 100), {}};
+    Preset preset{reader.text("family", {}, longest_family), {}};
     JsonReader options = reader.object("options", true);
     for (auto it = options.json().begin(); it != options.json().end(); ++it) {
-        preset.options[it.key()] = options.integer(it.key(), -(std::int64_t{1} << 40), std::int64_t{1} << 40);
+        preset.options[it.key()] = options.integer(it.key(), -most_option, most_option);
     }
     WEAVE_CHECK_OK(reader.status());
     return NodeSource(PresetLeaf{std::move(preset)});
@@ -220,9 +219,9 @@ Json write(const TileOperation& tile) {
 Result<NodeSource> read_tile(JsonReader& reader) {
     TileOperation tile;
     tile.of = reader.text("of");
-    tile.x = static_cast<std::size_t>(reader.integer("x", 1, most_times, 1));
-    tile.y = static_cast<std::size_t>(reader.integer("y", 1, most_times, 1));
-    tile.z = static_cast<std::size_t>(reader.integer("z", 1, most_times, 1));
+    tile.x = static_cast<std::size_t>(reader.integer("x", 1, static_cast<std::int64_t>(most_times), 1));
+    tile.y = static_cast<std::size_t>(reader.integer("y", 1, static_cast<std::int64_t>(most_times), 1));
+    tile.z = static_cast<std::size_t>(reader.integer("z", 1, static_cast<std::int64_t>(most_times), 1));
     WEAVE_CHECK_OK(reader.status());
     return NodeSource(std::move(tile));
 }
@@ -253,8 +252,8 @@ Result<NodeSource> read_stencil(JsonReader& reader) {
     const Json& of = reader.raw("of");
     const Json& rows = reader.raw("map");
     StencilOperation stencil;
-    if (!of.is_array() || of.empty() || of.size() > 65535)
-        return bad_input("must be a list of 1 to 65535 block names", "of");
+    if (!of.is_array() || of.empty() || of.size() > most_stencilled)
+        return bad_input("must be a list of 1 to " + std::to_string(most_stencilled) + " block names", "of");
     for (std::size_t k = 0; k < of.size(); ++k) {
         if (!of[k].is_string()) return in_list(bad_input("must be a block name"), "of", k);
         stencil.of.push_back(of[k].get<std::string>());

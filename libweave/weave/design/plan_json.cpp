@@ -208,6 +208,7 @@ WarpPlan warp_from_json(JsonReader reader) {
             warp.beams.push_back({item.text("name", "", longest_yarn_name)});
             item.no_others();
         }
+        if (warp.beams.empty()) reader.fail("needs at least one beam", "beams");
     }
     const Json& colours = reader.raw("colours");
     if (!colours.is_null() && !colours.is_array()) reader.fail("must be a list of colours", "colours");

@@ -1,0 +1,360 @@
+#include <weave/design/document.hpp>
+#include <weave/design/edit.hpp>
+#include <weave/design/evaluate.hpp>
+#include <weave/design/tree.hpp>
+
+#include <catch2/catch.hpp>
+
+#include <algorithm>
+#include <design/random_design.hpp>
+#include <set>
+
+using namespace weave;
+using namespace weave::testing;
+
+namespace {
+
+/// A toe used by a heel and a sole, which make the cloth; a tongue stands aside.
+Design shoe() {
+    return design_of({{"toe", plain()},
+                      {"heel", node(TileOperation{"toe", 2, 1, 1})},
+                      {"sole", node(TileOperation{"toe", 2, 2, 1})},
+                      {"cloth", node(AttachOperation{"heel", "sole", Face::plus_y})},
+                      {"tongue", node(TileOperation{"toe", 5, 5, 1})}},
+                     "cloth");
+}
+
+/// Plain weave whose first pick lies the other way.
+NodePtr reversed() {
+    return leaf({{"T0 P0", "P0 T0"}, {"T0 P0", "P0 T0"}});
+}
+
+Block cloth_of(Evaluator& evaluator, const Design& design) {
+    const Result<Evaluation> cloth = evaluator.evaluate(design);
+    if (!cloth) FAIL(cloth.error().text());
+    return *cloth->block;
+}
+
+Edit edited(Design& design, const Edit& edit) {
+    Result<Edit> undo = weave::apply(design, edit);
+    if (!undo) FAIL(undo.error().text());
+    return std::move(undo).value();
+}
+
+/// How many nodes `evaluator` computes for the cloth.
+std::size_t computed_for(Evaluator& evaluator, const Design& design) {
+    const std::size_t before = evaluator.computed();
+    static_cast<void>(cloth_of(evaluator, design));
+    return evaluator.computed() - before;
+}
+
+/// Its four operands fit whatever they are, so that every random tree of them evaluates.
+NodePtr random_square(Random& random, const std::vector<std::string>& blocks) {
+    const auto one = [&] { return blocks[random.between(0, blocks.size() - 1)]; };
+    std::vector<Flip> flips;
+    for (std::size_t k = random.between(0, 3); k > 0; --k)
+        flips.push_back({random.between(0, 4), random.between(0, 4), random.coin()});
+    switch (random.between(0, blocks.empty() ? 0 : 2)) {
+        case 0:
+            return node(StacksLeaf{std::make_shared<const Block>(random_block(random, {1, 2}, {2, 1}))},
+                        std::move(flips));
+        case 1: {
+            StencilMap map{2, 2, {}};
+            for (int k = 0; k < 4; ++k)
+                map.blocks.push_back(static_cast<std::uint16_t>(random.between(0, 1)));
+            return node(StencilOperation{{one(), one()}, std::make_shared<const StencilMap>(std::move(map))},
+                        std::move(flips));
+        }
+        default:
+            return node(RenumberOperation{one(), System::weft, 1, {1, 0}}, std::move(flips));
+    }
+}
+
+/// All blocks of which `name` is a part, itself included.
+std::set<std::string> dependents(const Design& design, const std::string& name) {
+    std::set<std::string> found;
+    for (const auto& [user, ignored] : design.blocks) {
+        const std::vector<std::string> parts = bottom_up(design, user);
+        if (std::find(parts.begin(), parts.end(), name) != parts.end()) found.insert(user);
+    }
+    return found;
+}
+
+}  // namespace
+
+TEST_CASE("an edit to a child reaches every block that is made from it") {
+    Design design = shoe();
+    Evaluator evaluator;
+    const Block before = cloth_of(evaluator, design);
+    CHECK(before.rows() == 4);
+    CHECK(before.columns() == 6);
+    edited(design, PutBlock{"toe", reversed()});
+    const Block after = cloth_of(evaluator, design);
+    for (std::size_t j = 0; j < 6; ++j) {
+        for (const std::size_t i : {0U, 2U}) CHECK_FALSE(after.stack(i, j) == before.stack(i, j));
+        for (const std::size_t i : {1U, 3U}) CHECK(after.stack(i, j) == before.stack(i, j));
+    }
+    CHECK(after == *evaluate(design).value().block);
+}
+
+TEST_CASE("a block that is used twice is computed once, and what the cloth does not need is not computed") {
+    Evaluator evaluator;
+    CHECK(computed_for(evaluator, shoe()) == 4);
+    Design design = design_of({{"b0", plain()}}, "b20");
+    for (std::size_t k = 1; k <= 20; ++k) {
+        const std::string below = "b" + std::to_string(k - 1);
+        design.blocks["b" + std::to_string(k)] = stencil_of({below, below}, 2, 2, {0, 1, 1, 0});
+    }
+    CHECK(computed_for(evaluator, design) == 21);
+}
+
+TEST_CASE("only what depends on an edit is computed again") {
+    Design design = shoe();
+    Evaluator evaluator;
+    CHECK(computed_for(evaluator, design) == 4);
+    CHECK(computed_for(evaluator, design) == 0);
+
+    edited(design, PutBlock{"sole", node(TileOperation{"toe", 2, 3, 1})});
+    CHECK(computed_for(evaluator, design) == 2);  // sole and cloth
+    edited(design, PutBlock{"toe", reversed()});
+    CHECK(computed_for(evaluator, design) == 4);
+    edited(design, PutFlip{"cloth", {0, 0, true}});
+    CHECK(computed_for(evaluator, design) == 1);
+    edited(design, PutBlock{"tongue", plain()});
+    edited(design, SetTitle{"boot", ""});
+    WarpPlan warp = design.warp;
+    warp.density_ends_per_cm = 12;
+    edited(design, SetWarp{warp});
+    CHECK(computed_for(evaluator, design) == 0);
+    edited(design, SetRoot{"sole"});
+    CHECK(computed_for(evaluator, design) == 0);
+    CHECK(evaluator.evaluate(design, "tongue").value().block->rows() == 2);
+}
+
+TEST_CASE("undoing an edit, and making it again, computes nothing") {
+    Design design = shoe();
+    Evaluator evaluator;
+    const Block before = cloth_of(evaluator, design);
+    for (const Edit& edit :
+         {Edit(PutBlock{"toe", reversed()}), Edit(PutFlip{"toe", {0, 0, true}}),
+          Edit(PutBlock{"heel", node(TileOperation{"toe", 2, 7, 1})}), Edit(SetRoot{"sole"})}) {
+        const Edit undo = edited(design, edit);
+        const Block after = cloth_of(evaluator, design);
+        const Edit redo = edited(design, undo);
+        CHECK(computed_for(evaluator, design) == 0);
+        CHECK(cloth_of(evaluator, design) == before);
+        const Edit again = edited(design, redo);
+        CHECK(computed_for(evaluator, design) == 0);
+        CHECK(cloth_of(evaluator, design) == after);
+        edited(design, again);
+    }
+}
+
+TEST_CASE(
+    "renaming a block computes nothing but that block and those made from it, and back again nothing wrong") {
+    Design design = shoe();
+    Evaluator evaluator;
+    const Block before = cloth_of(evaluator, design);
+    const Edit undo = edited(design, RenameBlock{"heel", "back"});
+    CHECK(computed_for(evaluator, design) <= 2);
+    CHECK(cloth_of(evaluator, design) == before);
+    edited(design, undo);
+    CHECK(computed_for(evaluator, design) <= 2);
+    CHECK(cloth_of(evaluator, design) == before);
+}
+
+TEST_CASE("flips on a block are made again when what it is made from changes") {
+    Design design = shoe();
+    Evaluator evaluator;
+    const Flip wish{3, 0, true};  // at pick 4, end 1 the warp lies over the weft in both toes
+    const bool was = cloth_of(evaluator, design).weft_over(3, 0);
+    edited(design, PutFlip{"cloth", {3, 0, !was}});
+    CHECK(cloth_of(evaluator, design).weft_over(3, 0) != was);
+    edited(design, PutBlock{"toe", reversed()});
+    const Block after = cloth_of(evaluator, design);
+    CHECK(after.weft_over(3, 0) != was);
+    CHECK(evaluator.evaluate(design).value().lost_flips.empty());
+    // Nothing else was kept from the old toe.
+    edited(design, RemoveFlip{"cloth", wish.pick, wish.end});
+    const Block bare = cloth_of(evaluator, design);
+    for (std::size_t pick = 0; pick < bare.picks(); ++pick) {
+        for (std::size_t end = 0; end < bare.ends(); ++end)
+            CHECK(after.weft_over(pick, end) == ((pick == 3 && end == 0) != bare.weft_over(pick, end)));
+    }
+}
+
+TEST_CASE("a flip that no longer applies is reported with its reason, kept in the document, and comes back") {
+    Design design = shoe();
+    edited(design, PutFlip{"heel", {3, 1, true}});
+    edited(design, PutFlip{"heel", {1, 0, false}});
+    Evaluator evaluator;
+    REQUIRE(evaluator.evaluate(design).value().lost_flips.empty());
+    const Block before = cloth_of(evaluator, design);
+
+    const Edit undo = edited(design, PutBlock{"toe", leaf({{"P0 T0", "T0 P0"}})});
+    edited(design, PutBlock{"heel", node(TileOperation{"toe", 1, 1, 1}, design.blocks.at("heel")->flips)});
+    edited(design, PutBlock{"sole", node(TileOperation{"toe", 1, 1, 1})});
+    const std::vector<LostFlip> lost = evaluator.evaluate(design).value().lost_flips;
+    REQUIRE(lost.size() == 2);
+    CHECK(lost[0].block == "heel");
+    CHECK(lost[0].flip == Flip{3, 1, true});
+    CHECK(lost[0].reason == "there is no crossing of pick 4 and end 2: the block has 1 picks and 2 ends");
+    CHECK(lost[1].flip == Flip{1, 0, false});
+    CHECK(evaluator.evaluate(design).value().lost_flips.size() == 2);  // remembered with the block
+
+    const Design again = read_document(write_document(design)).value();
+    CHECK(again == design);
+    CHECK(again.blocks.at("heel")->flips.size() == 2);
+    Design back = again;
+    edited(back, undo);
+    edited(back, PutBlock{"heel", node(TileOperation{"toe", 2, 1, 1}, again.blocks.at("heel")->flips)});
+    edited(back, PutBlock{"sole", node(TileOperation{"toe", 2, 2, 1})});
+    CHECK(evaluator.evaluate(back).value().lost_flips.empty());
+    CHECK(cloth_of(evaluator, back) == before);
+}
+
+TEST_CASE("a flip that is blocked names the yarns in the way; one of several may be lost") {
+    const Design design = design_of(
+        {{"toe", node(leaf({{"T0 P0 T1 P1"}})->source, {{0, 1, true}, {0, 0, true}, {1, 1, true}})}}, "toe");
+    const Evaluation cloth = evaluate(design).value();
+    REQUIRE(cloth.lost_flips.size() == 1);
+    CHECK(cloth.lost_flips[0].flip == Flip{0, 1, true});
+    CHECK(cloth.lost_flips[0].reason ==
+          "pick 1 and end 2 cannot be flipped alone: in the way stand end 1, pick 2");
+    CHECK(cloth.block->stack(0, 0) == parse_stack("P0 T0 P1 T1").value());
+}
+
+TEST_CASE("lost flips of every block under the cloth are reported, once each") {
+    const Design design = design_of({{"toe", node(plain()->source, {{9, 0, true}})},
+                                     {"heel", node(TileOperation{"toe", 1, 1, 1}, {{0, 9, true}})},
+                                     {"cloth", node(AttachOperation{"heel", "toe", Face::plus_x})},
+                                     {"aside", node(plain()->source, {{7, 7, true}})}},
+                                    "cloth");
+    Evaluator evaluator;
+    const std::vector<LostFlip> lost = evaluator.evaluate(design).value().lost_flips;
+    REQUIRE(lost.size() == 2);
+    CHECK(lost[0].block == "toe");
+    CHECK(lost[1].block == "heel");
+    CHECK(evaluator.evaluate(design, "toe").value().lost_flips.size() == 1);
+}
+
+TEST_CASE("a design that does not evaluate says which block and why, and evaluates again once mended") {
+    Design design = shoe();
+    Evaluator evaluator;
+    static_cast<void>(cloth_of(evaluator, design));
+    const Edit undo = edited(design, PutBlock{"heel", node(TileOperation{"toe", 3, 1, 1})});
+    const Result<Evaluation> failed = evaluator.evaluate(design);
+    REQUIRE_FALSE(failed);
+    CHECK(failed.error().code == ErrorCode::invalid);
+    CHECK(failed.error().text() ==
+          "blocks.cloth: the blocks have 6 and 4 rows, which must be equal on the faces that meet");
+    edited(design, undo);
+    CHECK(computed_for(evaluator, design) == 0);
+
+    const auto where = [&](NodeSource source) {
+        Design wrong = shoe();
+        wrong.blocks["toe"] = node(std::move(source));
+        return evaluate(wrong).error().text();
+    };
+    CHECK_THAT(where(PresetLeaf{{"tartan", {}}}),
+               Catch::StartsWith("blocks.toe") && Catch::Contains("tartan"));
+    CHECK_THAT(where(SliceLeaf{}), Catch::StartsWith("blocks.toe"));
+    CHECK_THAT(where(CardLeaf{std::make_shared<const CardImage>(3, 2), {2}, {1}}),
+               Catch::StartsWith("blocks.toe"));
+    CHECK(evaluator.evaluate(design, "none").error().text() == "'none' is not a block of this design");
+    design.root = "none";
+    CHECK(evaluator.evaluate(design).error().where == "root");
+}
+
+TEST_CASE("every kind of block evaluates to what its own function makes") {
+    const auto map = std::make_shared<const StencilMap>(StencilMap{2, 2, {0, 0, 0, 0}});
+    CardImage card(2, 2);
+    card.set(0, 0, true);
+    card.set(1, 1, true);
+    Design design = shoe();
+    const Block toe = *std::get<StacksLeaf>(plain()->source).block;
+    const Preset twill{"twill", {}};
+    const Slice slice = warp_slice(toe, 0).value();
+    design.blocks["card"] = node(CardLeaf{std::make_shared<const CardImage>(card), {1}, {1}});
+    design.blocks["preset"] = node(PresetLeaf{twill});
+    design.blocks["slice"] = node(SliceLeaf{slice});
+    design.blocks["stencil"] = node(StencilOperation{{"toe"}, map});
+    design.blocks["pile"] = node(AttachOperation{"toe", "card", Face::plus_z});
+    design.blocks["picks"] = node(RenumberOperation{"pile", System::weft, 0, {1, 0}});
+    design.blocks["ends"] = node(RenumberOperation{"pile", System::warp, 1, {1, 0}});
+    Evaluator evaluator;
+    const auto made = [&](const char* name) { return *evaluator.evaluate(design, name).value().block; };
+    CHECK(made("toe") == toe);
+    CHECK(made("heel") == tile(toe, 2, 1, 1).value());
+    CHECK(made("card").weft_over(0, 0));
+    CHECK_FALSE(made("card").weft_over(0, 1));
+    CHECK(made("preset") == make_preset(twill).value());
+    CHECK(made("slice") == to_block(slice).value());
+    const BlockPtr only = std::make_shared<const Block>(toe);
+    CHECK(made("stencil") == stencil(std::span(&only, 1), *map).value());
+    const Block pile = attach(toe, made("card"), Face::plus_z).value();
+    const std::vector<std::size_t> order{1, 0};
+    CHECK(made("pile") == pile);
+    CHECK(made("picks") == renumber_row(pile, 0, order).value());
+    CHECK(made("ends") == renumber_column(pile, 1, order).value());
+}
+
+TEST_CASE("the evaluator forgets old versions and removed blocks, and stays right") {
+    Design design = shoe();
+    Evaluator evaluator;
+    const Block first = cloth_of(evaluator, design);
+    const NodePtr old = design.blocks.at("toe");
+    for (std::size_t k = 0; k < 12; ++k) {
+        edited(design, PutFlip{"toe", {0, 0, k % 2 == 0}});
+        CHECK(computed_for(evaluator, design) >= 3);  // each time new nodes, and the toe's parents with them
+    }
+    edited(design, PutBlock{"toe", old});
+    CHECK(computed_for(evaluator, design) == 4);
+    CHECK(cloth_of(evaluator, design) == first);
+    static_cast<void>(evaluator.evaluate(design, "tongue").value());
+    const Edit undo = edited(design, RemoveBlock{"tongue"});
+    static_cast<void>(cloth_of(evaluator, design));
+    edited(design, undo);
+    CHECK(evaluator.evaluate(design, "tongue").value().block->rows() == 10);
+}
+
+TEST_CASE("remembering never changes the cloth, and computes no more than what depends on an edit") {
+    for_all(
+        [](Random& random) {
+            Design design;
+            std::vector<std::string> names;
+            for (std::size_t k = 0; k < 6; ++k) {
+                const std::string name = "b" + std::to_string(k);
+                design.blocks[name] = random_square(random, names);
+                names.push_back(name);
+            }
+            design.root = names.back();
+            Evaluator evaluator;
+            static_cast<void>(cloth_of(evaluator, design));
+            for (std::size_t step = 0; step < 6; ++step) {
+                const std::size_t at = random.between(0, names.size() - 1);
+                const std::vector<std::string> below(names.begin(),
+                                                     names.begin() + static_cast<std::ptrdiff_t>(at));
+                std::size_t most = 0;
+                const std::vector<std::string> before = bottom_up(design, design.root);
+                const Edit undo = edited(design, PutBlock{names[at], random_square(random, below)});
+                for (const std::string& name : dependents(design, names[at])) {
+                    const std::vector<std::string> needed = bottom_up(design, design.root);
+                    most += std::count(needed.begin(), needed.end(), name) > 0 ? 1 : 0;
+                }
+                for (const std::string& name : bottom_up(design, design.root)) {
+                    const bool fresh = std::find(before.begin(), before.end(), name) == before.end();
+                    if (fresh && !dependents(design, names[at]).contains(name)) ++most;
+                }
+                REQUIRE(computed_for(evaluator, design) <= most);
+                const Evaluation made = evaluator.evaluate(design).value(), anew = evaluate(design).value();
+                REQUIRE(*made.block == *anew.block);
+                REQUIRE(made.lost_flips.size() == anew.lost_flips.size());
+                if (random.coin()) continue;
+                edited(design, undo);
+                REQUIRE(computed_for(evaluator, design) == 0);
+                REQUIRE(cloth_of(evaluator, design) == *evaluate(design).value().block);
+            }
+        },
+        property_cases() / 5);
+}
