@@ -204,7 +204,8 @@ std::vector<Diagram> pushes(const Diagram& diagram, std::size_t ends) {
                         const auto around =
                             diagram.over_when_passing.find({*loop_of(diagram, e), *loop_of(diagram, f)});
                         if (around == diagram.over_when_passing.end()) continue;
-                        made.push_back(diagram.pushed(e, f, around->second, around->first.first, around->first.second));
+                        made.push_back(
+                            diagram.pushed(e, f, around->second, around->first.first, around->first.second));
                     }
                 }
             }
@@ -237,8 +238,8 @@ bool slip_at_ends(Diagram& diagram, std::size_t ends, const Diagram::Loop& loop)
 
 /// Looks through what slides (and at most `most_pushes` pushes) reach for a diagram in which the loop slips
 /// past an end.
-std::optional<Diagram> slipped(const Diagram& start, std::size_t ends, const Diagram::Loop& loop, int most_pushes,
-                               std::size_t most_states, bool& gave_up) {
+std::optional<Diagram> slipped(const Diagram& start, std::size_t ends, const Diagram::Loop& loop,
+                               int most_pushes, std::size_t most_states, bool& gave_up) {
     std::set<std::vector<Diagram::Yarn>> seen{start.yarns};
     std::deque<std::pair<Diagram, int>> waiting{{start, 0}};
     if (Diagram now = start; slip_at_ends(now, ends, loop)) return now;
@@ -284,7 +285,8 @@ std::set<std::pair<int, int>> pulled_tight(Diagram diagram, std::size_t ends, st
         return moved;
     };
     const auto loops = diagram.loops;
-    while (!gave_up && std::any_of(loops.begin(), loops.end(), pull)) {}
+    while (!gave_up && std::any_of(loops.begin(), loops.end(), pull)) {
+    }
     std::set<std::pair<int, int>> left;
     for (const auto& [crossing, what] : diagram.of) {
         if (what.first >= 0) left.insert(what);

@@ -55,14 +55,16 @@ class Diagram {
     [[nodiscard]] bool is_between_wefts(int crossing) const { return of.at(crossing).first < 0; }
 
     /// A loop under tension crosses the picks between its own straight across. So where a third move brings a
-    /// crossing of two wefts past an end, the loop's pick and the crossed pick are those at which it was laid;
-    /// it does not climb round the turn of the crossed pick at the other side.
+    /// crossing of two wefts past an end, the loop's pick and the crossed pick are those at which it was
+    /// laid; it does not climb round the turn of the crossed pick at the other side.
     [[nodiscard]] bool is_straight(const std::set<int>& triangle) const {
         std::set<int> picks;
         const std::set<std::set<int>>* straight = nullptr;
         for (const int crossing : triangle) {
-            if (is_between_wefts(crossing)) straight = &along.at(crossing);
-            else picks.insert(of.at(crossing).first);
+            if (is_between_wefts(crossing))
+                straight = &along.at(crossing);
+            else
+                picks.insert(of.at(crossing).first);
         }
         return picks.empty() || straight == nullptr || straight->contains(picks);
     }
@@ -193,7 +195,8 @@ class Diagram {
         made.signs[x] = (over ? 1 : -1) * same;
         made.signs[y] = -made.signs[x];
         made.of[x] = made.of[y] = {-1, -1};
-        const int at_x = f.forward ? inner.second : inner.first, at_y = f.forward ? inner.first : inner.second;
+        const int at_x = f.forward ? inner.second : inner.first,
+                  at_y = f.forward ? inner.first : inner.second;
         made.along[x] = {{outer.first, at_x}, {outer.second, at_x}};
         made.along[y] = {{outer.first, at_y}, {outer.second, at_y}};
         const auto insert = [&](const Dart& at, int first, int second, bool is_over) {

@@ -13,11 +13,15 @@
 //   - c turns there to a pick outside a … b: the arcs cross once, and the one formed later lies above;
 //   - c is the feeder's first or last pick and its tail leaves there: it was laid before the loop closed, so
 //   the loop is above;
-//   - c turns to a pick d that also lies in a … b: the arcs do not cross. The loop may slide over both or
-//   under both, so what
-//     counts is the way on which it comes further.
-// As loops are pulled in their picks vanish outside them and hold others no longer; the reach of every loop
-// only grows with that, so the state of rest is the least fixed point, whatever the order.
+//   - c turns to a pick d that also lies in a … b: the arcs do not cross. The loop comes past them over both
+//   or under both, on the side on which it lies itself at the end that the turn c-d wraps round; over both
+//   where no end catches that turn or a and b differ there.
+//
+// Bights can stop each other as well, between two ends. Two loops from opposite sides hook each other unless
+// one lies above the other at every crossing that they make. And one bight passes another only if no strand
+// that crosses both lies with them in a ring.
+// As loops are pulled in their picks vanish outside them and hold others no longer. Where loops hook each
+// other it matters who comes first: always the loop laid first among those that can move, as far as it comes.
 // tests/loom/weft_way.cpp holds this rule against a reducer of crossing diagrams that knows nothing of it.
 
 #include <weave/loom/weft_way.hpp>
@@ -313,9 +317,8 @@ class Loops {
     bool is_between(std::size_t s, const Loop& loop, const Loop& other, std::size_t depth) const {
         const Strand& strand = m_strands[s];
         for (const Side side : {Side::left, Side::right}) {
-            const std::size_t turn = strand.turn[index(side)], from_there = side == loop.turn.side
-                                                                                ? depth
-                                                                                : m_ends - depth;
+            const std::size_t turn = strand.turn[index(side)],
+                              from_there = side == loop.turn.side ? depth : m_ends - depth;
             if (turn == nowhere || strand.depth[index(side)] < from_there) continue;
             if (strand.depth[index(side)] > from_there) return false;
             for (const Loop* bight : {&loop, &other}) {
