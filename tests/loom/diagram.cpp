@@ -42,10 +42,37 @@ class Drawing {
             m_diagram.yarns.emplace_back();
             for (const int n : own) draw_pick(n);
         }
+        for (const auto& arcs : m_arcs) {
+            for (const Arc& arc : arcs) m_diagram.loops.emplace_back(arc.from, arc.to);
+        }
+        std::sort(m_diagram.loops.begin(), m_diagram.loops.end(),
+                  [](const auto& a, const auto& b) { return a.second < b.second; });
+        for (const std::size_t side : {0U, 1U}) settle_nested(side);
         return std::move(m_diagram);
     }
 
   private:
+    /// A loop comes past a turn inside it on its own side of the end that this turn lies round: over it where
+    /// both its picks lie over that end, under it where both lie under, and otherwise over it.
+    void settle_nested(std::size_t side) {
+        for (const Arc& outer : m_arcs[side]) {
+            for (const Arc& inner : m_arcs[side]) {
+                if (inner.from <= outer.from || inner.to >= outer.to) continue;
+                bool over = true;
+                for (std::size_t k = 0; k < m_card.ends(); ++k) {
+                    const std::size_t e = side == 0 ? k : m_card.ends() - 1 - k;
+                    if (lies_over(inner.from, e) == lies_over(inner.to, e)) continue;
+                    over = lies_over(outer.from, e) || lies_over(outer.to, e);
+                    break;
+                }
+                m_diagram.over_when_passing[{{outer.from, outer.to}, {inner.from, inner.to}}] = over;
+            }
+        }
+    }
+    [[nodiscard]] bool lies_over(int n, std::size_t e) const {
+        return m_card.weft_over(static_cast<std::size_t>(n), e);
+    }
+
     static constexpr int tail = -1;
     [[nodiscard]] bool goes_right(int n) const {
         return m_picks[static_cast<std::size_t>(n)].direction == Direction::left_to_right;
@@ -84,7 +111,17 @@ class Drawing {
 
     void visit_arc(int n, std::size_t side, int arc, bool as_pick) {
         const bool over = pick_over_arc(n, side, arc);
-        visit(number(static_cast<int>(side), n, arc, over == goes_right(n), {-1, -1}), as_pick == over);
+        const int crossing = number(static_cast<int>(side), n, arc, over == goes_right(n), {-1, -1});
+        visit(crossing, as_pick == over);
+        const Arc& its = m_arcs[side][static_cast<std::size_t>(arc)];
+        auto& along = m_diagram.along[crossing];
+        along = {{its.from, n}, {its.to, n}};
+        const int own = turn(n, side);
+        if (own == tail) return;
+        const Arc& mine = m_arcs[side][static_cast<std::size_t>(own)];
+        const int inside = mine.from < its.from ? its.from : its.to;
+        along.insert({mine.from, inside});
+        along.insert({mine.to, inside});
     }
 
     /// Arcs that a pick passes on its way out on one side, nearest first.
@@ -143,14 +180,9 @@ bool is_arc(const Diagram& diagram, const Dart& dart) {
     return loop_of(diagram, dart).has_value();
 }
 
-/// Loops may choose over or under only where one was closed around the other. Loops that cross outside the
-/// cloth lie as they were laid: a taut loop does not climb over one that was laid on it.
-bool is_around(const Diagram& diagram, const Dart& e, const Dart& f) {
-    const auto outer = *loop_of(diagram, e), inner = *loop_of(diagram, f);
-    return outer.first < inner.first && inner.second < outer.second;
-}
-
-/// Every way of sliding a piece of one loop over or under a piece of another that it faces.
+/// Every way of sliding a piece of a loop across a piece of another that it was laid round, on the side that
+/// is settled for the two. Other loops are already crossed as they were laid: no taut loop climbs over one
+/// that was laid on it.
 std::vector<Diagram> pushes(const Diagram& diagram, std::size_t ends) {
     std::vector<Diagram> made;
     const auto where = diagram.spots();
@@ -169,9 +201,11 @@ std::vector<Diagram> pushes(const Diagram& diagram, std::size_t ends) {
                 if (at) done.insert(face.begin(), face.end());
                 for (const Dart& e : face) {
                     for (const Dart& f : face) {
-                        if (e.yarn == f.yarn || !is_around(diagram, e, f)) continue;
-                        made.push_back(diagram.pushed(e, f, true));
-                        made.push_back(diagram.pushed(e, f, false));
+                        const auto around =
+                            diagram.over_when_passing.find({*loop_of(diagram, e), *loop_of(diagram, f)});
+                        if (around == diagram.over_when_passing.end()) continue;
+                        made.push_back(
+                            diagram.pushed(e, f, around->second, around->first.first, around->first.second));
                     }
                 }
             }
@@ -180,13 +214,15 @@ std::vector<Diagram> pushes(const Diagram& diagram, std::size_t ends) {
     return made;
 }
 
-/// Two crossings of one end that the second move takes away, if there are any.
-bool remove_at_ends(Diagram& diagram, std::size_t ends) {
+/// Two crossings of one end with the picks of a loop that the second move takes away, if there are any.
+bool slip_at_ends(Diagram& diagram, std::size_t ends, const Diagram::Loop& loop) {
     for (std::size_t e = 0; e < ends; ++e) {
         const auto& yarn = diagram.yarns[e];
         for (std::size_t k = 0; k + 1 < yarn.size(); ++k) {
             if (yarn[k].over != yarn[k + 1].over) continue;
-            const std::set<int> both{yarn[k].crossing, yarn[k + 1].crossing};
+            const std::set<int> both{yarn[k].crossing, yarn[k + 1].crossing},
+                picks{diagram.of.at(yarn[k].crossing).first, diagram.of.at(yarn[k + 1].crossing).first};
+            if (picks != std::set<int>{loop.first, loop.second}) continue;
             for (std::size_t y = ends; y < diagram.yarns.size(); ++y) {
                 const auto& weft = diagram.yarns[y];
                 for (std::size_t m = 0; m + 1 < weft.size(); ++m) {
@@ -200,24 +236,25 @@ bool remove_at_ends(Diagram& diagram, std::size_t ends) {
     return false;
 }
 
-/// Looks through what slides (and at most `most_pushes` pushes) reach for a diagram in which a loop slips
+/// Looks through what slides (and at most `most_pushes` pushes) reach for a diagram in which the loop slips
 /// past an end.
-std::optional<Diagram> slipped(const Diagram& start, std::size_t ends, int most_pushes,
-                               std::size_t most_states, bool& gave_up) {
+std::optional<Diagram> slipped(const Diagram& start, std::size_t ends, const Diagram::Loop& loop,
+                               int most_pushes, std::size_t most_states, bool& gave_up) {
     std::set<std::vector<Diagram::Yarn>> seen{start.yarns};
     std::deque<std::pair<Diagram, int>> waiting{{start, 0}};
+    if (Diagram now = start; slip_at_ends(now, ends, loop)) return now;
     while (!waiting.empty()) {
         const auto [diagram, pushed] = std::move(waiting.front());
         waiting.pop_front();
         auto next = diagram.slides();
+        if (Diagram simpler = diagram; simpler.simplify()) next.push_back(std::move(simpler));
         const std::size_t slides = next.size();
         if (pushed < most_pushes) {
             for (auto& made : pushes(diagram, ends)) next.push_back(std::move(made));
         }
         for (std::size_t k = 0; k < next.size(); ++k) {
             if (!seen.insert(next[k].yarns).second) continue;
-            if (remove_at_ends(next[k], ends)) return std::move(next[k]);
-            if (most_pushes == 0 && next[k].simplify()) return std::move(next[k]);
+            if (slip_at_ends(next[k], ends, loop)) return std::move(next[k]);
             if (seen.size() > most_states) {
                 gave_up = true;
                 return {};
@@ -236,17 +273,19 @@ Diagram diagram_of(const CardImage& card, const std::vector<Pick>& picks, std::s
 
 std::set<std::pair<int, int>> pulled_tight(Diagram diagram, std::size_t ends, std::size_t most_states,
                                            bool& gave_up) {
-    const std::size_t feeders = diagram.yarns.size() - ends;
-    for (bool moved = true; moved;) {
-        diagram.simplify();
-        moved = false;
-        for (int pushes_allowed = 0; pushes_allowed <= (feeders > 1 ? 2 : 0) && !moved && !gave_up;
-             ++pushes_allowed) {
-            if (auto further = slipped(diagram, ends, pushes_allowed, most_states, gave_up)) {
-                diagram = std::move(*further);
-                moved = true;
-            }
+    const auto pull = [&](const Diagram::Loop& loop) {
+        bool moved = false;
+        for (int pushes_allowed = 0; pushes_allowed <= 2 && !gave_up; ++pushes_allowed) {
+            auto further = slipped(diagram, ends, loop, pushes_allowed, most_states, gave_up);
+            if (!further) continue;
+            diagram = std::move(*further);
+            moved = true;
+            pushes_allowed = -1;
         }
+        return moved;
+    };
+    const auto loops = diagram.loops;
+    while (!gave_up && std::any_of(loops.begin(), loops.end(), pull)) {
     }
     std::set<std::pair<int, int>> left;
     for (const auto& [crossing, what] : diagram.of) {

@@ -35,6 +35,12 @@ class Diagram {
     std::map<int, int> signs;  ///< +1: over yarn turned left gives the under yarn's direction
     std::map<int, std::pair<int, int>>
         of;  ///< crossing of an end with a pick (pick, end), or (-1, -1) between wefts
+    /// For a crossing between wefts the pairs of picks along which it may pass an end: see is_straight.
+    std::map<int, std::set<std::set<int>>> along;
+    using Loop = std::pair<int, int>;  ///< the two picks that it joins
+    std::vector<Loop> loops;           ///< in the order in which they were laid
+    /// Loops on one side laid one round the other: whether the outer one would pass over the inner one.
+    std::map<std::pair<Loop, Loop>, bool> over_when_passing;
 
     [[nodiscard]] std::map<int, std::array<Spot, 2>> spots() const {
         std::map<int, std::vector<Spot>> all;
@@ -48,6 +54,21 @@ class Diagram {
 
     [[nodiscard]] bool is_between_wefts(int crossing) const { return of.at(crossing).first < 0; }
 
+    /// A loop under tension crosses the picks between its own straight across. So where a third move brings a
+    /// crossing of two wefts past an end, the loop's pick and the crossed pick are those at which it was
+    /// laid; it does not climb round the turn of the crossed pick at the other side.
+    [[nodiscard]] bool is_straight(const std::set<int>& triangle) const {
+        std::set<int> picks;
+        const std::set<std::set<int>>* straight = nullptr;
+        for (const int crossing : triangle) {
+            if (is_between_wefts(crossing))
+                straight = &along.at(crossing);
+            else
+                picks.insert(of.at(crossing).first);
+        }
+        return picks.empty() || straight == nullptr || straight->contains(picks);
+    }
+
     void remove(const std::set<int>& crossings) {
         for (Yarn& yarn : yarns) {
             std::erase_if(yarn, [&](const Visit& v) { return crossings.contains(v.crossing); });
@@ -55,10 +76,12 @@ class Diagram {
         for (const int crossing : crossings) {
             signs.erase(crossing);
             of.erase(crossing);
+            along.erase(crossing);
         }
     }
 
-    /// First and second move wherever they remove crossings, until none does. True if anything was removed.
+    /// First and second move wherever they remove crossings between wefts, until none does. True if anything
+    /// was removed.
     bool simplify() {
         bool any = false;
         while (const auto gone = removable()) {
@@ -73,6 +96,7 @@ class Diagram {
         for (const Yarn& yarn : yarns) {
             for (std::size_t k = 0; k + 1 < yarn.size(); ++k) {
                 const Visit a = yarn[k], b = yarn[k + 1];
+                if (!is_between_wefts(a.crossing) || !is_between_wefts(b.crossing)) continue;
                 if (a.crossing == b.crossing) return std::set{a.crossing};
                 if (a.over != b.over) continue;
                 if (!seen.insert(std::minmax(a.crossing, b.crossing)).second)
@@ -111,6 +135,10 @@ class Diagram {
                 bottoms += !first && !second;
             }
             std::set<std::pair<std::size_t, std::size_t>> used;
+            std::set<int> corners;
+            for (const Edge& side : sides) corners.insert(yarns[side.yarn][side.place].crossing);
+            for (const Edge& side : sides) corners.insert(yarns[side.yarn][side.place + 1].crossing);
+            if (!is_straight(corners)) return;
             for (const Edge& side : sides) {
                 used.insert({side.yarn, side.place});
                 used.insert({side.yarn, side.place + 1});
@@ -158,13 +186,19 @@ class Diagram {
     }
 
     /// Pushes piece `e` across piece `f`, over or under it; both bound the same face on their left.
-    [[nodiscard]] Diagram pushed(const Dart& e, const Dart& f, bool over) const {
+    /// `outer` is the loop of `e`, `inner` that of `f`.
+    [[nodiscard]] Diagram pushed(const Dart& e, const Dart& f, bool over, const Loop& outer,
+                                 const Loop& inner) const {
         Diagram made = *this;
         const int x = signs.empty() ? 0 : signs.rbegin()->first + 1, y = x + 1;
         const int same = e.forward == f.forward ? 1 : -1;
         made.signs[x] = (over ? 1 : -1) * same;
         made.signs[y] = -made.signs[x];
         made.of[x] = made.of[y] = {-1, -1};
+        const int at_x = f.forward ? inner.second : inner.first,
+                  at_y = f.forward ? inner.first : inner.second;
+        made.along[x] = {{outer.first, at_x}, {outer.second, at_x}};
+        made.along[y] = {{outer.first, at_y}, {outer.second, at_y}};
         const auto insert = [&](const Dart& at, int first, int second, bool is_over) {
             Yarn& yarn = made.yarns[at.yarn];
             if (!at.forward) std::swap(first, second);
@@ -180,7 +214,8 @@ class Diagram {
 /// The diagram of a card: ends first, then the yarn of each feeder; arcs and tails as they leave the loom.
 Diagram diagram_of(const CardImage& card, const std::vector<Pick>& picks, std::size_t feeders);
 
-/// Pulls every loop as far as moves allow and gives the (pick, end) crossings that remain.
+/// Pulls loops as far as moves allow, always the one laid first of those that can move, and gives the
+/// (pick, end) crossings that remain.
 std::set<std::pair<int, int>> pulled_tight(Diagram diagram, std::size_t ends, std::size_t most_states,
                                            bool& gave_up);
 

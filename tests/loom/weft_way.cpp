@@ -58,8 +58,30 @@ std::string described(const CardImage& card, const std::vector<Pick>& picks) {
 }
 
 struct Tally {
-    std::size_t compared = 0, equal = 0, crossed = 0, gave_up = 0, by_pick = 0, none = 0;
+    std::size_t compared = 0, crossed = 0, crossed_compared = 0, gave_up = 0, by_pick = 0;
 };
+
+/// Feeders with a crossed pick, and those with a pick between two of such a feeder or the other way round,
+/// and so on.
+std::vector<bool> touched_by_crossed(const WeftWay& way, const std::vector<Pick>& picks,
+                                     std::size_t feeders) {
+    std::vector<bool> touched(feeders, false);
+    std::vector<std::pair<std::size_t, std::size_t>> range(feeders, {picks.size(), 0});
+    for (const PickSpan& span : way.spans) {
+        touched[span.feeder] = touched[span.feeder] || span.crossed;
+        range[span.feeder].first = std::min(range[span.feeder].first, span.pick);
+        range[span.feeder].second = std::max(range[span.feeder].second, span.pick);
+    }
+    for (std::size_t round = 0; round < feeders; ++round) {
+        for (std::size_t f = 0; f < feeders; ++f) {
+            for (std::size_t g = 0; g < feeders; ++g) {
+                const bool apart = range[f].second < range[g].first || range[g].second < range[f].first;
+                if (touched[g] && !apart) touched[f] = true;
+            }
+        }
+    }
+    return touched;
+}
 
 void compare(const CardImage& card, const std::vector<Pick>& picks, std::size_t feeders, Tally& tally) {
     INFO(described(card, picks));
@@ -78,21 +100,24 @@ void compare(const CardImage& card, const std::vector<Pick>& picks, std::size_t 
         return;
     }
     if (crossed) {
-        // Where a pick leaves the cloth altogether what comes after depends on who pulls first; that it does
-        // is certain.
+        // A yarn whose pick has left the cloth lies no longer as it was laid; neither do those that it held.
         std::set<int> there;
         for (const auto& [pick, end] : left) there.insert(pick);
         if (feeders == 1) CHECK(there.size() < picks.size());
+        const auto touched = touched_by_crossed(way, picks, feeders);
+        const auto without = [&](std::set<std::pair<int, int>> crossings) {
+            std::erase_if(crossings, [&](const auto& c) {
+                return touched[picks[static_cast<std::size_t>(c.first)].feeders[0]];
+            });
+            return crossings;
+        };
+        CHECK(without(left) == without(expected));
+        tally.crossed_compared += !without(expected).empty();
         ++tally.crossed;
         return;
     }
-    if (feeders == 1) CHECK(left == expected);
-    // With several feeders bare topology now and then lets a loop climb over a later one whose own loop has
-    // slipped inside, which no taut yarn does; so the rule may stop short of the reducer, seldom, and must
-    // never go further.
-    CHECK(std::includes(expected.begin(), expected.end(), left.begin(), left.end()));
+    CHECK(left == expected);
     ++tally.compared;
-    tally.equal += left == expected;
     for (const Turn& turn : way.turns) {
         const bool differs =
             card.weft_over(turn.from_pick, turn.end) != card.weft_over(turn.to_pick, turn.end);
@@ -159,17 +184,71 @@ TEST_CASE("one feeder: loops rest where the diagram reducer leaves them") {
 
 TEST_CASE("several feeders: loops rest where the diagram reducer leaves them") {
     Tally tally;
-    for_all(
-        [&](Random& random) {
-            std::vector<std::uint32_t> feeders(random.between(2, 6));
-            for (auto& feeder : feeders) feeder = static_cast<std::uint32_t>(random.between(0, 2));
-            const CardImage card = random_card(random, feeders, random.between(1, 4));
-            compare(card, picks_of(feeders, {random.coin(), random.coin(), random.coin()}), 3, tally);
-        },
-        property_cases() / 5);
-    std::printf("compared %zu, crossed %zu, given up %zu, caught by picks %zu\n", tally.compared,
-                tally.crossed, tally.gave_up, tally.by_pick);
+    for_all([&](Random& random) {
+        std::vector<std::uint32_t> feeders(random.between(2, 6));
+        for (auto& feeder : feeders) feeder = static_cast<std::uint32_t>(random.between(0, 2));
+        const CardImage card = random_card(random, feeders, random.between(1, 4));
+        compare(card, picks_of(feeders, {random.coin(), random.coin(), random.coin()}), 3, tally);
+    });
+    std::printf("compared %zu, crossed %zu (%zu compared in part), given up %zu, caught by picks %zu\n",
+                tally.compared, tally.crossed, tally.crossed_compared, tally.gave_up, tally.by_pick);
     CHECK(tally.gave_up * 20 <= tally.compared);
-    CHECK(tally.equal * 100 >= tally.compared * 98);
+    CHECK(tally.crossed_compared > 0);
     CHECK(tally.by_pick > 0);
+}
+
+TEST_CASE("arcs of two feeders that cross outside: the later one lies above") {
+    // Both turn right, 0-2 and 1-3; the end lies over pick 1 and under 0 and 2. The later loop 1-3 lies above
+    // the earlier 0-2, so nothing is linked and both slip off.
+    //   0 --+
+    //   1 --|-+
+    //   2 --+ |
+    //   3 ----+
+    const auto apart = weft_way(card_of({"10", "10", "10", "00"}), picks_of({0, 1, 0, 1}, {false, false}));
+    CHECK(apart.turns[0].caught_by == CaughtBy::none);
+    // Pick 1 over the end and the earlier loop under it: below the later yarn and below the end, it slips.
+    const auto below = weft_way(card_of({"10", "11", "00", "01"}), picks_of({0, 1, 0, 1}, {false, false}));
+    CHECK(below.turns[0].caught_by == CaughtBy::end);
+    CHECK(below.turns[0].end == 0);
+    // The other way round the earlier loop, over the end but below pick 1 under it, is held.
+    const auto held = weft_way(card_of({"11", "10", "01", "00"}), picks_of({0, 1, 0, 1}, {false, false}));
+    CHECK(held.turns[0].caught_by == CaughtBy::pick);
+    CHECK(held.turns[0].pick == 1);
+    CHECK(held.turns[0].end == 1);
+}
+
+TEST_CASE("a loop laid round another passes it on its own side of the end that catches it") {
+    // Double cloth: feeder 1 turns round end 1 of the upper cloth, feeder 0 outside it in the lower one.
+    //   0 -----+
+    //   1 --+  |      end 1 lies round the turn 1-2, over both picks of feeder 0
+    //   2 --+  |
+    //   3 -----+
+    const auto under = weft_way(card_of({"00", "10", "11", "10"}), picks_of({0, 1, 1, 0}, {false, false}));
+    CHECK(under.turns[0].caught_by == CaughtBy::end);
+    CHECK(under.turns[0].end == 0);
+    // Feeder 0 over end 1: it passes above.
+    const auto over = weft_way(card_of({"01", "10", "11", "11"}), picks_of({0, 1, 1, 0}, {false, false}));
+    CHECK(over.turns[0].caught_by == CaughtBy::end);
+    CHECK(over.turns[0].end == 0);
+    // Above at end 2, the loop cannot dive under the nested picks at end 1.
+    const auto held = weft_way(card_of({"001", "110", "111", "101"}), picks_of({0, 1, 1, 0}, {false, false}));
+    CHECK(held.turns[0].caught_by == CaughtBy::pick);
+    CHECK(held.turns[0].end == 1);
+}
+
+TEST_CASE("loops from both sides that hook each other stop where they meet") {
+    // Each loop lies above the pick of the other that it crosses. The loop laid first, 0-2, comes to end 3;
+    // 1-3 from the right meets it there.
+    //     +-- 0
+    //   1-|--+
+    //     +--|2
+    //   3 ---+
+    const auto way =
+        weft_way(card_of({"1100", "0001", "1101", "0101"}), picks_of({0, 1, 0, 1}, {true, false}));
+    REQUIRE(way.turns.size() == 2);
+    CHECK(way.turns[0].caught_by == CaughtBy::end);
+    CHECK(way.turns[0].end == 3);
+    CHECK(way.turns[1].caught_by == CaughtBy::pick);
+    CHECK(way.turns[1].end == 2);
+    CHECK(way.turns[1].pick == 2);
 }

@@ -13,11 +13,15 @@
 //   - c turns there to a pick outside a … b: the arcs cross once, and the one formed later lies above;
 //   - c is the feeder's first or last pick and its tail leaves there: it was laid before the loop closed, so
 //   the loop is above;
-//   - c turns to a pick d that also lies in a … b: the arcs do not cross. The loop may slide over both or
-//   under both, so what
-//     counts is the way on which it comes further.
-// As loops are pulled in their picks vanish outside them and hold others no longer; the reach of every loop
-// only grows with that, so the state of rest is the least fixed point, whatever the order.
+//   - c turns to a pick d that also lies in a … b: the arcs do not cross. The loop comes past them over both
+//   or under both, on the side on which it lies itself at the end that the turn c-d wraps round; over both
+//   where no end catches that turn or a and b differ there.
+//
+// Bights can stop each other as well, between two ends. Two loops from opposite sides hook each other unless
+// one lies above the other at every crossing that they make. And one bight passes another only if no strand
+// that crosses both lies with them in a ring.
+// As loops are pulled in their picks vanish outside them and hold others no longer. Where loops hook each
+// other it matters who comes first: always the loop laid first among those that can move, as far as it comes.
 // tests/loom/weft_way.cpp holds this rule against a reducer of crossing diagrams that knows nothing of it.
 
 #include <weave/loom/weft_way.hpp>
@@ -25,7 +29,9 @@
 #include <algorithm>
 #include <array>
 #include <bit>
-#include <deque>
+#include <optional>
+#include <set>
+#include <utility>
 
 namespace weave {
 
@@ -42,10 +48,9 @@ struct Strand {
     std::array<std::size_t, 2> depth{0, 0};
 };
 
-/// What may hold a loop besides ends: one strand with a settled crossing, or two that turn into each other.
+/// A strand between the picks of a loop, and how the loop lies to it.
 struct Obstacle {
-    std::size_t strand = nowhere,
-                partner = nowhere;  ///< indices of strands; partner: nested, the loop may choose
+    std::size_t strand = nowhere;
     bool loop_above = true;
 };
 
@@ -56,7 +61,9 @@ struct Loop {
         0;  ///< of the outermost end that differs between the two picks; all ends if there is none
     std::size_t depth = 0;
     std::size_t holder = nowhere;  ///< strand that holds it at `depth`
-    std::vector<Obstacle> obstacles;
+    std::size_t arrival = 0;       ///< of the loops between the same two ends, the later comer lies outside
+    std::vector<Obstacle> obstacles;      ///< in the order of strands
+    std::vector<std::size_t> neighbours;  ///< loops that its bight or whose bight may have to pass
 };
 
 std::size_t index(Side side) {
@@ -94,6 +101,7 @@ class Loops {
     Loops(const CardImage& card, const std::vector<Pick>& picks) : m_card(card), m_ends(card.ends()) {
         follow_feeders(picks);
         find_obstacles();
+        lay_out();
         pull();
     }
 
@@ -153,7 +161,7 @@ class Loops {
         return end == nowhere ? m_ends : depth_of(turn.side, end);
     }
 
-    /// Every strand between the picks of a loop, once each, and for each strand the loops that it may hold.
+    /// Every strand between the picks of a loop, and for each strand the loops that it may hold.
     void find_obstacles() {
         m_held_by.resize(m_strands.size());
         for (std::size_t number = 0; number < m_loops.size(); ++number) {
@@ -161,26 +169,60 @@ class Loops {
             for (std::size_t s = loop.from + 1; s < loop.to; ++s) {
                 const std::size_t pick = m_strands[s].pick;
                 if (pick == loop.turn.from_pick || pick == loop.turn.to_pick) continue;
-                add_obstacle(loop, s);
+                loop.obstacles.push_back({s, lies_above(loop, s)});
                 m_held_by[s].push_back(number);
+                for (const std::size_t turn : m_strands[s].turn) {
+                    if (turn == nowhere) continue;
+                    loop.neighbours.push_back(turn);
+                    m_loops[turn].neighbours.push_back(number);
+                }
             }
+        }
+        for (Loop& loop : m_loops) {
+            std::sort(loop.neighbours.begin(), loop.neighbours.end());
+            const auto end = std::unique(loop.neighbours.begin(), loop.neighbours.end());
+            loop.neighbours.erase(end, loop.neighbours.end());
         }
     }
 
-    void add_obstacle(Loop& loop, std::size_t s) const {
+    /// Loops lie one outside the other before they are pulled, the longer the farther out.
+    void lay_out() {
+        std::vector<std::size_t> order(m_loops.size());
+        for (std::size_t k = 0; k < order.size(); ++k) order[k] = k;
+        std::stable_sort(order.begin(), order.end(), [&](std::size_t a, std::size_t b) {
+            const Turn &s = m_loops[a].turn, &t = m_loops[b].turn;
+            return s.to_pick - s.from_pick < t.to_pick - t.from_pick;
+        });
+        for (const std::size_t number : order) m_loops[number].arrival = m_arrivals++;
+    }
+
+    /// Whether a loop lies above a strand between its picks: see the top of this file.
+    bool lies_above(const Loop& loop, std::size_t s) const {
         const std::size_t turn = m_strands[s].turn[index(loop.turn.side)];
-        if (turn == nowhere) return loop.obstacles.push_back({s, nowhere, true});
-        const Loop& other = m_loops[turn];
-        // Two feeders in one pick lie side by side and need not cross, so the ends of the range count as
-        // inside.
-        const bool nested =
-            other.turn.from_pick >= loop.turn.from_pick && other.turn.to_pick <= loop.turn.to_pick;
-        if (!nested) return loop.obstacles.push_back({s, nowhere, loop.turn.to_pick > other.turn.to_pick});
-        const std::size_t partner = s == other.from ? other.to : other.from;
-        const bool partner_counts =
-            m_strands[partner].pick != loop.turn.from_pick && m_strands[partner].pick != loop.turn.to_pick;
-        if (s == other.from || !partner_counts)
-            loop.obstacles.push_back({s, partner_counts ? partner : s, true});
+        return turn == nowhere || lies_above(loop, m_loops[turn]);
+    }
+
+    bool lies_above(const Loop& loop, const Loop& other) const {
+        if (is_around(other, loop)) return !passes_above(other, loop);
+        if (is_around(loop, other)) return passes_above(loop, other);
+        return loop.turn.to_pick > other.turn.to_pick;
+    }
+
+    /// Two feeders in one pick lie side by side, so the ends of the range count as inside.
+    static bool is_around(const Loop& outer, const Loop& inner) {
+        return outer.turn.from_pick <= inner.turn.from_pick && inner.turn.to_pick <= outer.turn.to_pick;
+    }
+
+    /// On which side a loop passes a turn round which it was laid: its own at the end that catches that turn.
+    bool passes_above(const Loop& outer, const Loop& inner) const {
+        if (inner.catching_depth >= m_ends) return true;
+        const std::size_t end = end_at(inner.turn.side, inner.catching_depth);
+        const bool from = m_card.weft_over(outer.turn.from_pick, end);
+        return from != m_card.weft_over(outer.turn.to_pick, end) || from;
+    }
+
+    std::size_t end_at(Side side, std::size_t depth) const {
+        return side == Side::left ? depth : m_ends - 1 - depth;
     }
 
     /// Ends at which a strand is still in the cloth: first … last, empty where first > last.
@@ -206,46 +248,103 @@ class Loops {
         return end == nowhere ? m_ends : depth_of(loop.turn.side, end);
     }
 
-    /// How far the loop comes with the strands where they are now, and what holds it there.
+    /// How far the loop comes with the strands and bights where they are now, and what holds it there.
     std::pair<std::size_t, std::size_t> reach(const Loop& loop) const {
         std::pair nearest{loop.catching_depth, nowhere};
-        const auto pair_at = [&](const Obstacle& obstacle, bool above) {
-            std::pair held{held_at(loop, obstacle.strand, above), obstacle.strand};
-            if (obstacle.partner != nowhere && obstacle.partner != obstacle.strand) {
-                const std::size_t other = held_at(loop, obstacle.partner, above);
-                if (other < held.first) held = {other, obstacle.partner};
-            }
-            return held;
-        };
         for (const Obstacle& obstacle : loop.obstacles) {
-            auto held = pair_at(obstacle, obstacle.loop_above);
-            if (obstacle.partner != nowhere) {
-                const auto below = pair_at(obstacle, false);
-                if (below.first > held.first) held = below;
-            }
+            const std::pair held{held_at(loop, obstacle.strand, obstacle.loop_above), obstacle.strand};
             if (held.first < nearest.first) nearest = held;
+        }
+        for (const std::size_t number : loop.neighbours) {
+            const Loop& other = m_loops[number];
+            const bool same_side = other.turn.side == loop.turn.side;
+            const std::size_t depth = same_side ? other.depth : m_ends - std::min(other.depth, m_ends);
+            if (depth < loop.depth || depth >= nearest.first) continue;
+            if (same_side && depth == loop.depth && other.arrival > loop.arrival) continue;
+            if (!passes(loop, other, depth)) nearest = {depth, holding_strand(loop, other)};
         }
         return nearest;
     }
 
+    /// The pick of `other` between the picks of the loop that holds it, the first formed; else its last.
+    static std::size_t holding_strand(const Loop& loop, const Loop& other) {
+        return other.from > loop.from && other.from < loop.to ? other.from : other.to;
+    }
+
+    static const Obstacle* obstacle_of(const Loop& loop, std::size_t strand) {
+        const auto at = std::lower_bound(loop.obstacles.begin(), loop.obstacles.end(), strand,
+                                         [](const Obstacle& o, std::size_t s) { return o.strand < s; });
+        return at != loop.obstacles.end() && at->strand == strand ? &*at : nullptr;
+    }
+
+    /// Whether a loop gets past the bight of another that lies at `depth` between the same two ends.
+    bool passes(const Loop& loop, const Loop& other, std::size_t depth) const {
+        const bool same_side = loop.turn.side == other.turn.side;
+        bool above = same_side && lies_above(loop, other);
+        if (!same_side) {
+            const auto lies = crossings_agree(loop, other);
+            if (!lies) return false;
+            above = *lies;
+        }
+        for (const Obstacle& mine : loop.obstacles) {
+            const Obstacle* its = obstacle_of(other, mine.strand);
+            if (its == nullptr || its->loop_above != above || mine.loop_above == above) continue;
+            if (is_between(mine.strand, loop, other, depth)) return false;
+        }
+        return true;
+    }
+
+    /// Loops from both sides whose bights come to meet: above or below at every crossing, or hooked.
+    static std::optional<bool> crossings_agree(const Loop& loop, const Loop& other) {
+        std::optional<bool> above;
+        bool hooked = false;
+        const auto meet = [&](const Loop& bight, const Loop& strands, bool is_loop) {
+            for (const std::size_t s : {strands.from, strands.to}) {
+                const Obstacle* crossing = obstacle_of(bight, s);
+                if (crossing == nullptr) continue;
+                const bool lies = crossing->loop_above == is_loop;
+                hooked = hooked || (above && *above != lies);
+                above = lies;
+            }
+        };
+        meet(loop, other, true);
+        meet(other, loop, false);
+        if (hooked) return {};
+        return above.value_or(true);
+    }
+
+    /// Whether a strand crosses both bights where they meet, `depth` ends in from the loop's side.
+    bool is_between(std::size_t s, const Loop& loop, const Loop& other, std::size_t depth) const {
+        const Strand& strand = m_strands[s];
+        for (const Side side : {Side::left, Side::right}) {
+            const std::size_t turn = strand.turn[index(side)],
+                              from_there = side == loop.turn.side ? depth : m_ends - depth;
+            if (turn == nowhere || strand.depth[index(side)] < from_there) continue;
+            if (strand.depth[index(side)] > from_there) return false;
+            for (const Loop* bight : {&loop, &other}) {
+                const bool new_here = bight == &loop && bight->depth != depth;
+                if (bight->turn.side == side && (new_here || bight->arrival > m_loops[turn].arrival))
+                    return false;
+            }
+        }
+        return true;
+    }
+
     void pull() {
-        std::deque<std::size_t> waiting;
-        std::vector<bool> is_waiting(m_loops.size(), true);
-        for (std::size_t k = 0; k < m_loops.size(); ++k) waiting.push_back(k);
+        std::set<std::size_t> waiting;
+        for (std::size_t k = 0; k < m_loops.size(); ++k) waiting.insert(waiting.end(), k);
         while (!waiting.empty()) {
-            Loop& loop = m_loops[waiting.front()];
-            is_waiting[waiting.front()] = false;
-            waiting.pop_front();
+            Loop& loop = m_loops[*waiting.begin()];
+            waiting.erase(waiting.begin());
             const auto [depth, holder] = reach(loop);
             loop.holder = holder;
             if (depth == loop.depth) continue;
             loop.depth = depth;
+            loop.arrival = m_arrivals++;
+            waiting.insert(loop.neighbours.begin(), loop.neighbours.end());
             for (const std::size_t strand : {loop.from, loop.to}) {
                 m_strands[strand].depth[index(loop.turn.side)] = depth;
-                for (const std::size_t held : m_held_by[strand]) {
-                    if (!is_waiting[held]) waiting.push_back(held);
-                    is_waiting[held] = true;
-                }
+                waiting.insert(m_held_by[strand].begin(), m_held_by[strand].end());
             }
         }
     }
@@ -253,7 +352,7 @@ class Loops {
     Turn at_rest(const Loop& loop) const {
         Turn turn = loop.turn;
         if (loop.depth >= m_ends) return turn;
-        turn.end = loop.turn.side == Side::left ? loop.depth : m_ends - 1 - loop.depth;
+        turn.end = end_at(loop.turn.side, loop.depth);
         turn.caught_by = loop.holder == nowhere ? CaughtBy::end : CaughtBy::pick;
         if (loop.holder != nowhere) turn.pick = m_strands[loop.holder].pick;
         return turn;
@@ -270,6 +369,7 @@ class Loops {
     std::vector<Strand> m_strands;
     std::vector<Loop> m_loops;
     std::vector<std::vector<std::size_t>> m_held_by;
+    std::size_t m_arrivals = 0;
     WeftWay m_way;
 };
 

@@ -45,8 +45,17 @@ struct WeftWay {
 };
 
 /// Where the loops are caught on a shuttle loom. Loops are pulled inwards until an end between their two
-/// picks holds them, or another feeder's pick that lies between; where two turns of different feeders cross
-/// outside the cloth the later one lies above. Beyond its turns no pick stays in the fabric.
+/// picks holds them, or another feeder's yarn. Where the cloth alone does not settle it, by convention
+///  - of two turns of different feeders that cross outside the cloth the later one lies above, and above
+///  tails;
+///  - a loop laid round another turn passes it on the side on which it lies itself at the end that catches
+///    that turn: above where both its picks lie over this end, below where both lie under, else above;
+///  - a bight crosses the picks between its own straight: no loop climbs round another's turn;
+///  - of the loops that can still move the one laid first is pulled next, as far as it comes. The order tells
+///    only where loops from both sides hook each other.
+/// A loop hooked by another is caught by a pick of that other; `end` is the next end that it cannot pass.
+/// Beyond its turns no pick stays in the fabric. Where a pick is crossed, turns of the feeders around it are
+/// what its yarn would do if the crossed pick stayed: a defect to mend, no prediction.
 WeftWay weft_way(const CardImage& card, const std::vector<Pick>& picks);
 
 }  // namespace weave
