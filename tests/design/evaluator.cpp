@@ -245,7 +245,7 @@ TEST_CASE("a design that does not evaluate says which block and why, and evaluat
     const Edit undo = edited(design, PutBlock{"heel", node(TileOperation{"toe", 3, 1, 1})});
     const Result<Evaluation> failed = evaluator.evaluate(design);
     REQUIRE_FALSE(failed);
-    CHECK(failed.error().code == ErrorCode::invalid);
+    CHECK(failed.error().code == ErrorCode::bad_input);
     CHECK(failed.error().text() ==
           "blocks.cloth: the blocks have 6 and 4 rows, which must be equal on the faces that meet");
     edited(design, undo);

@@ -171,11 +171,11 @@ TEST_CASE("attach refuses what does not fit and names the row or column") {
     shop.must({"preset", "plain", "-o", "plain.weave"});
     shop.must({"preset", "satin", "-o", "satin.weave"});
     shop.must({"preset", "multi-layer", "-o", "double.weave"});
-    shop.refused({"attach", "plain.weave", "satin.weave", "--face", "+x", "-o", "new.weave"}, 1, {"column"});
-    shop.refused({"attach", "plain.weave", "satin.weave", "--face", "+y", "-o", "new.weave"}, 1, {"row"});
-    shop.refused({"attach", "plain.weave", "satin.weave", "--face", "-z", "-o", "new.weave"}, 1, {"row"});
-    shop.refused({"attach", "plain.weave", "double.weave", "--face", "-y", "-o", "new.weave"}, 1, {"row 0"});
-    shop.refused({"attach", "plain.weave", "double.weave", "--face", "-x", "-o", "new.weave"}, 1,
+    shop.refused({"attach", "plain.weave", "satin.weave", "--face", "+x", "-o", "new.weave"}, 3, {"column"});
+    shop.refused({"attach", "plain.weave", "satin.weave", "--face", "+y", "-o", "new.weave"}, 3, {"row"});
+    shop.refused({"attach", "plain.weave", "satin.weave", "--face", "-z", "-o", "new.weave"}, 3, {"row"});
+    shop.refused({"attach", "plain.weave", "double.weave", "--face", "-y", "-o", "new.weave"}, 3, {"row 0"});
+    shop.refused({"attach", "plain.weave", "double.weave", "--face", "-x", "-o", "new.weave"}, 3,
                  {"column 0"});
 }
 
@@ -272,7 +272,7 @@ TEST_CASE("a flip with other yarns in the way is refused with 1, names them, and
         }
     CHECK(refusals > 0);
     CHECK(refusals < card.picks() * card.ends());
-    shop.refused({"flip", "m.weave", "--pick", "999", "--end", "1", "-o", "new.weave"}, 1, {"999"});
+    shop.refused({"flip", "m.weave", "--pick", "999", "--end", "1", "-o", "new.weave"}, 3, {"999"});
 }
 
 TEST_CASE("renumber changes the card's rows of that row alone, as the order says") {
@@ -294,10 +294,10 @@ TEST_CASE("renumber changes the card's rows of that row alone, as the order says
     const CardImage columns = card_of(shop, "c.weave").transposed(), were = before.transposed();
     CHECK(std::equal(columns.row(0).begin(), columns.row(0).end(), were.row(1).begin()));
     CHECK(std::equal(columns.row(1).begin(), columns.row(1).end(), were.row(0).begin()));
-    shop.refused({"renumber", "m.weave", "--row", "99", "--order", "1,0", "-o", "new.weave"}, 1, {"row 99"});
-    shop.refused({"renumber", "m.weave", "--row", "1", "--order", "1,1", "-o", "new.weave"}, 1,
+    shop.refused({"renumber", "m.weave", "--row", "99", "--order", "1,0", "-o", "new.weave"}, 3, {"row 99"});
+    shop.refused({"renumber", "m.weave", "--row", "1", "--order", "1,1", "-o", "new.weave"}, 3,
                  {"row 1", "once"});
-    shop.refused({"renumber", "m.weave", "--row", "1", "--order", "0,1,2", "-o", "new.weave"}, 1,
+    shop.refused({"renumber", "m.weave", "--row", "1", "--order", "0,1,2", "-o", "new.weave"}, 3,
                  {"2 picks"});
 }
 

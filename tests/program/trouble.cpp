@@ -136,7 +136,7 @@ TEST_CASE("bad input leaves an old output as it was") {
     shop.refused({"tile", "cut.weave", "--x", "2", "-o", "old.weave"}, 3, {"cut.weave"});
     shop.refused({"import", "grey.png", "-o", "old.weave"}, 3, {"grey.png"});
     shop.refused({"card", "cut.weave", "-o", "old.png"}, 3, {"cut.weave"});
-    shop.refused({"flip", "t.weave", "--pick", "99", "--end", "1", "-o", "old.weave"}, 1, {"99"});
+    shop.refused({"flip", "t.weave", "--pick", "99", "--end", "1", "-o", "old.weave"}, 3, {"99"});
     CHECK(shop.get("old.weave") == "of old");
     CHECK(shop.get("old.png") == "of old");
 }

@@ -85,10 +85,32 @@ Result<Cloth> load_cloth(const Program& program, const std::string& file) {
     return Cloth{std::move(design), std::move(evaluation).value()};
 }
 
+void add_reading_options(CLI::App* command, const std::shared_ptr<BitmapReading>& reading) {
+    const auto either = [&](const char* name, const char* help, const std::string& usual,
+                            const std::string& other, bool BitmapReading::*member) {
+        command
+            ->add_option_function<std::string>(
+                name,
+                [reading, member, usual](const std::string& word) { (*reading).*member = word == usual; },
+                help)
+            ->check(CLI::IsMember({usual, other}))
+            ->default_str(usual);
+    };
+    either("--pick-1", "where the picture has pick 1", "bottom", "top", &BitmapReading::pick_1_at_bottom);
+    either("--end-1", "where the picture has end 1", "left", "right", &BitmapReading::end_1_at_left);
+    either("--lifted", "the colour of a lifted end", "black", "white", &BitmapReading::black_is_lifted);
+}
+
 Status save_cloth(const Program& program, const Design& design, const std::string& file,
-                  const std::vector<std::string>& warnings) {
+                  const std::string& sources, const std::vector<std::string>& warnings) {
     const Progress progress("weaving " + file);
-    WEAVE_TRY(const Evaluation cloth, evaluate(design));
+    Result<Evaluation> woven = evaluate(design);
+    if (!woven) {
+        Error error = std::move(woven).error();
+        if (error.where == "blocks." + design.root) error.where.clear();  // a block that nobody has seen yet
+        return std::move(error).in(sources);
+    }
+    const Evaluation& cloth = *woven;
     WEAVE_CHECK_OK(save_design(design, file));
     std::vector<std::string> notes = warnings;
     for (const LostFlip& lost : cloth.lost_flips) notes.push_back(lost_flip_line(lost));

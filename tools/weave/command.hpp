@@ -3,11 +3,13 @@
 #include <weave/core/json.hpp>
 #include <weave/design/design.hpp>
 #include <weave/design/evaluate.hpp>
+#include <weave/io/bitmap.hpp>
 
 #include <CLI/CLI.hpp>
 
 #include <filesystem>
 #include <functional>
+#include <memory>
 #include <string>
 #include <vector>
 
@@ -49,9 +51,13 @@ struct Cloth {
 };
 Result<Cloth> load_cloth(const Program& program, const std::string& file);
 
-/// Checks that a new design evaluates, saves it, and tells what came out.
+/// Checks that a new design evaluates, saves it, and tells what came out. `sources` names what it was made
+/// from: that is where a person looks when it does not fit together.
 Status save_cloth(const Program& program, const Design& design, const std::string& file,
-                  const std::vector<std::string>& warnings = {});
+                  const std::string& sources, const std::vector<std::string>& warnings = {});
+
+/// Options that say how a bilevel picture stands for a card; `reading` must outlive the command.
+void add_reading_options(CLI::App* command, const std::shared_ptr<BitmapReading>& reading);
 
 /// The work of each group of commands.
 void add_make_commands(CLI::App& app,

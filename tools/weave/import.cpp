@@ -48,7 +48,6 @@ Counts shortest(const Counts& counts) {
 Result<DesignFromWif> design_from_bitmap(const ImportRequest& request, const std::string& bytes) {
     WEAVE_TRY(CardFromBitmap read, read_bitmap(bytes, request.reading));
     DesignFromWif result{{}, std::move(read.warnings)};
-    result.design.title = std::filesystem::path(request.in).stem().string();
     result.design.root = "card";
     const CardLeaf leaf{std::make_shared<const CardImage>(std::move(read.card)), {1}, {1}};
     result.design.blocks["card"] = std::make_shared<const Node>(Node{leaf, {}});
@@ -92,9 +91,11 @@ std::string in_words(const ImportRequest& request, const Block& block, const Jso
 Status import_design(const Program& program, const ImportRequest& request) {
     const Progress progress("reading " + request.in);
     WEAVE_TRY(const std::string bytes, read_file(request.in));
-    Result<DesignFromWif> read = lower_extension(request.in) == ".wif" ? read_wif(bytes) : design_from_bitmap(request, bytes);
+    Result<DesignFromWif> read =
+        lower_extension(request.in) == ".wif" ? read_wif(bytes) : design_from_bitmap(request, bytes);
     if (!read) return std::move(read).error().in(request.in);
     Design& design = read->design;
+    if (design.title.empty()) design.title = std::filesystem::path(request.in).stem().string();
     Json groupings = Json::array();
     WEAVE_CHECK_OK(group(request, design, groupings));
     Result<Evaluation> cloth = evaluate(design);
@@ -117,9 +118,6 @@ void add_import_command(CLI::App& app, Program& program) {
     CLI::App* command =
         add_command(app, program, "import", "Make a design from a card image (PNG, TIFF, BMP) or a WIF file");
     const auto request = std::make_shared<ImportRequest>();
-    const auto pick_1 = std::make_shared<std::string>("bottom");
-    const auto end_1 = std::make_shared<std::string>("left");
-    const auto lifted = std::make_shared<std::string>("black");
     command->add_option("IN", request->in, "the file to read")->required();
     command->add_option("-o,--out", request->out, "the .weave file to write")->type_name("FILE")->required();
     const CLI::Validator count = between(std::uint32_t{0}, std::uint32_t{1} << 28);
@@ -142,19 +140,8 @@ void add_import_command(CLI::App& app, Program& program) {
         ->check(between(1, 1000))
         ->type_name("N");
     infer->excludes(t)->excludes(p);
-    command->add_option("--pick-1", *pick_1, "where the picture has pick 1")
-        ->check(CLI::IsMember({"bottom", "top"}))
-        ->capture_default_str();
-    command->add_option("--end-1", *end_1, "where the picture has end 1")
-        ->check(CLI::IsMember({"left", "right"}))
-        ->capture_default_str();
-    command->add_option("--lifted", *lifted, "the colour of a lifted end")
-        ->check(CLI::IsMember({"black", "white"}))
-        ->capture_default_str();
-    on_run(command, program, [=, &program] {
-        request->reading = {*pick_1 == "bottom", *end_1 == "left", *lifted == "black"};
-        return import_design(program, *request);
-    });
+    add_reading_options(command, {request, &request->reading});
+    on_run(command, program, [=, &program] { return import_design(program, *request); });
 }
 
 }  // namespace weave::program

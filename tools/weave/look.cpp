@@ -85,7 +85,8 @@ Error not_read_back(const std::string& out) {
 }
 
 /// The card as a picture, read back and compared before anyone gets it.
-Result<std::string> card_as_bitmap(const CardImage& card, const std::string& out, const BitmapReading& reading) {
+Result<std::string> card_as_bitmap(const CardImage& card, const std::string& out,
+                                   const BitmapReading& reading) {
     WEAVE_TRY(const BitmapFormat format, bitmap_format_of(out));
     WEAVE_TRY(std::string bytes, write_bitmap(card, format, reading));
     WEAVE_TRY(const CardFromBitmap back, read_bitmap(bytes, reading));
@@ -109,7 +110,8 @@ Status write_card(const Program& program, const std::string& file, const std::st
     WEAVE_TRY(const Cloth cloth, load_cloth(program, file));
     const Progress progress("writing " + out);
     const CardImage card = cloth.evaluation.block->card_image();
-    WEAVE_TRY(const std::string bytes, wif ? card_as_wif(cloth, card, out) : card_as_bitmap(card, out, reading));
+    WEAVE_TRY(const std::string bytes,
+              wif ? card_as_wif(cloth, card, out) : card_as_bitmap(card, out, reading));
     WEAVE_CHECK_OK(write_file(out, bytes));
     program.answer(
         {{"file", out}, {"picks", card.picks()}, {"ends", card.ends()}, {"card_sha256", card.sha256()}},
@@ -123,23 +125,13 @@ void add_card(CLI::App& app, Program& program) {
                     "Write the card image: bottom row pick 1, left column end 1, black = end lifted");
     const auto file = std::make_shared<std::string>();
     const auto out = std::make_shared<std::string>();
-    const auto pick_1 = std::make_shared<std::string>("bottom");
-    const auto end_1 = std::make_shared<std::string>("left");
-    const auto lifted = std::make_shared<std::string>("black");
+    const auto reading = std::make_shared<BitmapReading>();
     command->add_option("FILE", *file, "the .weave file")->required();
-    command->add_option("-o,--out", *out, "the file to write: .png, .tif, .bmp or .wif")->type_name("FILE")->required();
-    command->add_option("--pick-1", *pick_1, "where pick 1 goes")
-        ->check(CLI::IsMember({"bottom", "top"}))
-        ->capture_default_str();
-    command->add_option("--end-1", *end_1, "where end 1 goes")
-        ->check(CLI::IsMember({"left", "right"}))
-        ->capture_default_str();
-    command->add_option("--lifted", *lifted, "the colour of a lifted end")
-        ->check(CLI::IsMember({"black", "white"}))
-        ->capture_default_str();
-    on_run(command, program, [=, &program] {
-        return write_card(program, *file, *out, {*pick_1 == "bottom", *end_1 == "left", *lifted == "black"});
-    });
+    command->add_option("-o,--out", *out, "the file to write: .png, .tif, .bmp or .wif")
+        ->type_name("FILE")
+        ->required();
+    add_reading_options(command, reading);
+    on_run(command, program, [=, &program] { return write_card(program, *file, *out, *reading); });
 }
 
 Result<PictureFormat> picture_format_of(const std::string& file) {

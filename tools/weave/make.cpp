@@ -59,7 +59,7 @@ void add_samples(CLI::App& app, Program& program) {
         if (sample == nullptr)
             return usage_error("there is no sample '" + *name + "'; 'weave samples' lists them");
         if (out->empty()) return usage_error("name the file to write, such as -o " + *name + ".weave");
-        return save_cloth(program, sample->make(), *out);
+        return save_cloth(program, sample->make(), *out, *name);
     });
 }
 
@@ -107,7 +107,7 @@ void add_preset(CLI::App& app, Program& program) {
         Design design;
         design.title = *family;
         put_root(design, *family, PresetLeaf{std::move(preset)});
-        return save_cloth(program, design, *out);
+        return save_cloth(program, design, *out, *family);
     });
 }
 
@@ -129,7 +129,7 @@ void add_tile(CLI::App& app, Program& program) {
         WEAVE_TRY(Design design, load_design(*file));
         times->of = design.root;
         put_root(design, design.root + "-tiled", *times);
-        return save_cloth(program, design, *out);
+        return save_cloth(program, design, *out, *file);
     });
 }
 
@@ -154,8 +154,9 @@ void add_attach(CLI::App& app, Program& program) {
                                " and are left out");
         const std::string name = bring_in(design, other);
         const auto at = std::find(face_names().begin(), face_names().end(), *face) - face_names().begin();
+        design.title = std::filesystem::path(*out).stem().string();
         put_root(design, "attached", AttachOperation{design.root, name, static_cast<Face>(at)});
-        return save_cloth(program, design, *out, warnings);
+        return save_cloth(program, design, *out, *first + " and " + *second, warnings);
     });
 }
 
@@ -191,7 +192,7 @@ void add_renumber(CLI::App& app, Program& program) {
         WEAVE_TRY(Design design, load_design(*file));
         const System system = row->count() > 0 ? System::weft : System::warp;
         put_root(design, design.root + "-renumbered", RenumberOperation{design.root, system, *line, *order});
-        return save_cloth(program, design, *out);
+        return save_cloth(program, design, *out, *file);
     });
 }
 
@@ -218,6 +219,7 @@ Status make_stencil(const Program& program, const std::string& picture,
     Design design;
     StencilOperation stencil;
     std::map<Colour, std::uint16_t> numbers;
+    std::string sources = picture;
     std::vector<std::string> warnings;
     for (const std::string& mapping : mappings) {
         const auto equals = mapping.find('=');
@@ -229,6 +231,8 @@ Status make_stencil(const Program& program, const std::string& picture,
             return usage_error("colour " + to_text(*colour) + " is mapped twice");
         }
         const std::string file = mapping.substr(equals + 1);
+        sources += (stencil.of.empty() ? " with block " : ", block ") + std::to_string(stencil.of.size()) +
+                   " = " + file;
         WEAVE_TRY(Design part, load_design(file));
         if (stencil.of.empty()) {
             design = part;
@@ -246,9 +250,15 @@ Status make_stencil(const Program& program, const std::string& picture,
     if (!image) return std::move(image).error().in(picture);
     Result<StencilMap> map = map_of(*image, numbers);
     if (!map) return std::move(map).error().in(picture);
+    for (const auto& [colour, number] : numbers) {
+        if (std::find(map->blocks.begin(), map->blocks.end(), number) == map->blocks.end()) {
+            warnings.push_back(picture + ": no pixel has the mapped colour " + to_text(colour));
+        }
+    }
     stencil.map = std::make_shared<const StencilMap>(std::move(map).value());
+    design.title = std::filesystem::path(out).stem().string();
     put_root(design, "stencilled", std::move(stencil));
-    return save_cloth(program, design, out, warnings);
+    return save_cloth(program, design, out, sources, warnings);
 }
 
 void add_stencil(CLI::App& app, Program& program) {
@@ -292,7 +302,7 @@ void add_flip(CLI::App& app, Program& program) {
             return std::move(flipped).error().in(*file);
         const Flip wish{*pick - 1, *end - 1, !block.weft_over(*pick - 1, *end - 1)};
         WEAVE_CHECK_OK(apply(cloth.design, PutFlip{cloth.design.root, wish}));
-        return save_cloth(program, cloth.design, *out);
+        return save_cloth(program, cloth.design, *out, *file);
     });
 }
 

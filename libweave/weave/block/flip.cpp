@@ -100,8 +100,9 @@ Result<Block> flip(const Block& block, std::size_t pick, std::size_t end) {
     const bool inside = pick < block.picks() && end < block.ends();
     const Flip wish{pick, end, inside && !block.weft_over(pick, end)};
     FlippedBlock flipped = apply_flips(block, std::span(&wish, 1));
-    if (!flipped.refused.empty()) return invalid(flipped.refused.front().reason);
-    return std::move(flipped.block);
+    if (flipped.refused.empty()) return std::move(flipped.block);
+    std::string& reason = flipped.refused.front().reason;
+    return inside ? invalid(std::move(reason)) : bad_input(std::move(reason));
 }
 
 }  // namespace weave

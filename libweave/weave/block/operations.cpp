@@ -1,4 +1,5 @@
 #include <weave/block/operations.hpp>
+#include <weave/core/text.hpp>
 
 #include <algorithm>
 #include <map>
@@ -44,20 +45,21 @@ Stack piled_times(const Stack& stack, std::size_t height, std::size_t times) {
     return Stack(std::move(slots));
 }
 
-std::string differs(const char* line, std::size_t index, const char* yarns, std::uint32_t one,
+std::string differs(const char* line, std::size_t index, const char* yarn, std::uint32_t one,
                     std::uint32_t other) {
-    return std::string(line) + " " + std::to_string(index) + " has " + std::to_string(one) + " " + yarns +
+    return std::string(line) + " " + std::to_string(index) + " has " + counted(one, yarn) +
            " in one block and " + std::to_string(other) + " in the other";
 }
 
 Status check_same(const Counts& one, const Counts& other, const char* line, const char* yarns) {
     if (one.size() != other.size()) {
-        return invalid("the blocks have " + std::to_string(one.size()) + " and " +
-                       std::to_string(other.size()) + " " + line +
-                       "s, which must be equal on the faces that meet");
+        return bad_input("the blocks have " + std::to_string(one.size()) + " and " +
+                         std::to_string(other.size()) + " " + line +
+                         "s, which must be equal on the faces that meet");
     }
     for (std::size_t i = 0; i < one.size(); ++i) {
-        if (one[i] != other[i]) return invalid("cannot attach: " + differs(line, i, yarns, one[i], other[i]));
+        if (one[i] != other[i])
+            return bad_input("cannot attach: " + differs(line, i, yarns, one[i], other[i]));
     }
     return {};
 }
@@ -75,7 +77,7 @@ struct MergedTables {
 };
 
 Result<Block> attach_x(const Block& first, const Block& second) {
-    WEAVE_CHECK_OK(check_same(first.p(), second.p(), "column", "ends"));
+    WEAVE_CHECK_OK(check_same(first.p(), second.p(), "column", "end"));
     MergedTables merged;
     std::vector<std::uint32_t> cells;
     cells.reserve(first.cells().size() + second.cells().size());
@@ -90,7 +92,7 @@ Result<Block> attach_x(const Block& first, const Block& second) {
 }
 
 Result<Block> attach_y(const Block& first, const Block& second) {
-    WEAVE_CHECK_OK(check_same(first.t(), second.t(), "row", "picks"));
+    WEAVE_CHECK_OK(check_same(first.t(), second.t(), "row", "pick"));
     MergedTables merged;
     merged.add(first);
     merged.add(second);
@@ -108,10 +110,10 @@ Result<Block> attach_y(const Block& first, const Block& second) {
 
 Result<Block> attach_z(const Block& lower, const Block& upper) {
     if (lower.rows() != upper.rows() || lower.columns() != upper.columns()) {
-        return invalid("one block has " + std::to_string(lower.rows()) + " rows and " +
-                       std::to_string(lower.columns()) + " columns, the other " +
-                       std::to_string(upper.rows()) + " and " + std::to_string(upper.columns()) +
-                       "; on top of each other they must be equal");
+        return bad_input("one block has " + std::to_string(lower.rows()) + " rows and " +
+                         std::to_string(lower.columns()) + " columns, the other " +
+                         std::to_string(upper.rows()) + " and " + std::to_string(upper.columns()) +
+                         "; on top of each other they must be equal");
     }
     WEAVE_CHECK_OK(check_height(lower.height() + upper.height()));
     StackTable table;
@@ -163,8 +165,8 @@ Result<Counts> common_counts(std::span<const BlockPtr> blocks, std::size_t lines
         for (std::size_t k = 1; k < blocks.size(); ++k) {
             const std::uint32_t other = count_at(blocks[k], i);
             if (other == common[i]) continue;
-            return invalid("blocks 0 and " + std::to_string(k) +
-                           " do not fit together: " + differs(line, i, yarns, common[i], other));
+            return bad_input("blocks 0 and " + std::to_string(k) +
+                             " do not fit together: " + differs(line, i, yarns, common[i], other));
         }
     }
     return common;
@@ -176,8 +178,8 @@ Result<Block> renumbered(const Block& block, System system, std::size_t line,
     const std::size_t lines = row ? block.rows() : block.columns();
     const std::string name = row ? "row " : "column ";
     if (line >= lines)
-        return invalid("there is no " + name + std::to_string(line) + "; the last one is " +
-                       std::to_string(lines - 1));
+        return bad_input("there is no " + name + std::to_string(line) + "; the last one is " +
+                         std::to_string(lines - 1));
     const std::size_t count = row ? block.t()[line] : block.p()[line];
     std::vector<std::size_t> new_number(count, count);
     bool fits = order.size() == count;
@@ -186,8 +188,8 @@ Result<Block> renumbered(const Block& block, System system, std::size_t line,
         if (fits) new_number[order[k]] = k;
     }
     if (!fits) {
-        return invalid("the new order of " + name + std::to_string(line) + " must name each of its " +
-                       std::to_string(count) + (row ? " picks" : " ends") + " once, from 0 on");
+        return bad_input("the new order of " + name + std::to_string(line) + " must name each of its " +
+                         std::to_string(count) + (row ? " picks" : " ends") + " once, from 0 on");
     }
     StackTable table;
     for (const Stack& stack : block.stacks()) static_cast<void>(table.number_of(stack));
@@ -213,10 +215,10 @@ Result<Block> renumbered(const Block& block, System system, std::size_t line,
 }  // namespace
 
 Result<Block> tile(const Block& block, std::size_t x, std::size_t y, std::size_t z) {
-    if (x == 0 || y == 0 || z == 0) return invalid("a block is tiled at least once in each direction");
+    if (x == 0 || y == 0 || z == 0) return bad_input("a block is tiled at least once in each direction");
     constexpr std::size_t most = std::size_t{1} << 31;
     if (x > most || y > most || z > most)
-        return invalid("a block is tiled at most 2^31 times in a direction");
+        return bad_input("a block is tiled at most 2^31 times in a direction");
     const auto too_long = [&](std::size_t yarns, std::size_t times) {
         return yarns > most_crossings / times / z;
     };
@@ -259,13 +261,13 @@ Result<Block> attach(const Block& block, const Block& other, Face face) {
         case Face::minus_z:
             return attach_z(other, block);
     }
-    return invalid("a block has six faces");
+    return bad_input("a block has six faces");
 }
 
 Result<Block> stencil(std::span<const BlockPtr> blocks, const StencilMap& map) {
     WEAVE_CHECK_OK(check_stencil(blocks, map));
-    WEAVE_TRY(Counts t, common_counts(blocks, map.rows, &Block::t, "row", "picks"));
-    WEAVE_TRY(Counts p, common_counts(blocks, map.columns, &Block::p, "column", "ends"));
+    WEAVE_TRY(Counts t, common_counts(blocks, map.rows, &Block::t, "row", "pick"));
+    WEAVE_TRY(Counts p, common_counts(blocks, map.columns, &Block::p, "column", "end"));
     MergedTables merged;
     std::size_t height = 0;
     for (const BlockPtr& block : blocks) {

@@ -128,7 +128,7 @@ Status write_folder(const fs::path& folder, const std::vector<std::pair<std::str
     if (!target.has_filename()) target = target.parent_path();  // "out/" means "out"
     const bool exists = fs::exists(target, code);
     if (exists && !(fs::is_directory(target, code) && fs::is_empty(target, code))) {
-        return system_fault("exists already and is not an empty folder", folder.string());
+        return Error{ErrorCode::refused, "exists already and is not an empty folder", folder.string()};
     }
     if (target.has_parent_path()) fs::create_directories(target.parent_path(), code);
     const fs::path temporary = beside(target);

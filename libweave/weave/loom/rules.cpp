@@ -19,7 +19,7 @@ const std::vector<Rule>& rules() {
          "cast-out hooks, and hooks that serve something else, carry no end and never lift"},
         {"hooks.read-back", error, "the lifts of the hooks, read back, give the card image again"},
         {"picks.limit", error, "the design has no more picks than one file holds"},
-        {"name.limit", warning, "the title fits the name field of the file"},
+        {"name.limit", info, "the title fits the name field of the file"},
         {"feeders.per-pick", error, "no pick takes more feeders than the loom can present at once"},
         {"feeders.none", error, "a pick without weft only takes up"},
         {"feeders.range", error, "the loom has every feeder that the picks ask for"},
