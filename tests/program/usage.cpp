@@ -49,7 +49,7 @@ TEST_CASE("weave --help names every command, and every command's help its option
     CHECK(shop.names().empty());
 }
 
-TEST_CASE("help on a family lists the options of that family alone") {
+TEST_CASE("help on presets lists each family with its options") {
     const Workshop shop;
     const std::string twill = shop.must({"preset", "twill", "--help"}).out;
     CHECK(twill.find("up=2") != std::string::npos);
