@@ -24,7 +24,7 @@ Design small() {
 /// The error of an edit that must be refused and leave the design as it was.
 std::string refusal(const Design& before, const Edit& edit) {
     Design design = before;
-    const Result<Edit> undo = weave::apply(design, edit);
+    const Result<Edit> undo = weave::apply_edit(design, edit);
     REQUIRE_FALSE(undo);
     CHECK(design == before);
     CHECK(write_document(design) == write_document(before));
@@ -89,7 +89,7 @@ TEST_CASE("edits undone in reverse give back the design, byte for byte") {
             for (std::size_t step = random.between(1, 10); step > 0; --step) {
                 const Design before = design;
                 const Edit edit = random_edit(random, design);
-                Result<Edit> inverse = weave::apply(design, edit);
+                Result<Edit> inverse = weave::apply_edit(design, edit);
                 if (inverse) {
                     ++made;
                     stages.push_back(before);
@@ -104,14 +104,14 @@ TEST_CASE("edits undone in reverse give back the design, byte for byte") {
             std::vector<Edit> redo;
             const Design end = design;
             for (; !undo.empty(); undo.pop_back(), stages.pop_back()) {
-                Result<Edit> inverse = weave::apply(design, undo.back());
+                Result<Edit> inverse = weave::apply_edit(design, undo.back());
                 if (!inverse) FAIL(inverse.error().text());
                 REQUIRE(design == stages.back());
                 redo.push_back(std::move(inverse).value());
             }
             REQUIRE(design == start);
             REQUIRE(write_document(design) == text);
-            for (; !redo.empty(); redo.pop_back()) REQUIRE(weave::apply(design, redo.back()));
+            for (; !redo.empty(); redo.pop_back()) REQUIRE(weave::apply_edit(design, redo.back()));
             REQUIRE(design == end);
             REQUIRE(write_document(design) == write_document(end));
         },
@@ -131,7 +131,7 @@ TEST_CASE("an edit that went through JSON has the same effect, and so has its in
             REQUIRE(to_json(*read) == json);
             Design other = design;
             const Design before = design;
-            const Result<Edit> undo = weave::apply(design, edit), other_undo = weave::apply(other, *read);
+            const Result<Edit> undo = weave::apply_edit(design, edit), other_undo = weave::apply_edit(other, *read);
             REQUIRE(bool(undo) == bool(other_undo));
             REQUIRE(design == other);
             if (!undo) {
@@ -140,7 +140,7 @@ TEST_CASE("an edit that went through JSON has the same effect, and so has its in
             }
             const Result<Edit> back = edit_from_json(parse_json(to_json(*undo).dump()).value());
             REQUIRE(back);
-            REQUIRE(weave::apply(design, *back));
+            REQUIRE(weave::apply_edit(design, *back));
             REQUIRE(design == before);
             REQUIRE(write_document(design) == write_document(before));
         },
@@ -174,7 +174,7 @@ TEST_CASE("blocks: what cannot be put, removed, renamed or made the cloth") {
     for (std::size_t k = full.blocks.size(); k < most_blocks; ++k)
         full.blocks["b" + std::to_string(k)] = plain();
     CHECK(refusal(full, PutBlock{"new", plain()}) == "a design has at most 4096 blocks");
-    CHECK(weave::apply(full, PutBlock{"b10", node(TileOperation{"toe", 1, 1, 1})}));
+    CHECK(weave::apply_edit(full, PutBlock{"b10", node(TileOperation{"toe", 1, 1, 1})}));
 }
 
 TEST_CASE("flips, texts and plans: what is refused") {
@@ -204,30 +204,30 @@ TEST_CASE("flips, texts and plans: what is refused") {
 
 TEST_CASE("renaming takes every reference along, and a name may stay") {
     Design design = small();
-    REQUIRE(weave::apply(design, RenameBlock{"toe", "tip"}));
+    REQUIRE(weave::apply_edit(design, RenameBlock{"toe", "tip"}));
     CHECK(children_of(*design.blocks.at("heel")) == std::vector<std::string>{"tip"});
     CHECK(children_of(*design.blocks.at("cloth")) == std::vector<std::string>{"heel", "tip"});
     CHECK_FALSE(design.blocks.contains("toe"));
-    REQUIRE(weave::apply(design, RenameBlock{"cloth", "boot"}));
+    REQUIRE(weave::apply_edit(design, RenameBlock{"cloth", "boot"}));
     CHECK(design.root == "boot");
     CHECK(check(design));
     const Design before = design;
-    REQUIRE(weave::apply(design, RenameBlock{"heel", "heel"}));
+    REQUIRE(weave::apply_edit(design, RenameBlock{"heel", "heel"}));
     CHECK(design == before);
 }
 
 TEST_CASE("a flip at a crossing that has one takes its place; undo brings back order and all") {
     Design design = small();
     for (const Flip flip : {Flip{0, 0, true}, Flip{0, 1, true}, Flip{1, 0, false}})
-        REQUIRE(weave::apply(design, PutFlip{"toe", flip}));
+        REQUIRE(weave::apply_edit(design, PutFlip{"toe", flip}));
     const Design before = design;
-    const Edit undo = weave::apply(design, PutFlip{"toe", {0, 0, false}}).value();
+    const Edit undo = weave::apply_edit(design, PutFlip{"toe", {0, 0, false}}).value();
     CHECK(design.blocks.at("toe")->flips == std::vector<Flip>{{0, 1, true}, {1, 0, false}, {0, 0, false}});
-    REQUIRE(weave::apply(design, undo));
+    REQUIRE(weave::apply_edit(design, undo));
     CHECK(design == before);
-    const Edit again = weave::apply(design, RemoveFlip{"toe", 0, 1}).value();
+    const Edit again = weave::apply_edit(design, RemoveFlip{"toe", 0, 1}).value();
     CHECK(design.blocks.at("toe")->flips == std::vector<Flip>{{0, 0, true}, {1, 0, false}});
-    REQUIRE(weave::apply(design, again));
+    REQUIRE(weave::apply_edit(design, again));
     CHECK(write_document(design) == write_document(before));
 }
 

@@ -36,7 +36,7 @@ Block cloth_of(Evaluator& evaluator, const Design& design) {
 }
 
 Edit edited(Design& design, const Edit& edit) {
-    Result<Edit> undo = weave::apply(design, edit);
+    Result<Edit> undo = weave::apply_edit(design, edit);
     if (!undo) FAIL(undo.error().text());
     return std::move(undo).value();
 }

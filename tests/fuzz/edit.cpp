@@ -22,7 +22,7 @@ const Design& start() {
         put("wide", TileOperation{"plain", 2, 2, 1});
         put("both", AttachOperation{"wide", "wide", Face::plus_x});
         made.root = "both";
-        const auto flipped = weave::apply(made, PutFlip{"wide", {0, 1, true}});
+        const auto flipped = weave::apply_edit(made, PutFlip{"wide", {0, 1, true}});
         must(flipped && check(made), "the design to begin with is sound");
         return made;
     }();
@@ -43,7 +43,7 @@ std::optional<Edit> try_edit(Design& design, std::string_view line) {
     must(again && to_json(*again) == written, "an edit reads as it was written");
 
     const Design before = design;
-    auto undo = weave::apply(design, *edit);
+    auto undo = weave::apply_edit(design, *edit);
     if (!undo) {
         must(design == before, "a refused edit changes nothing");
         return {};
@@ -52,9 +52,9 @@ std::optional<Edit> try_edit(Design& design, std::string_view line) {
     const auto reread = read_document(write_document(design));
     must(reread && *reread == design, "whatever can be edited can be read again");
     Design undone = design;
-    const auto redo = weave::apply(undone, *undo);
+    const auto redo = weave::apply_edit(undone, *undo);
     must(redo && undone == before, "undo restores the design");
-    must(weave::apply(undone, *redo) && undone == design, "redo makes the edit again");
+    must(weave::apply_edit(undone, *redo) && undone == design, "redo makes the edit again");
     return std::move(undo).value();
 }
 
@@ -72,7 +72,7 @@ extern "C" int LLVMFuzzerTestOneInput(const std::uint8_t* data, std::size_t size
     }
     static_cast<void>(fuzz::small_cloth(design));
     for (; !undos.empty(); undos.pop_back())
-        must(static_cast<bool>(weave::apply(design, undos.back())), "every edit can be undone");
+        must(static_cast<bool>(weave::apply_edit(design, undos.back())), "every edit can be undone");
     must(design == start(), "undoing everything leads back to the start");
     return 0;
 }

@@ -165,6 +165,13 @@ TEST_CASE("selvedge, picks and title") {
     CHECK(c.passes("selvedge.binds"));
     c.profile.selvedge_weave = {"01", "00"};
     c.expect_at("selvedge.binds", 1, {});
+    // Picks that only take up carry no weft: they neither hold an end nor need to be held.
+    c.design.weft.feeder_order = {{0}, {}};
+    c.design.weft.take_up = {true, true};
+    c.expect_at("selvedge.binds", {}, {});
+    c.profile.selvedge_weave = {"01", "00", "10", "11"};
+    CHECK(c.passes("selvedge.binds"));
+    c.design.weft.feeder_order = {{0}};
     c.profile.selvedge_weave.clear();
     CHECK(c.lacks("selvedge.binds"));
     CHECK(c.lacks("selvedge.needed"));

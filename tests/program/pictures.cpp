@@ -57,3 +57,17 @@ TEST_CASE("the card is the same in PNG, TIFF and BMP, whatever the case of the e
     CHECK(shop.get("c.tif").rfind("II*", 0) == 0);
     CHECK(shop.get("c.bmp").rfind("BM", 0) == 0);
 }
+
+TEST_CASE("a card written as WIF is imported again as the same card, whatever its sample") {
+    const Workshop shop;
+    for (const char* name : {"twill-g", "layer-to-layer", "three-colour-stencil"}) {
+        INFO(name);
+        shop.must({"samples", name, "-o", "d.weave"});
+        const Json card = shop.json({"card", "d.weave", "-o", "c.wif"});
+        CHECK(shop.get("c.wif").rfind("[WIF]", 0) != std::string::npos);
+        const Json back = shop.json({"import", "c.wif", "-o", "back.weave"});
+        CHECK(back.at("picks") == card.at("picks"));
+        CHECK(back.at("ends") == card.at("ends"));
+        CHECK(shop.json({"info", "back.weave"}).at("card_sha256") == card.at("card_sha256"));
+    }
+}

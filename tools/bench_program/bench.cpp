@@ -70,7 +70,7 @@ Json shoe_edit() {
         }
         const Flip wish{pick, end, !cloth->weft_over(pick, end)};
         const double start = now_s();
-        if (!apply(design, PutFlip{design.root, wish})) return nullptr;
+        if (!apply_edit(design, PutFlip{design.root, wish})) return nullptr;
         cloth = evaluator.evaluate(design)->block;
         evaluations.push_back(now_s() - start);
         const CardImage card = cloth->card_image();

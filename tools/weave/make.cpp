@@ -301,7 +301,7 @@ void add_flip(CLI::App& app, Program& program) {
         if (Result<Block> flipped = flip(block, *pick - 1, *end - 1); !flipped)
             return std::move(flipped).error().in(*file);
         const Flip wish{*pick - 1, *end - 1, !block.weft_over(*pick - 1, *end - 1)};
-        WEAVE_CHECK_OK(apply(cloth.design, PutFlip{cloth.design.root, wish}));
+        WEAVE_CHECK_OK(apply_edit(cloth.design, PutFlip{cloth.design.root, wish}));
         return save_cloth(program, cloth.design, *out, *file);
     });
 }

@@ -10,14 +10,12 @@ namespace {
 constexpr std::int64_t most_layers = 64;
 
 /// The stack of straight wefts 0 … layers-1 from the bottom, with warp w in gap gaps[w]: gap g has g wefts
-/// below it. Gaps must not fall.
+/// below it. Gaps must rise. A gap without a warp stays an empty slot, so that wefts and straight ends keep
+/// their level from stack to stack.
 Stack with_warps_in_gaps(std::size_t layers, const std::vector<std::size_t>& gaps) {
-    std::vector<Slot> slots;
-    std::size_t warp = 0;
-    for (std::size_t gap = 0; gap <= layers; ++gap) {
-        for (; warp < gaps.size() && gaps[warp] == gap; ++warp) slots.push_back(Slot::warp(warp));
-        if (gap < layers) slots.push_back(Slot::weft(gap));
-    }
+    std::vector<Slot> slots(2 * layers + 1);
+    for (std::size_t weft = 0; weft < layers; ++weft) slots[2 * weft + 1] = Slot::weft(weft);
+    for (std::size_t warp = 0; warp < gaps.size(); ++warp) slots[2 * gaps[warp]] = Slot::warp(warp);
     return Stack(std::move(slots));
 }
 

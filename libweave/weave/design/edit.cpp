@@ -241,7 +241,7 @@ Result<Edit> read_edit(std::size_t kind, JsonReader& reader) {
 
 }  // namespace
 
-Result<Edit> apply(Design& design, const Edit& edit) {
+Result<Edit> apply_edit(Design& design, const Edit& edit) {
     return std::visit([&](const auto& one) { return make(design, one); }, edit);
 }
 

@@ -50,7 +50,7 @@ using Edit = std::variant<PutBlock, RemoveBlock, RenameBlock, SetRoot, PutFlip, 
 
 /// Makes an edit and gives the edit that undoes it exactly. On an error (unknown block, a cycle that would
 /// arise, a block still in use) the design is unchanged.
-Result<Edit> apply(Design& design, const Edit& edit);
+Result<Edit> apply_edit(Design& design, const Edit& edit);
 
 /// An edit as one JSON object and back, for journals and messages.
 Json to_json(const Edit& edit);

@@ -129,41 +129,51 @@ void check_selvedge_needed(const Subject& subject, CheckReport& report) {
     }
 }
 
-/// Whether a line of the selvedge shows both lifts.
-template <class Lifted>
-bool varies(std::size_t count, Lifted lifted) {
-    for (std::size_t k = 1; k < count; ++k) {
-        if (lifted(k) != lifted(0)) return true;
+/// Whether a selvedge end passes to both sides of the picks that carry a weft: it is held by those alone.
+bool selvedge_end_binds(const Subject& subject, std::size_t place) {
+    bool over = false, under = false;
+    for (std::size_t pick = 0; pick < subject.picks.size(); ++pick) {
+        if (subject.picks[pick].feeders.empty()) continue;
+        (selvedge_lifted(subject.profile, place, pick) ? over : under) = true;
     }
-    return false;
+    return over && under;
+}
+
+void check_selvedge_ends(const Subject& subject, RuleReport& rule) {
+    std::size_t place = 0;
+    for (const auto& range : subject.profile.selvedge) {
+        for (std::size_t hook = range.first; hook <= range.last; ++hook, ++place) {
+            if (selvedge_end_binds(subject, place)) continue;
+            rule.find({}, "selvedge hook " + person(hook) +
+                              " is lifted on all or on none of this design's picks that carry a weft, so its "
+                              "end does not bind");
+        }
+    }
+}
+
+/// The first pick of each line of the selvedge weave that passes all selvedge ends on one side.
+void check_selvedge_picks(const Subject& subject, std::size_t hooks, RuleReport& rule) {
+    const std::vector<std::string>& weave = subject.profile.selvedge_weave;
+    std::vector<bool> told(weave.size());
+    for (std::size_t pick = 0; pick < subject.picks.size(); ++pick) {
+        const std::size_t line = pick % weave.size();
+        if (subject.picks[pick].feeders.empty() || told[line]) continue;
+        const std::string used = weave[line].substr(0, hooks);
+        if (used.find_first_not_of(used[0]) != std::string::npos) continue;
+        told[line] = true;
+        rule.find(at_pick(pick), "pick " + person(pick) +
+                                     " passes all selvedge ends on one side, so the selvedge does not hold it");
+    }
 }
 
 void check_selvedge_binds(const Subject& subject, CheckReport& report) {
     RuleReport rule(report, subject.profile, "selvedge.binds");
-    const LoomProfile& profile = subject.profile;
-    const std::size_t hooks = selvedge_hooks(profile), picks = subject.block.picks();
+    const std::size_t hooks = selvedge_hooks(subject.profile);
     if (hooks == 0) return rule.not_evaluated("the profile has no selvedge hooks");
-    if (profile.selvedge_weave.empty())
+    if (subject.profile.selvedge_weave.empty())
         return rule.not_evaluated("the profile gives no weave for its selvedge hooks");
-    std::size_t place = 0;
-    for (const auto& range : profile.selvedge) {
-        for (std::size_t hook = range.first; hook <= range.last; ++hook, ++place) {
-            if (!varies(picks, [&](std::size_t pick) { return selvedge_lifted(profile, place, pick); })) {
-                rule.find({}, "selvedge hook " + person(hook) + " is " +
-                                  (selvedge_lifted(profile, place, 0) ? "lifted" : "down") +
-                                  " on every pick of the " + counted(picks, "pick") +
-                                  " of this design, so its end does not bind");
-            }
-        }
-    }
-    const std::size_t pattern = std::min(hooks, profile.selvedge_weave.front().size());
-    for (std::size_t pick = 0; pick < std::min(picks, profile.selvedge_weave.size()); ++pick) {
-        if (!varies(pattern, [&](std::size_t k) { return selvedge_lifted(profile, k, pick); })) {
-            rule.find(at_pick(pick),
-                      "pick " + person(pick) +
-                          " passes all selvedge ends on one side, so the selvedge does not hold it");
-        }
-    }
+    check_selvedge_ends(subject, rule);
+    check_selvedge_picks(subject, hooks, rule);
 }
 
 void check_picks(const Subject& subject, CheckReport& report) {

@@ -11,7 +11,8 @@ namespace weave {
 namespace {
 
 constexpr double overhang = 0.72, base_level = -1.1;
-constexpr std::size_t most_shown = 12;  ///< rows and columns
+constexpr std::size_t most_shown = 24;  ///< rows, and columns
+constexpr std::size_t most_shown_stacks = 144;
 constexpr std::size_t most_shown_slots = 1500;
 constexpr double box_width = 30, box_height = 17, cell_gap = 14;
 
@@ -20,13 +21,17 @@ struct Shown {
     std::size_t rows = 0, columns = 0, levels = 0;
 };
 
+/// The longer side gives way first, so that a narrow block is shown over its whole length.
 Shown shown_part(const Block& block) {
-    const std::size_t levels = std::clamp<std::size_t>(block.height(), 1, SliceMap::most_levels);
-    std::size_t side = most_shown;
-    while (side > 2 &&
-           std::min(side, block.rows()) * std::min(side, block.columns()) * levels > most_shown_slots)
-        --side;
-    return {std::min(side, block.rows()), std::min(side, block.columns()), levels};
+    Shown shown{std::min(most_shown, block.rows()), std::min(most_shown, block.columns()),
+                std::clamp<std::size_t>(block.height(), 1, SliceMap::most_levels)};
+    const auto is_too_much = [&] {
+        const std::size_t stacks = shown.rows * shown.columns;
+        return stacks > most_shown_stacks || stacks * shown.levels > most_shown_slots;
+    };
+    while (is_too_much() && std::max(shown.rows, shown.columns) > 2)
+        --(shown.rows > shown.columns ? shown.rows : shown.columns);
+    return shown;
 }
 
 /// The schematic in space.
