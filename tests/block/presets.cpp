@@ -101,12 +101,19 @@ TEST_CASE("single-layer families have one pick and one end a stack, layered ones
     std::vector<std::string> climb;
     for (std::size_t row = 0; row < 4; ++row) climb.push_back(to_text(interlock.stack(row, 0)));
     REQUIRE(climb ==
-            std::vector<std::string>{"P0 T0 T1 T2 T3", "T0 T1 P0 T2 T3", "T0 T1 T2 T3 P0", "T0 T1 P0 T2 T3"});
+            std::vector<std::string>{"P0 T0 - T1 - T2 - T3", "- T0 - T1 P0 T2 - T3", "- T0 - T1 - T2 - T3 P0",
+                                     "- T0 - T1 P0 T2 - T3"});
     const Block orthogonal = make_preset({"orthogonal", {}}).value();
     REQUIRE(orthogonal.p() == std::vector<std::uint32_t>{1, 2, 1, 2});
     const Block bound = make_preset({"layer-to-layer", {}}).value();
     REQUIRE(bound.p() == std::vector<std::uint32_t>{3, 3});
-    REQUIRE(to_text(bound.stack(0, 0)) == "P0 T0 P1 T1 P2 T2 T3");
+    REQUIRE(to_text(bound.stack(0, 0)) == "P0 T0 P1 T1 P2 T2 - T3");
+    for (const char* family : {"orthogonal", "layer-to-layer", "angle-interlock"}) {
+        INFO(family);
+        const Block level = make_preset({family, {{"stuffers", 1}}}).value();
+        for (const Stack& stack : level.stacks())
+            REQUIRE(stack.positions(System::weft) == level.stack(0, 0).positions(System::weft));
+    }
 }
 
 TEST_CASE("a stitch ties each cloth to the next with one pixel and no more") {
