@@ -13,7 +13,7 @@ namespace {
 constexpr double overhang = 0.72, base_level = -1.1;
 constexpr std::size_t most_shown = 24;  ///< rows, and columns
 constexpr std::size_t most_shown_stacks = 144;
-constexpr std::size_t most_shown_slots = 1500;
+constexpr std::size_t most_shown_slots = 2000;
 constexpr double box_width = 30, box_height = 17, cell_gap = 14;
 
 /// The part of a block that its schematic shows.
@@ -73,10 +73,25 @@ class Schematic {
     void draw(Canvas& canvas) const {
         draw_base(canvas);
         draw_tubes(canvas, m_view, m_tubes);
+        draw_labels(canvas);
+        draw_axes(canvas);
+    }
+
+  private:
+    /// A number that would cover one drawn before it is left out: half a number misleads.
+    void draw_labels(Canvas& canvas) const {
+        std::vector<Rectangle> taken;
         for (const Label& label : m_labels) {
             const Point middle = m_view.on_screen(label.place);
             const double half = Canvas::text_width(label.text, 12, true) / 2 + 2;
-            canvas.rectangle({middle.x - half, middle.y - 7, 2 * half, 14}, {0xff, 0xff, 0xff}, 0.8);
+            const Rectangle box{middle.x - half, middle.y - 7, 2 * half, 14};
+            const auto covers = [&](const Rectangle& other) {
+                return box.x < other.x + other.width && other.x < box.x + box.width &&
+                       box.y < other.y + other.height && other.y < box.y + box.height;
+            };
+            if (std::ranges::any_of(taken, covers)) continue;
+            taken.push_back(box);
+            canvas.rectangle(box, {0xff, 0xff, 0xff}, 0.8);
             canvas.text(middle, label.text,
                         {.size = 12,
                          .colour = label.colour,
@@ -84,10 +99,8 @@ class Schematic {
                          .bold = true,
                          .centred = true});
         }
-        draw_axes(canvas);
     }
 
-  private:
     struct Label {
         Place place;
         std::string text;
@@ -345,7 +358,8 @@ PageText block_words(const Subject& subject, const Shown& shown, const WeftRuns&
                              ".");
     }
     text.notes.emplace_back(
-        "Numbers at the yarns count picks and ends from 1, as on the card. Ground squares are stacks.");
+        "Numbers at the yarns count picks and ends from 1, as on the card; where they would overlap, some are "
+        "left out. Ground squares are stacks.");
     const auto loose = [](const Stack& stack) { return std::ranges::any_of(stack.slots(), &Slot::is_loose); };
     if (subject.request.trim) {
         text.notes.emplace_back("Trimmed: yarns that are loose on purpose are left out.");
