@@ -157,8 +157,10 @@ TEST_CASE("a shuttle on the wrong side misses its box and does not turn") {
     picks[1].direction = Direction::left_to_right;
     const WeftWay way = weft_way(card_of({"01", "10"}), picks);
     CHECK(way.turns.empty());
-    REQUIRE(way.missed_boxes.size() == 1);
-    CHECK(way.missed_boxes[0].to_pick == 1);
+    const auto missed = missed_boxes(picks);
+    REQUIRE(missed.size() == 1);
+    CHECK(missed[0].from_pick == 0);
+    CHECK(missed[0].to_pick == 1);
 }
 
 TEST_CASE("two feeders in one pick both have their way, a pick without feeder has none") {
