@@ -138,10 +138,12 @@ Design three_colour_stencil() {
 }
 
 Design layer_to_layer() {
-    Design design =
-        composite("Layer to layer",
-                  "Four levels of wefts. Each end binds two neighbouring levels: it rises over both, comes "
-                  "back between them and dives under both. Neighbouring slices are half a repeat apart.");
+    Design design = composite(
+        "Layer to layer",
+        "Four levels of wefts and five ends a column. Each of the three inner ends binds two neighbouring "
+        "levels: it rises over both, comes back between them and dives under both. The lowest and the "
+        "highest end bind one level each, the bottom and the top one. Neighbouring slices are half a "
+        "repeat apart.");
     static constexpr std::ptrdiff_t step[] = {1, 0, -1, 0};
     add_slices(design, "layer-to-layer", 4, 2, 4, 5, [](std::size_t i, std::size_t j, std::size_t e) {
         const std::ptrdiff_t height = whole(e) + step[(i + 2 * j) % 4];

@@ -153,10 +153,13 @@ Design pocket() {
     Design design = cloth(
         "Pocket",
         "Two layers, open on one side only. One shuttle weaves back and front in turn, so its turns close "
-        "both long sides; in the first rows both layers are woven as one, which closes the bottom; "
-        "the last row is the mouth. The spheres push it open. Sizes and weaves follow "
-        "the paper's user study (25 ends and 35 picks a layer, a 2/3 satin and a 4/1 twill); its "
-        "figure does not print the weave.",
+        "both "
+        "long sides; in the first five rows both layers are woven as one, which closes the bottom; the last "
+        "row is "
+        "the mouth. The spheres push it open. The weaves and the size of the open part follow the paper's "
+        "user "
+        "study (25 ends and 35 picks a layer, a 2/3 satin and a 4/1 twill); with the bottom a layer has 40 "
+        "picks. The paper's figure does not print the weave.",
         cotton("front warp", "#e08a2c", 0.15, 50), cotton("weft", "#8f959b", 0.15, 50));
     design.warp.yarns.push_back(cotton("back warp", "#3f6fb0", 0.15, 50));
     design.warp.order.once = {1, 0};
@@ -215,18 +218,50 @@ Stack flange_stack(std::size_t i, std::size_t j) {
     return cell(beam_wefts, ends, lowest(top_flange) & ~lowest(flange_wefts));
 }
 
+/// A row's wefts in the order of insertion, in rows 1, 3, … and in rows 2, 4, …. Beside the web a turn of its
+/// shuttle slips in only past flange picks whose own turns there lie on the side of their flange: later turns
+/// lie above earlier ones. So the top flange's three picks go where, on the side of the web's turn, the first
+/// two turn and the third goes on to the next row; the bottom flange's where the first comes from the row
+/// before. Three is odd, so this side changes from row to row. Rows 2, 4, … end with the top flange, so that
+/// the last pick of all has no web turn round its tail.
+constexpr std::array<std::array<std::size_t, beam_wefts>, 2> beam_order{
+    {{0, 1, 2, 3, 7, 8, 9, 4, 5, 6}, {3, 0, 1, 2, 4, 5, 6, 7, 8, 9}}};
+
+/// Adds two rows whose wefts are numbered from the bottom up, and the same in the order of insertion.
+void add_in_order(Design& design, const std::string& name, NodePtr drawn) {
+    add(design, name + "-drawn", std::move(drawn));
+    const auto order = [](std::size_t row) {
+        return std::vector<std::size_t>(beam_order[row].begin(), beam_order[row].end());
+    };
+    add(design, name + "-1", renumbered(name + "-drawn", 0, order(0)));
+    add(design, name, renumbered(name + "-1", 1, order(1)));
+}
+
+/// The shuttles in that order: 0 the bottom flange's, 1 the web's, 2 the top flange's.
+std::vector<FeederSet> beam_feeders() {
+    std::vector<FeederSet> feeders;
+    for (const auto& row : beam_order) {
+        for (const std::size_t weft : row)
+            feeders.push_back({weft < flange_wefts ? 0U : weft < top_flange ? 1U : 2U});
+    }
+    return feeders;
+}
+
 }  // namespace
 
 Design i_beam() {
     Design design = cloth(
         "I-beam",
         "A carbon-fibre beam that is woven flat: two flanges over the whole width and a thin web in the "
-        "middle. The shuttle of the web runs across, but its yarn turns round the outermost ends of the web, "
-        "for "
-        "beside it the ends (purple) are placeholders that bind nothing and are trimmed. Each flange "
-        "has a shuttle of its own, or its edges would be tied to the other flange. Built after figure 14; "
+        "middle. "
+        "The shuttle of the web runs across, but its yarn turns round the outermost ends of the web, for "
+        "beside "
+        "it the ends (purple) are placeholders that bind nothing and are trimmed; only its first and last "
+        "pick run out to the left edge. Each flange has a shuttle of its own, or its edges would be tied to "
         "the "
-        "paper prints its card too small to be read.",
+        "other flange, and its picks go in between those of the web where their turns do not catch the "
+        "web's. "
+        "Built after figure 14; the paper prints its card too small to be read.",
         yarn("carbon warp", "#e08a2c", 0.25, 200, 26000, 1.5),
         yarn("carbon weft", "#8f959b", 0.25, 200, 26000, 1.5));
     design.warp.beams = {{"flanges"}, {"web"}};
@@ -236,9 +271,9 @@ Design i_beam() {
     design.warp.ends_per_dent = 13;
     design.weft.density_picks_per_cm = 4;
     design.weft.feeders = {{"bottom flange", 0}, {"web", 0}, {"top flange", 0}};
-    design.weft.feeder_order = {{0}, {0}, {0}, {1}, {1}, {1}, {1}, {2}, {2}, {2}};
-    add(design, "flange-repeat", stacks(2, 2, beam_wefts, beam_ends, flange_stack));
-    add(design, "web-repeat", stacks(2, 2, beam_wefts, beam_ends, web_stack));
+    design.weft.feeder_order = beam_feeders();
+    add_in_order(design, "flange-repeat", stacks(2, 2, beam_wefts, beam_ends, flange_stack));
+    add_in_order(design, "web-repeat", stacks(2, 2, beam_wefts, beam_ends, web_stack));
     add(design, "web", tiled("web-repeat", 2, 2));
     add(design, "flanges", tiled("flange-repeat", 2, 4));
     add(design, "left-half", attached("flanges", "web", Face::plus_y));
