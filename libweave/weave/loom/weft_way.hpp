@@ -57,7 +57,8 @@ struct WeftWay {
 /// what its yarn would do if the crossed pick stayed: a defect to mend, no prediction.
 ///
 /// More picks than the card has are further repeats of it. `loose`, of the size of the card, is true at the
-/// crossings whose end is not to hold any loop: with loose_ends() the way is that after trimming.
+/// crossings whose end is not to hold any loop: with loose_ends() the way is that after trimming, but
+/// where loops of two feeders hook each other between firm ends they may come to rest at a loose one.
 WeftWay weft_way(const CardImage& card, const std::vector<Pick>& picks, const CardImage* loose = nullptr);
 
 /// The crossings at which the end is loose on purpose.

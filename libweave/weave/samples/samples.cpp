@@ -59,8 +59,7 @@ std::vector<Sample> library() {
          "tc2", sample::shoe_toddler},
         {"shoe-adult", "Adult shoe",
          not_printed + "Figure 17: a full-size shoe on 2,400 ends; every combination of sole, insole and "
-                       "upper that the "
-                       "shoe needs is a block of its own.",
+                       "upper that the shoe needs is a block of its own.",
          "ep-2688", sample::shoe_adult},
     };
 }

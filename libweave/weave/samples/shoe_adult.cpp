@@ -180,13 +180,11 @@ Design shoe_adult() {
     design.title = "Shoe 42";  // eight characters are all that the loom's file has room for
     design.notes =
         "A full-size right shoe, woven flat and seen from above: heel first, toe last. Three sets of ends "
-        "and three "
-        "shuttles make a zigzag sole of coated polyester, a cotton insole with more and less cushion, and an "
-        "upper "
-        "with toe cap, vents, lace stays with eyelets, tongue with lace loops, stripes, seams, collar and "
-        "heel "
-        "counter. Along the rim all is one cloth, which closes the shoe; outside the sole its ends bind "
-        "nothing and are trimmed, as are the upper's over the ankle opening and in the eyelets.";
+        "and three shuttles make a zigzag sole of coated polyester, a cotton insole with more and less "
+        "cushion, and an upper with toe cap, vents, lace stays with eyelets, tongue with lace loops, "
+        "stripes, seams, collar and heel counter. Along the rim all is one cloth, which closes the shoe; "
+        "outside the sole its ends bind nothing and are trimmed, as are the upper's over the ankle opening "
+        "and in the eyelets.";
     plan_yarns(design);
     StencilMap map{shoe_rows, shoe_columns, {}};
     map.blocks.reserve(shoe_rows * shoe_columns);

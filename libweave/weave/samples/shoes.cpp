@@ -102,11 +102,9 @@ void plan_shoe(Design& design) {
 Design shoe_baby() {
     Design design = cloth("Baby shoe",
                           "Two plain-weave layers, a top and a sole, from seven blocks and three stencils. "
-                          "One shuttle closes the "
-                          "sides by its turns, and in the middle weaves the left and the right top layer "
-                          "apart, so that a hole for "
-                          "the ankle stays open once the loose ends are trimmed. The paper counts six blocks "
-                          "but names seven, A to G; "
+                          "One shuttle closes the sides by its turns, and in the middle weaves the left and "
+                          "the right top layer apart, so that a hole for the ankle stays open once the "
+                          "loose ends are trimmed. The paper counts six blocks but names seven, A to G; "
                           "here there are the seven that it names.",
                           cotton("top warp", "#e08a2c", 0.2, 80), cotton("weft", "#8f959b", 0.2, 80));
     design.warp.yarns.push_back(cotton("sole warp", "#3f6fb0", 0.2, 80));

@@ -103,12 +103,9 @@ Design tl013(std::string title, std::string notes) {
 Design tl013_wrong() {
     return tl013("TL013, wrong",
                  "Two double cloths joined by a zigzag layer, wefts three times as thick as the warp. The "
-                 "error: on its "
-                 "way up and on its way down each zigzag end crosses the weft of the upper section (pick 4 "
-                 "of the row) "
-                 "one row early, so the upper section leans. The weave of the paper's TL013 is not printed; "
-                 "this one was "
-                 "built from its description and section.");
+                 "error: on its way up and on its way down each zigzag end crosses the weft of the upper "
+                 "section (pick 4 of the row) one row early, so the upper section leans. The weave of the "
+                 "paper's TL013 is not printed; this one was built from its description and section.");
 }
 
 Design tl013_corrected() {
@@ -153,13 +150,10 @@ Design pocket() {
     Design design = cloth(
         "Pocket",
         "Two layers, open on one side only. One shuttle weaves back and front in turn, so its turns close "
-        "both "
-        "long sides; in the first five rows both layers are woven as one, which closes the bottom; the last "
-        "row is "
-        "the mouth. The spheres push it open. The weaves and the size of the open part follow the paper's "
-        "user "
-        "study (25 ends and 35 picks a layer, a 2/3 satin and a 4/1 twill); with the bottom a layer has 40 "
-        "picks. The paper's figure does not print the weave.",
+        "both long sides; in the first five rows both layers are woven as one, which closes the bottom; the "
+        "last row is the mouth. The spheres push it open. The weaves and the size of the open part follow "
+        "the paper's user study (25 ends and 35 picks a layer, a 2/3 satin and a 4/1 twill); with the "
+        "bottom a layer has 40 picks. The paper's figure does not print the weave.",
         cotton("front warp", "#e08a2c", 0.15, 50), cotton("weft", "#8f959b", 0.15, 50));
     design.warp.yarns.push_back(cotton("back warp", "#3f6fb0", 0.15, 50));
     design.warp.order.once = {1, 0};
@@ -253,15 +247,11 @@ Design i_beam() {
     Design design = cloth(
         "I-beam",
         "A carbon-fibre beam that is woven flat: two flanges over the whole width and a thin web in the "
-        "middle. "
-        "The shuttle of the web runs across, but its yarn turns round the outermost ends of the web, for "
-        "beside "
-        "it the ends (purple) are placeholders that bind nothing and are trimmed; only its first and last "
-        "pick run out to the left edge. Each flange has a shuttle of its own, or its edges would be tied to "
-        "the "
-        "other flange, and its picks go in between those of the web where their turns do not catch the "
-        "web's. "
-        "Built after figure 14; the paper prints its card too small to be read.",
+        "middle. The shuttle of the web runs across, but its yarn turns round the outermost ends of the "
+        "web, for beside it the ends (purple) are placeholders that bind nothing and are trimmed; only its "
+        "first and last pick run out to the left edge. Each flange has a shuttle of its own, or its edges "
+        "would be tied to the other flange, and its picks go in between those of the web where their turns "
+        "do not catch the web's. Built after figure 14; the paper prints its card too small to be read.",
         yarn("carbon warp", "#e08a2c", 0.25, 200, 26000, 1.5),
         yarn("carbon weft", "#8f959b", 0.25, 200, 26000, 1.5));
     design.warp.beams = {{"flanges"}, {"web"}};
