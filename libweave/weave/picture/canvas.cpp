@@ -1,3 +1,4 @@
+#include <weave/core/text.hpp>
 #include <weave/picture/canvas.hpp>
 #include <weave/picture/encode_png.hpp>
 
@@ -90,26 +91,6 @@ std::string with_own_numbers(const std::string& svg) {
     return out;
 }
 
-/// Bytes of the UTF-8 character at `at`, or 0 where there is none.
-std::size_t character_size(std::string_view text, std::size_t at) {
-    const auto lead = static_cast<std::uint8_t>(text[at]);
-    const std::size_t size = lead < 0x80       ? 1
-                             : lead >> 5 == 6  ? 2
-                             : lead >> 4 == 14 ? 3
-                             : lead >> 3 == 30 ? 4
-                                               : 0;
-    if (size == 0 || at + size > text.size()) return 0;
-    std::uint32_t code = size == 1 ? lead : lead & (0x7FU >> size);
-    for (std::size_t k = 1; k < size; ++k) {
-        const auto byte = static_cast<std::uint8_t>(text[at + k]);
-        if (byte >> 6 != 2) return 0;
-        code = code << 6 | (byte & 0x3FU);
-    }
-    constexpr std::uint32_t least[]{0, 0, 0x80, 0x800, 0x10000};
-    const bool surrogate = code >= 0xD800 && code < 0xE000;
-    return code >= least[size] && code <= 0x10FFFF && !surrogate ? size : 0;
-}
-
 }  // namespace
 
 Colour mix(Colour a, Colour b, double share) {
@@ -133,7 +114,7 @@ std::string printable(std::string_view text, std::size_t most) {
     std::size_t characters = 0;
     for (std::size_t at = 0; at < text.size(); ++characters) {
         if (characters == most) return out + "…";
-        const std::size_t size = character_size(text, at);
+        const std::size_t size = utf8_length(text.substr(at));
         const bool control = size == 1 && (static_cast<std::uint8_t>(text[at]) < 0x20 || text[at] == 0x7f);
         if (size == 0) {
             out.push_back('?');
