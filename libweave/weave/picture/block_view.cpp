@@ -358,7 +358,8 @@ PageText block_words(const Subject& subject, const Shown& shown, const WeftRuns&
                              ".");
     }
     text.notes.emplace_back(
-        "Numbers at the yarns count picks and ends from 1, as on the card; where they would overlap, some are "
+        "Numbers at the yarns count picks and ends from 1, as on the card; where they would overlap, some "
+        "are "
         "left out. Ground squares are stacks.");
     const auto loose = [](const Stack& stack) { return std::ranges::any_of(stack.slots(), &Slot::is_loose); };
     if (subject.request.trim) {
@@ -380,7 +381,7 @@ Result<std::string> draw_block(const Subject& subject) {
     const bool written = is_written(subject.block);
     const Point table = written ? written_size(subject.block) : Point{};
     const double table_width = written ? std::max(table.x, 230.0) + 24 : 0;
-    WEAVE_TRY(Page page, Page::open(subject.format, block_words(subject, shown, runs), size.x + table_width,
+    WEAVE_TRY(Page page, Page::open(subject, block_words(subject, shown, runs), size.x + table_width,
                                     std::max(size.y, table.y)));
     schematic.draw(page.canvas);
     if (written)

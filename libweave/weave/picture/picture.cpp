@@ -30,6 +30,8 @@ Result<std::size_t> line_of(std::string_view text, const Block& block, System sy
     return weft ? block.row_of_pick(number - 1) : block.column_of_end(number - 1);
 }
 
+}  // namespace
+
 Result<std::string> draw_view(const Subject& subject) {
     switch (subject.request.view) {
         case View::card:
@@ -49,8 +51,6 @@ Result<std::string> draw_view(const Subject& subject) {
     }
     return invalid("there is no such view");
 }
-
-}  // namespace
 
 Result<PictureRequest> parse_view(std::string_view text, const Block& block) {
     PictureRequest request;

@@ -326,8 +326,8 @@ Result<std::string> draw_slice(const Subject& subject) {
     const SliceMap map = slice_map(subject, colours, runs);
     const Point origin = slice_point(map, 0, 0),
                 far = slice_point(map, static_cast<double>(map.positions), static_cast<double>(map.levels));
-    WEAVE_TRY(Page page, Page::open(subject.format, slice_words(subject, map, runs),
-                                    far.x + 40 - Page::margin, origin.y - Page::body_top + 58));
+    WEAVE_TRY(Page page, Page::open(subject, slice_words(subject, map, runs), far.x + 40 - Page::margin,
+                                    origin.y - Page::body_top + 58));
     SliceDrawer(page.canvas, map, runs, subject.request.trim).draw();
     return std::move(page.canvas).finish();
 }
