@@ -124,9 +124,22 @@ std::uint32_t pixel_of(Colour colour) {
     return std::uint32_t{colour.red} << 16 | std::uint32_t{colour.green} << 8 | colour.blue;
 }
 
+namespace {
+
+/// Brightness as the eye sees it, 0 to 255.
+double lightness(Colour colour) {
+    return 0.299 * colour.red + 0.587 * colour.green + 0.114 * colour.blue;
+}
+
+}  // namespace
+
 Colour ink_on(Colour ground) {
-    const double light = 0.299 * ground.red + 0.587 * ground.green + 0.114 * ground.blue;
-    return light > 140 ? Colour{0x20, 0x20, 0x20} : Colour{0xff, 0xff, 0xff};
+    return lightness(ground) > 140 ? Colour{0x20, 0x20, 0x20} : Colour{0xff, 0xff, 0xff};
+}
+
+Colour readable(Colour colour) {
+    const double most = 95;  // a contrast of more than 5 to 1
+    return mix(colour, {0, 0, 0}, std::max(0.35, 1 - most / std::max(lightness(colour), 1.0)));
 }
 
 std::string printable(std::string_view text, std::size_t most) {

@@ -120,6 +120,8 @@ Colour mix(Colour a, Colour b, double share);
 std::uint32_t pixel_of(Colour colour);
 /// Black or white, whichever reads better on this colour.
 Colour ink_on(Colour ground);
+/// A tone of this colour that reads on white.
+Colour readable(Colour colour);
 /// Text that cairo accepts: valid UTF-8 without control characters, at most `most` characters.
 std::string printable(std::string_view text, std::size_t most = 96);
 
