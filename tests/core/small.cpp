@@ -14,7 +14,7 @@ TEST_CASE("a colour survives its text") {
             const Colour colour{part(), part(), part()};
             REQUIRE(parse_colour(to_text(colour)).value() == colour);
         },
-        2000);
+        weave::testing::property_cases());
     REQUIRE(to_text(Colour{0, 10, 255}) == "#000aff");
     REQUIRE(parse_colour("#D08030").value() == Colour{0xd0, 0x80, 0x30});
     for (const char* text : {"", "#", "d08030", "#d0803", "#d080300", "#d0803g", "#-08030", "#+08030",
@@ -55,4 +55,13 @@ TEST_CASE("units convert to millimetre, gram and millisecond") {
     REQUIRE(units::gram_per_mm(1000) == Approx(1e-3));  // 1000 tex: a gram a metre
     REQUIRE(units::spacing_mm(20) == Approx(0.5));
     REQUIRE(units::standard_gravity == Approx(9.80665 * 1000 / (1000.0 * 1000.0)));  // m/s² in mm/ms²
+}
+
+TEST_CASE("a number of cases that is none does not pass for one") {
+    using weave::testing::case_count;
+    CHECK(case_count("250") == 250);
+    for (const char* text : {"", "abc", "0", "-5", "10k", " 7", "99999999999999999999"}) {
+        INFO(text);
+        CHECK(case_count(text) == 0);
+    }
 }

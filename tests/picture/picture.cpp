@@ -175,7 +175,7 @@ TEST_CASE("float lengths agree with counting from every place") {
                 }
             }
         },
-        300);
+        property_cases());
 }
 
 TEST_CASE("the float picture colours each place by its float, wefts and warps apart") {

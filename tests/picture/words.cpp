@@ -180,6 +180,27 @@ TEST_CASE("every yarn of the baby shoe's first row can be told and followed") {
     }
 }
 
+TEST_CASE("where a yarn leaves a slice its way out can be read beside the dots") {
+    const Design design = sample_design("shoe-baby");
+    const Evaluation cloth = evaluate(design).value();
+    const PictureRequest request = parse_view("weft:170", *cloth.block).value();
+    const SlicePicture slice = slice_of(design, *cloth.block, request);
+    std::size_t ways = 0;
+    for (const Mark& mark : slice.marks) {
+        if (mark.kind != Mark::Kind::text || (mark.text != "to 175" && mark.text != "from 168")) continue;
+        ++ways;
+        const double width = Canvas::text_width(mark.text, mark.size);
+        for (const SliceDot& dot : slice.map.dot_list) {
+            const Point centre = slice.at(static_cast<double>(dot.position), dot.level);
+            const bool beside = std::abs(centre.y - mark.points[0].y) >= 10 + 5 ||
+                                centre.x + 10 <= mark.points[0].x - width ||
+                                centre.x - 10 >= mark.points[0].x;
+            CHECK(beside);
+        }
+    }
+    CHECK(ways == 2);
+}
+
 TEST_CASE("slices and the block begin where they are asked to, and say so") {
     const Design design = sample_design("shoe-adult");
     const Evaluation cloth = evaluate(design).value();

@@ -2,10 +2,12 @@
 
 #include <cstdint>
 #include <algorithm>
+#include <charconv>
 #include <cstdio>
 #include <cstdlib>
 #include <random>
 #include <string>
+#include <string_view>
 #include <vector>
 
 #include <catch2/catch.hpp>
@@ -14,10 +16,21 @@
 
 namespace weave::testing {
 
+/// A whole number from 1 on, or 0 where the text is none.
+inline std::size_t case_count(std::string_view text) {
+    std::size_t count = 0;
+    const auto [end, code] = std::from_chars(text.data(), text.data() + text.size(), count);
+    return code == std::errc{} && end == text.data() + text.size() ? count : 0;
+}
+
 /// Cases of a property test: 10,000, or what WEAVE_PROPERTY_CASES says (coverage and sanitizer builds lower it).
+/// What is no number of cases fails the test, or it would pass untried.
 inline std::size_t property_cases() {
     const char* wish = std::getenv("WEAVE_PROPERTY_CASES");
-    return wish != nullptr ? static_cast<std::size_t>(std::atoll(wish)) : 10000;
+    if (wish == nullptr) return 10000;
+    const std::size_t cases = case_count(wish);
+    if (cases == 0) FAIL("WEAVE_PROPERTY_CASES is no number of cases: " << wish);
+    return cases;
 }
 
 /// The seed of this run: WEAVE_SEED, or a fresh one. Every property test prints it.

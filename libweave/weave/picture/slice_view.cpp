@@ -29,6 +29,7 @@ class SliceDrawer {
         for (const SlicePath& path : m_map.paths) draw_path(path, false);
         for (const SliceDot& dot : m_map.dot_list) draw_dot(dot);
         for (const SlicePath& path : m_map.paths) draw_names(path);
+        for (const WayOut& way : m_ways_out) draw_name(way);
         m_canvas.unclip();
     }
 
@@ -308,18 +309,39 @@ class SliceDrawer {
         const Point stub[]{a, {a.x + out * 24, a.y}};
         m_canvas.polyline(stub, {.colour = mix(path.colour, {0, 0, 0}, 0.3), .width = 2, .dash = {1, 4}});
         if (leaves) m_canvas.arrow_head({a.x + out * 32, a.y}, {out, 0}, 9, mix(path.colour, {0, 0, 0}, 0.5));
-        const std::size_t other = (leaves ? turn.to_pick : turn.from_pick) + 1;
-        m_canvas.text({a.x + out * 35, a.y}, (leaves ? "to " : "from ") + std::to_string(other),
-                      {.size = 10,
-                       .colour = faint_ink,
-                       .anchor = out > 0 ? Anchor::start : Anchor::end,
-                       .centred = true});
+        m_ways_out.push_back(
+            {{a.x + out * 35, a.y},
+             (leaves ? "to " : "from ") + std::to_string((leaves ? turn.to_pick : turn.from_pick) + 1),
+             out > 0 ? Anchor::start : Anchor::end});
+    }
+
+    struct WayOut {
+        Point place;
+        std::string words;
+        Anchor anchor;
+    };
+
+    /// Beside the yarn where dots would cover the words.
+    void draw_name(const WayOut& way) {
+        constexpr double size = 10;
+        const double width = Canvas::text_width(way.words, size);
+        const double left = way.anchor == Anchor::start ? way.place.x : way.place.x - width;
+        const bool covered = std::ranges::any_of(m_map.dot_list, [&](const SliceDot& dot) {
+            const Point centre = at(static_cast<double>(dot.position), static_cast<double>(dot.level));
+            return std::abs(centre.y - way.place.y) < dot_radius && centre.x + dot_radius > left &&
+                   centre.x - dot_radius < left + width;
+        });
+        const Point place{way.place.x, way.place.y + (covered ? 17 : 0)};
+        if (covered) m_canvas.rectangle({left - 1, place.y - 6, width + 2, 12}, {0xff, 0xff, 0xff}, 0.8);
+        m_canvas.text(place, way.words,
+                      {.size = size, .colour = faint_ink, .anchor = way.anchor, .centred = true});
     }
 
     Canvas& m_canvas;
     const SliceMap& m_map;
     const WeftRuns& m_runs;
     std::size_t m_first_yarn;
+    std::vector<WayOut> m_ways_out;
     bool m_trim;
 };
 
