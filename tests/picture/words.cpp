@@ -81,6 +81,7 @@ TEST_CASE("the card's arrows point at pick 1, at the bottom, and at end 1, at th
     CHECK(arrows[1].direction.y == -1);
     REQUIRE(places_of(marks, "1").size() == 2);
     CHECK(places_of(marks, "1")[0].y == Approx(grid.centre(0, 0).y));
+    REQUIRE(places_of(marks, "5").size() == 2);
     CHECK(places_of(marks, "5")[0].y == Approx(grid.centre(4, 0).y));
     CHECK(places_of(marks, "end lifted (warp over weft)").size() == 1);
     CHECK(places_of(marks, "weft over warp").size() == 1);
@@ -345,6 +346,15 @@ TEST_CASE("the block's numbers stand at the yarns that bear them") {
         CHECK((right[k].x > right[k - 1].x && right[k].y < right[k - 1].y));
         CHECK((front[k].x > front[k - 1].x && front[k].y > front[k - 1].y));
     }
+}
+
+TEST_CASE("the block names its turns by the picks before and after, at their side") {
+    const auto marks = marks_of(shuttle(WeftMode::wraparound), there_and_back(), {.view = View::block});
+    REQUIRE(places_of(marks, "1→2").size() == 1);
+    for (const char* end : {"1", "8"}) {  // numbers of the outermost ends, both left of the turn
+        for (const Point place : places_of(marks, end)) CHECK(place.x < places_of(marks, "1→2")[0].x);
+    }
+    CHECK_FALSE(says(marks_of(shuttle(WeftMode::periodic), there_and_back(), {.view = View::block}), "→"));
 }
 
 TEST_CASE("every word stands on the page") {

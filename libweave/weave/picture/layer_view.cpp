@@ -8,8 +8,9 @@ namespace weave {
 namespace {
 
 constexpr double heading = 24, gutter = 24;
+/// No greys: small cards look grey from afar where black and white alternate.
 constexpr Colour no_yarns{0xc9, 0xdc, 0xee}, lifted{0, 0, 0}, weft_over{0xff, 0xff, 0xff},
-    between{0x8c, 0x8c, 0x8c};
+    between{0xe0, 0x9a, 0x4a};
 
 Colour colour_of(LayerPixel pixel) {
     switch (pixel) {
