@@ -16,7 +16,7 @@ TEST_CASE("a colour survives its text") {
             const Colour colour{part(), part(), part()};
             REQUIRE(parse_colour(to_text(colour)).value() == colour);
         },
-        2000);
+        weave::testing::property_cases());
     REQUIRE(to_text(Colour{0, 10, 255}) == "#000aff");
     REQUIRE(parse_colour("#D08030").value() == Colour{0xd0, 0x80, 0x30});
     for (const char* text : {"", "#", "d08030", "#d0803", "#d080300", "#d0803g", "#-08030", "#+08030",

@@ -209,7 +209,7 @@ TEST_CASE("colour pictures come back as they were, row 0 at the bottom") {
             REQUIRE(back->columns == image.columns);
             REQUIRE(back->pixels == image.pixels);
         },
-        1000);
+        weave::testing::property_cases());
 }
 
 TEST_CASE("a card that does not read back as it was is found, bit by bit") {

@@ -21,7 +21,7 @@ const std::map<std::string, std::vector<std::string>> commands{
     {"info", {"FILE"}},
     {"card", {"FILE", "--out", ".png", ".tif", ".bmp", "--pick-1", "--end-1", "--lifted"}},
     {"check", {"FILE", "--loom"}},
-    {"render", {"FILE", "--out", "--view", "--trim", "floats", "weft:N", "warp:N", "block"}},
+    {"render", {"FILE", "--out", "--view", "--trim", "--from-pick", "--from-end", "floats", "weft:N", "warp:N", "block"}},
     {"flip", {"FILE", "--pick", "--end", "--out"}},
     {"export", {"FILE", "--loom", "--out"}},
 };

@@ -33,6 +33,7 @@ inline std::optional<std::size_t> number_from(const char* variable, std::size_t 
 }
 
 /// Cases of a property test: 10,000, or what WEAVE_PROPERTY_CASES says (coverage and sanitizer builds lower it).
+/// What is no number of cases fails the test, or it would pass untried.
 inline std::size_t property_cases() {
     return number_from("WEAVE_PROPERTY_CASES", 1).value_or(10000);
 }

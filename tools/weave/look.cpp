@@ -12,6 +12,7 @@
 
 #include <algorithm>
 #include <memory>
+#include <optional>
 
 namespace weave::program {
 
@@ -137,12 +138,19 @@ Result<PictureFormat> picture_format_of(const std::string& file) {
     return Error{ErrorCode::usage, "a picture's name ends in .png or .svg", file};
 }
 
-Status render(Program& program, const std::string& file, const std::string& view, bool trim,
-              const std::string& out) {
+struct Rendering {
+    std::string file, view, out;
+    bool trim = false;
+    std::optional<std::size_t> from_pick, from_end;
+};
+
+Status render(Program& program, const Rendering& wish) {
+    const auto& [file, view, out, trim, from_pick, from_end] = wish;
     WEAVE_TRY(const PictureFormat format, picture_format_of(out));
     WEAVE_TRY(const Cloth cloth, load_cloth(program, file));
     const Progress progress("drawing " + out);
     WEAVE_TRY(PictureRequest request, parse_view(view, *cloth.evaluation.block));
+    WEAVE_CHECK_OK(begin_at(request, *cloth.evaluation.block, from_pick, from_end));
     request.trim = trim;
     WEAVE_TRY(const std::string bytes, draw(cloth.design, cloth.evaluation, request, format));
     WEAVE_CHECK_OK(write_file(out, bytes));
@@ -154,21 +162,24 @@ Status render(Program& program, const std::string& file, const std::string& view
 void add_render(CLI::App& app, Program& program) {
     CLI::App* command = add_command(app, program, "render",
                                     "Draw a design: card, face, back, floats, layers, slices, or the block");
-    const auto file = std::make_shared<std::string>();
-    const auto view = std::make_shared<std::string>();
-    const auto trim = std::make_shared<bool>(false);
-    const auto out = std::make_shared<std::string>();
-    command->add_option("FILE", *file, "the .weave file")->required();
+    const auto wish = std::make_shared<Rendering>();
+    command->add_option("FILE", wish->file, "the .weave file")->required();
     command
-        ->add_option("--view", *view,
+        ->add_option("--view", wish->view,
                      "card, face, back, floats, layers, weft:N, warp:N (pick or end N, from 1) or block")
         ->type_name("VIEW")
         ->required();
-    command->add_flag("--trim", *trim, "leave out yarns that are loose on purpose");
-    command->add_option("-o,--out", *out, "the picture to write: .png or .svg")
+    command->add_flag("--trim", wish->trim, "leave out yarns that are loose on purpose");
+    command
+        ->add_option("--from-pick", wish->from_pick,
+                     "for warp:N and block: begin at this pick, where the cloth is too large to show whole")
+        ->type_name("N");
+    command->add_option("--from-end", wish->from_end, "for weft:N and block: begin at this end")
+        ->type_name("N");
+    command->add_option("-o,--out", wish->out, "the picture to write: .png or .svg")
         ->type_name("FILE")
         ->required();
-    on_run(command, program, [=, &program] { return render(program, *file, *view, *trim, *out); });
+    on_run(command, program, [=, &program] { return render(program, *wish); });
 }
 
 }  // namespace

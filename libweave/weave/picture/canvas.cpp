@@ -17,7 +17,8 @@ struct Canvas::State {
     cairo_surface_t* surface = nullptr;
     cairo_t* cairo = nullptr;
     std::string svg;  ///< written by cairo while it draws
-    Status trouble;   ///< the first failure that cairo itself does not know of
+    std::vector<Mark>* marks = nullptr;
+    Status trouble;  ///< the first failure that cairo itself does not know of
 };
 
 void Canvas::Close::operator()(State* state) const {
@@ -104,9 +105,22 @@ std::uint32_t pixel_of(Colour colour) {
     return std::uint32_t{colour.red} << 16 | std::uint32_t{colour.green} << 8 | colour.blue;
 }
 
+namespace {
+
+/// Brightness as the eye sees it, 0 to 255.
+double lightness(Colour colour) {
+    return 0.299 * colour.red + 0.587 * colour.green + 0.114 * colour.blue;
+}
+
+}  // namespace
+
 Colour ink_on(Colour ground) {
-    const double light = 0.299 * ground.red + 0.587 * ground.green + 0.114 * ground.blue;
-    return light > 140 ? Colour{0x20, 0x20, 0x20} : Colour{0xff, 0xff, 0xff};
+    return lightness(ground) > 140 ? Colour{0x20, 0x20, 0x20} : Colour{0xff, 0xff, 0xff};
+}
+
+Colour readable(Colour colour) {
+    const double most = 95;  // a contrast of more than 5 to 1
+    return mix(colour, {0, 0, 0}, std::max(0.35, 1 - most / std::max(lightness(colour), 1.0)));
 }
 
 std::string printable(std::string_view text, std::size_t most) {
@@ -173,8 +187,20 @@ void Canvas::outline(const Rectangle& place, const Stroke& stroke) {
     stroke_path(m_state->cairo, stroke);
 }
 
+void Canvas::list_marks(std::vector<Mark>* marks) {
+    m_state->marks = marks;
+}
+
+void Canvas::list_line(std::span<const Point> points, const Stroke& stroke) {
+    if (m_state->marks == nullptr) return;
+    Mark mark{Mark::Kind::line, {points.begin(), points.end()}, stroke.colour, stroke.width};
+    mark.dashed = !stroke.dash.empty();
+    m_state->marks->push_back(std::move(mark));
+}
+
 void Canvas::polyline(std::span<const Point> points, const Stroke& stroke) {
     if (points.size() < 2) return;
+    list_line(points, stroke);
     cairo_move_to(m_state->cairo, points[0].x, points[0].y);
     for (const Point point : points.subspan(1)) cairo_line_to(m_state->cairo, point.x, point.y);
     stroke_path(m_state->cairo, stroke);
@@ -191,6 +217,7 @@ void Canvas::lines(std::span<const Point> ends, const Stroke& stroke) {
 
 void Canvas::curve(std::span<const Point> points, const Stroke& stroke) {
     if (points.size() < 4) return;
+    list_line(points, stroke);
     cairo_move_to(m_state->cairo, points[0].x, points[0].y);
     for (std::size_t k = 1; k + 2 < points.size(); k += 3) {
         cairo_curve_to(m_state->cairo, points[k].x, points[k].y, points[k + 1].x, points[k + 1].y,
@@ -249,6 +276,11 @@ void Canvas::yarn(const Rectangle& place, bool along_x, Colour colour) {
 void Canvas::arrow_head(Point tip, Point direction, double length, Colour fill) {
     const double norm = std::hypot(direction.x, direction.y);
     if (norm == 0) return;
+    if (m_state->marks != nullptr) {
+        Mark mark{Mark::Kind::arrow, {tip}, fill, length};
+        mark.direction = {direction.x / norm, direction.y / norm};
+        m_state->marks->push_back(std::move(mark));
+    }
     const double ux = direction.x / norm * length, uy = direction.y / norm * length;
     const Point corners[]{
         tip, {tip.x - ux - uy * 0.5, tip.y - uy + ux * 0.5}, {tip.x - ux + uy * 0.5, tip.y - uy - ux * 0.5}};
@@ -258,6 +290,13 @@ void Canvas::arrow_head(Point tip, Point direction, double length, Colour fill) 
 void Canvas::text(Point at, std::string_view text, const TextStyle& style) {
     cairo_t* cairo = m_state->cairo;
     const std::string clean = printable(text, 400);
+    if (m_state->marks != nullptr) {
+        Mark mark{Mark::Kind::text, {at}, style.colour, style.size};
+        mark.text = clean;
+        mark.anchor = style.anchor;
+        mark.bold = style.bold;
+        m_state->marks->push_back(std::move(mark));
+    }
     choose_font(cairo, style.size, style.bold);
     cairo_text_extents_t extents;
     cairo_text_extents(cairo, clean.c_str(), &extents);
