@@ -43,7 +43,7 @@ struct YarnCurve {
 struct Crossing {
     std::size_t weft = 0, weft_key = 0;  ///< index of the yarn in ClothCurves, and of its key point
     std::size_t warp = 0, warp_key = 0;
-    std::size_t pick = 0, end = 0;       ///< in the whole cloth, from 0
+    std::size_t pick = 0, end = 0;  ///< in the whole cloth, from 0
     bool weft_over = false;
 };
 
@@ -59,14 +59,14 @@ struct ClothCurves {
 };
 
 struct CurveOptions {
-    std::optional<Region> region;     ///< only a part; then neither direction is periodic
+    std::optional<Region> region;       ///< only a part; then neither direction is periodic
     std::optional<WeftMode> weft_mode;  ///< instead of the scene's
 };
 
-/// Lays out the yarns of a cloth. Key points lie at (dx·row, dy·column, dz·level); yarns of one system that change
-/// places in their line are led past one another sideways, so that no two centrelines meet (checked exactly by
-/// first_meeting). In wraparound each feeder's yarn is one curve with a turn round what catches it.
-/// Errors: a region outside the cloth, no yarn left.
+/// Lays out the yarns of a cloth. Key points lie at (dx·row, dy·column, dz·level); yarns of one system that
+/// change places in their line are led past one another sideways, so that no two centrelines meet (checked
+/// exactly by first_meeting). In wraparound each feeder's yarn is one curve with a turn round what catches
+/// it. Errors: a region outside the cloth, no yarn left.
 Result<ClothCurves> cloth_curves(const Design& design, const Block& block, const CurveOptions& options = {});
 
 /// Two centrelines that meet, or come nearer than `least_mm`.
@@ -76,8 +76,8 @@ struct Meeting {
     double distance_mm = 0;
 };
 
-/// The nearest pair of centrelines among those that come nearer to one another than `least_mm`, images of periodic
-/// yarns included, as the interpolating splines through the key points run (spline.hpp).
+/// The nearest pair of centrelines among those that come nearer to one another than `least_mm`, images of
+/// periodic yarns included, as the interpolating splines through the key points run (spline.hpp).
 std::optional<Meeting> first_meeting(const ClothCurves& curves, double least_mm);
 
 }  // namespace weave

@@ -3,7 +3,6 @@
 // first repeat that it falls on, with the number of the repeat in which it really lies.
 
 #include <weave/curve/meeting.hpp>
-
 #include <weave/curve/nearness.hpp>
 
 #include <algorithm>
@@ -45,7 +44,8 @@ class Segments {
     void each_pair(Visit visit) const {
         for (std::size_t cell = 0; cell + 1 < m_first.size(); ++cell) {
             for (std::size_t i = m_first[cell]; i < m_first[cell + 1]; ++i) {
-                for (std::size_t j = m_first[cell]; j < i; ++j) compare(cell, m_entries[i], m_entries[j], visit);
+                for (std::size_t j = m_first[cell]; j < i; ++j)
+                    compare(cell, m_entries[i], m_entries[j], visit);
             }
         }
     }
@@ -53,17 +53,21 @@ class Segments {
   private:
     void add(std::size_t yarn) {
         const Spline spline = spline_of(m_curves.yarns[yarn]);
-        for (std::size_t k = 0; k < spline.segments(); ++k) {
-            Segment segment{yarn, k, bezier(spline, k), {}, {}};
-            segment.low = segment.high = segment.piece[0];
-            for (const Vec3& point : segment.piece) {
-                segment.low = segment.low.cwiseMin(point);
-                segment.high = segment.high.cwiseMax(point);
-            }
-            segment.low.array() -= m_least / 2;
-            segment.high.array() += m_least / 2;
-            m_segments.push_back(std::move(segment));
+        for (std::size_t k = 0; k < spline.segments(); ++k) add(yarn, k, bezier(spline, k));
+        if (spline.segments() > 0 || spline.control.empty()) return;
+        const Vec3& point = spline.control.front();  // cut down to one stack
+        add(yarn, 0, {point, point, point, point});
+    }
+
+    void add(std::size_t yarn, std::size_t index, const CubicPiece& piece) {
+        Segment segment{yarn, index, piece, piece[0], piece[0]};
+        for (const Vec3& point : piece) {
+            segment.low = segment.low.cwiseMin(point);
+            segment.high = segment.high.cwiseMax(point);
         }
+        segment.low.array() -= m_least / 2;
+        segment.high.array() += m_least / 2;
+        m_segments.push_back(std::move(segment));
     }
 
     /// Cells as large as a mean segment, but no more of them than a few times the segments.
@@ -142,8 +146,10 @@ class Segments {
     template <class Visit>
     void compare(std::size_t cell, const Entry& one, const Entry& two, Visit& visit) const {
         const Segment &a = m_segments[one.segment], &b = m_segments[two.segment];
-        const std::array<std::int32_t, 2> repeats{one.repeat[0] - two.repeat[0], one.repeat[1] - two.repeat[1]};
-        const Vec3 moved{is_periodic(0) ? repeats[0] * period(0) : 0, is_periodic(1) ? repeats[1] * period(1) : 0, 0};
+        const std::array<std::int32_t, 2> repeats{one.repeat[0] - two.repeat[0],
+                                                  one.repeat[1] - two.repeat[1]};
+        const Vec3 moved{is_periodic(0) ? repeats[0] * period(0) : 0,
+                         is_periodic(1) ? repeats[1] * period(1) : 0, 0};
         const Vec3 low = a.low.cwiseMax(b.low + moved), high = a.high.cwiseMin(b.high + moved);
         if ((low.array() > high.array()).any()) return;
         if (first_common_cell(a, b, repeats) != std::pair(cell, one.repeat)) return;
@@ -167,7 +173,8 @@ class Segments {
     }
 
     /// Whether b, so many repeats away, is on the same yarn as a and next to it (or is a itself).
-    bool follow_one_another(const Segment& a, const Segment& b, const std::array<std::int32_t, 2>& repeats) const {
+    bool follow_one_another(const Segment& a, const Segment& b,
+                            const std::array<std::int32_t, 2>& repeats) const {
         if (a.yarn != b.yarn) return false;
         const YarnCurve& yarn = m_curves.yarns[a.yarn];
         const auto n = static_cast<std::int64_t>(yarn.keys.size());

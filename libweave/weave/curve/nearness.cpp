@@ -64,7 +64,8 @@ bool search(const CubicPiece& a, const CubicPiece& b, Nearness& best, int depth)
 
 bool stays_off(const CubicPiece& piece, double distance, int depth) {
     const Vec3 from = piece[0], step = piece[3] - piece[0];
-    const double length = step.squaredNorm(), t = length == 0 ? 0 : std::clamp(-from.dot(step) / length, 0.0, 1.0);
+    const double length = step.squaredNorm(),
+                 t = length == 0 ? 0 : std::clamp(-from.dot(step) / length, 0.0, 1.0);
     if ((from + t * step).norm() - stray(piece) > distance) return true;
     if (depth == deepest || place_on(piece, t).norm() <= distance) return false;
     const auto [first, second] = halves(piece);

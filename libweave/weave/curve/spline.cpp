@@ -81,8 +81,7 @@ Vec3 Spline::at(std::ptrdiff_t index) const {
         return control[static_cast<std::size_t>(index - round * n)] + static_cast<double>(round) * shift;
     }
     if (n == 1) return control.front();
-    if (index < 0)
-        return control.front() + static_cast<double>(index) * (control[1] - control[0]);
+    if (index < 0) return control.front() + static_cast<double>(index) * (control[1] - control[0]);
     const Vec3 step = control.back() - control[control.size() - 2];
     return control.back() + static_cast<double>(index - n + 1) * step;
 }
@@ -91,16 +90,16 @@ Vec3 Spline::place(double t) const {
     if (is_point(*this)) return control.front();
     const auto [segment, u] = locate(*this, t);
     const double v = 1 - u;
-    return weighted(*this, segment,
-                    {v * v * v / 6, (4 + u * u * (3 * u - 6)) / 6, (4 + v * v * (3 * v - 6)) / 6, u * u * u / 6});
+    return weighted(
+        *this, segment,
+        {v * v * v / 6, (4 + u * u * (3 * u - 6)) / 6, (4 + v * v * (3 * v - 6)) / 6, u * u * u / 6});
 }
 
 Vec3 Spline::tangent(double t) const {
     if (is_point(*this)) return Vec3::Zero();
     const auto [segment, u] = locate(*this, t);
     const double v = 1 - u;
-    return weighted(*this, segment,
-                    {-v * v / 2, u * (1.5 * u - 2), -v * (1.5 * v - 2), u * u / 2});
+    return weighted(*this, segment, {-v * v / 2, u * (1.5 * u - 2), -v * (1.5 * v - 2), u * u / 2});
 }
 
 Vec3 Spline::bend(double t) const {
