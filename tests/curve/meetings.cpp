@@ -1,21 +1,23 @@
+#include "curve/random_cloth.hpp"
+#include "support/random.hpp"
+
 #include <weave/curve/cloth_curves.hpp>
 #include <weave/curve/spline.hpp>
 #include <weave/design/evaluate.hpp>
 #include <weave/samples/samples.hpp>
 
 #include <catch2/catch.hpp>
+
 #include <cmath>
 #include <string>
-
-#include "curve/random_cloth.hpp"
-#include "support/random.hpp"
 
 using namespace weave;
 using namespace weave::testing;
 
 namespace {
 
-YarnCurve yarn_through(const std::vector<Vec3>& places, bool is_periodic = false, const Vec3& shift = Vec3::Zero()) {
+YarnCurve yarn_through(const std::vector<Vec3>& places, bool is_periodic = false,
+                       const Vec3& shift = Vec3::Zero()) {
     YarnCurve yarn;
     yarn.is_periodic = is_periodic;
     yarn.shift = shift;
@@ -75,13 +77,14 @@ double least_radius(const Design& design) {
 /// Share of the thinnest yarn's radius that no two centrelines come within.
 constexpr double share = 0.02;
 
-void check_apart(const Design& design, const Block& block, const CurveOptions& options, double share_of_radius) {
+void check_apart(const Design& design, const Block& block, const CurveOptions& options,
+                 double share_of_radius) {
     const auto curves = cloth_curves(design, block, options);
     if (!curves) FAIL(curves.error().text());
     const auto meeting = first_meeting(*curves, share_of_radius * least_radius(design));
     if (!meeting) return;
-    FAIL("yarns " << meeting->yarn << " and " << meeting->other << " of " << curves->yarns.size() << " come within "
-                  << meeting->distance_mm << " mm at " << meeting->place.transpose());
+    FAIL("yarns " << meeting->yarn << " and " << meeting->other << " of " << curves->yarns.size()
+                  << " come within " << meeting->distance_mm << " mm at " << meeting->place.transpose());
 }
 
 }  // namespace
@@ -145,7 +148,8 @@ TEST_CASE("Meetings through the repeat are found, of yarns with one another and 
 
 TEST_CASE("A yarn that comes back to itself is found") {
     ClothCurves curves;
-    curves.yarns.push_back(yarn_through({{0, 0, 0}, {2, 0, 0}, {3, 1, 0}, {2, 2, 0}, {1, 1, 0}, {1, -1, 0.01}}));
+    curves.yarns.push_back(
+        yarn_through({{0, 0, 0}, {2, 0, 0}, {3, 1, 0}, {2, 2, 0}, {1, 1, 0}, {1, -1, 0.01}}));
     const auto meeting = first_meeting(curves, 0.1);
     REQUIRE(meeting);
     CHECK(meeting->yarn == 0);
@@ -156,7 +160,9 @@ TEST_CASE("A yarn that comes back to itself is found") {
 TEST_CASE("The least distance agrees with brute force on random curves") {
     for_all(
         [](Random& random) {
-            const auto number = [&](double most) { return most * static_cast<double>(random.between(0, 1000)) / 1000; };
+            const auto number = [&](double most) {
+                return most * static_cast<double>(random.between(0, 1000)) / 1000;
+            };
             ClothCurves curves;
             curves.size_mm = {1 + number(3), 1 + number(3)};
             curves.is_periodic = {random.coin(), random.coin()};
@@ -169,7 +175,8 @@ TEST_CASE("The least distance agrees with brute force on random curves") {
                 const bool goes_on = way < 2 && curves.is_periodic[way];
                 curves.yarns.push_back(yarn_through(
                     places, goes_on,
-                    goes_on ? Vec3(way == 0 ? curves.size_mm[0] : 0, way == 1 ? curves.size_mm[1] : 0, 0) : Vec3::Zero()));
+                    goes_on ? Vec3(way == 0 ? curves.size_mm[0] : 0, way == 1 ? curves.size_mm[1] : 0, 0)
+                            : Vec3::Zero()));
             }
             const double brute = brute_least(curves);
             // Only of different yarns: a random curve also meets itself.
@@ -234,4 +241,19 @@ TEST_CASE("In no region of a random cloth do two centrelines meet") {
             CHECK_FALSE(first_meeting(*curves, share / 2 * least_radius(design)));
         },
         property_cases() / 5);
+}
+
+TEST_CASE("Where many yarns of one line change places at once their centrelines still do not meet") {
+    for_all(
+        [](Random& random) {
+            std::vector<std::uint32_t> t(random.between(1, 5)), p(random.between(1, 5));
+            for (auto& count : t) count = static_cast<std::uint32_t>(random.between(1, 12));
+            for (auto& count : p) count = static_cast<std::uint32_t>(random.between(1, 12));
+            const Block block = random_block(random, t, p);
+            const Design design = random_plan(random);
+            for (const WeftMode mode : {WeftMode::periodic, WeftMode::wraparound}) {
+                check_apart(design, block, {{}, mode}, 1e-5);
+            }
+        },
+        property_cases() / 50);
 }

@@ -1,8 +1,8 @@
 #pragma once
 
-#include <weave/design/design.hpp>
-
 #include "support/random.hpp"
+
+#include <weave/design/design.hpp>
 
 namespace weave::testing {
 
@@ -15,7 +15,8 @@ inline Design random_plan(Random& random) {
     design.weft.feeder_order.clear();
     for (std::size_t k = random.between(1, 5); k > 0; --k) {
         FeederSet set{static_cast<std::uint32_t>(random.between(0, feeders - 1))};
-        if (feeders > 1 && random.between(0, 5) == 0) set.push_back((set.front() + 1) % static_cast<std::uint32_t>(feeders));
+        if (feeders > 1 && random.between(0, 5) == 0)
+            set.push_back((set.front() + 1) % static_cast<std::uint32_t>(feeders));
         if (random.between(0, 9) == 0) set.clear();
         design.weft.feeder_order.push_back(set);
     }

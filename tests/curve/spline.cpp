@@ -1,9 +1,10 @@
+#include "support/random.hpp"
+
 #include <weave/curve/spline.hpp>
 
 #include <catch2/catch.hpp>
-#include <cmath>
 
-#include "support/random.hpp"
+#include <cmath>
 
 using namespace weave;
 using namespace weave::testing;
@@ -121,7 +122,8 @@ TEST_CASE("Resampling to a multiple of the segments keeps the curve") {
 }
 
 TEST_CASE("Resampling to any other number runs through the places asked for") {
-    const Spline spline = interpolate({Vec3(0, 0, 0), Vec3(1, 1, 0), Vec3(2, 0, 0), Vec3(3, 1, 1)}, false, Vec3::Zero());
+    const Spline spline =
+        interpolate({Vec3(0, 0, 0), Vec3(1, 1, 0), Vec3(2, 0, 0), Vec3(3, 1, 1)}, false, Vec3::Zero());
     const Spline five = resample(spline, 5);
     REQUIRE(five.control.size() == 5);
     for (int k = 0; k < 5; ++k) check_near(five.place(k), spline.place(k * 0.75));
@@ -135,7 +137,8 @@ TEST_CASE("Bézier points give the same cubic") {
             const Spline spline = random_spline(random, keys);
             for (std::size_t k = 0; k < spline.segments(); ++k) {
                 const auto b = bezier(spline, k);
-                check_near((b[0] + 3 * b[1] + 3 * b[2] + b[3]) / 8, spline.place(static_cast<double>(k) + 0.5));
+                check_near((b[0] + 3 * b[1] + 3 * b[2] + b[3]) / 8,
+                           spline.place(static_cast<double>(k) + 0.5));
                 check_near(b[0], spline.place(static_cast<double>(k)));
             }
         },

@@ -334,27 +334,37 @@ class Layout {
         }
     }
 
-    /// Lays turns otherwise, and leads picks further aside, until no two yarns come too near.
+    /// Lays turns otherwise, and leads picks further aside, until no two yarns come too near or nothing
+    /// helps.
     Status clear_turns() {
         const double least_mm = share_of_radius * m_radii.thinnest_mm;
-        for (std::size_t tried = 0; tried < most_tries; ++tried) {
+        bool is_changed = true;
+        for (std::size_t tried = 0; is_changed && tried < most_tries; ++tried) {
             assemble();
             const std::vector<CloseSegments> close = close_segments(m_cloth, least_mm);
             if (close.empty()) return {};
-            for (const CloseSegments& pair : close) {
-                if (change_turn(pair.meeting.other, pair.other_segment)) continue;
-                if (change_turn(pair.meeting.yarn, pair.segment)) continue;
-                change_row(pair.meeting.other, pair.other_segment);
-                change_row(pair.meeting.yarn, pair.segment);
-            }
+            is_changed = change(close);
             lay_wefts();
-            std::fill(m_is_changed.begin(), m_is_changed.end(), false);
         }
         assemble();
-        const auto meeting = first_meeting(m_cloth, 1e-3 * least_mm);
+        const auto meeting = first_meeting(m_cloth, 1e-6 * least_mm);
         if (!meeting) return {};
         return invalid("found no way to lay the turns of the weft clear of one another",
                        "pick " + std::to_string(m_cloth.yarns[meeting->yarn].number + 1));
+    }
+
+    bool change(const std::vector<CloseSegments>& close) {
+        m_is_changed.assign(m_turn_variant.size(), false);
+        bool any = false;
+        for (const CloseSegments& pair : close) {
+            const Meeting& at = pair.meeting;
+            if (change_turn(at.other, pair.other_segment) || change_turn(at.yarn, pair.segment)) {
+                any = true;
+            } else if (change_row(at.other, pair.other_segment) || change_row(at.yarn, pair.segment)) {
+                any = true;
+            }
+        }
+        return any;
     }
 
     bool change_turn(std::size_t yarn, std::size_t segment) {
@@ -364,14 +374,17 @@ class Layout {
         std::size_t turn = weft.turn[segment];
         if (turn == WeftPart::none) turn = weft.turn[(segment + 1) % n];
         if (turn == WeftPart::none) return false;
-        m_is_changed.resize(m_turn_variant.size());
         if (!m_is_changed[turn]) ++m_turn_variant[turn];
         m_is_changed[turn] = true;
         return true;
     }
 
-    void change_row(std::size_t yarn, std::size_t segment) {
-        if (yarn < m_wefts_laid.size()) ++m_row_effort[m_wefts_laid[yarn].curve.keys[segment].row];
+    bool change_row(std::size_t yarn, std::size_t segment) {
+        if (yarn >= m_wefts_laid.size()) return false;
+        std::size_t& effort = m_row_effort[m_wefts_laid[yarn].curve.keys[segment].row];
+        if (effort == most_effort) return false;
+        ++effort;
+        return true;
     }
 
     /// Puts the yarns together and finds their crossings.

@@ -52,7 +52,7 @@ class Line {
                 if (keep_apart(found)) return found;
             }
         }
-        return found.empty() ? all_leads(most_keys) : found;
+        return found;
     }
 
   private:

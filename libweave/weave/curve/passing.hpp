@@ -27,11 +27,15 @@ struct Lead {
     std::vector<double> level, aside_mm;  ///< per key point
 };
 
+/// The furthest that lead_past can start on.
+inline constexpr std::size_t most_effort = 5;
+
 /// Leads the yarns of a line past one another (paper, A.3). Where the curves of two of them come within a
 /// quarter of a level from one stack to the next, both are led aside there, each by an amount of its own; in
 /// the stacks themselves no yarn leaves its place, so that what it crosses there is as planned however steep
 /// it runs. The heights of the interpolating splines are the same with and without the additional key points.
-/// Where two key points a stack keep them not well apart, 4 and 8 are tried; `effort` starts further on.
+/// Where two key points a stack do not keep them well apart, a longer way aside and 4 and 8 key points are
+/// tried; `effort`, to most_effort, leaves out so many of the six tries.
 std::vector<Lead> lead_past(const std::vector<LineYarn>& yarns, const LineSpacing& spacing,
                             std::size_t effort = 0);
 
