@@ -280,6 +280,24 @@ TEST_CASE("Wraparound in a cloth that repeats along the warp: an even number of 
     CHECK(open.yarns[1].is_periodic);
 }
 
+TEST_CASE("A yarn that is open within the repeat is cut at its end as well") {
+    // The third pick starts on the wrong side; the last would end where the first begins.
+    Design design;
+    design.scene.weft_mode = WeftMode::wraparound;
+    design.weft.directions = {Direction::left_to_right, Direction::right_to_left, Direction::right_to_left,
+                              Direction::right_to_left};
+    const Block block =
+        woven({{"P0 T0", "T0 P0"}, {"T0 P0", "P0 T0"}, {"P0 T0", "T0 P0"}, {"T0 P0", "P0 T0"}}, 1, 1);
+    const auto curves = cloth_curves(design, block).value();
+    REQUIRE(curves.yarns.size() == 3 + 2);  // picks 1-2, 3, 4
+    for (std::size_t yarn = 0; yarn < 3; ++yarn) {
+        CHECK_FALSE(curves.yarns[yarn].is_periodic);
+        for (std::size_t k = 1; k < curves.yarns[yarn].keys.size(); ++k) {
+            CHECK((curves.yarns[yarn].keys[k].place - curves.yarns[yarn].keys[k - 1].place).norm() < 1);
+        }
+    }
+}
+
 TEST_CASE("Wraparound has a yarn for each feeder, and turns over several rows stay clear of what they pass") {
     Design design = open_design();
     design.scene.weft_mode = WeftMode::wraparound;

@@ -18,7 +18,7 @@ constexpr double share_of_radius = 0.02;
 /// Yarns of neighbouring lines are led aside by at most this share of the spacing of lines.
 constexpr double share_of_line = 0.25;
 /// How often turns are laid otherwise before it is given up.
-constexpr std::size_t most_tries = 20;
+constexpr std::size_t most_tries = 40;
 
 double scaled(double radius_mm, const SystemScene& scene) {
     return radius_mm * scene.radius_scale.value_or(1);
@@ -343,7 +343,7 @@ class Layout {
             assemble();
             const std::vector<CloseSegments> close = close_segments(m_cloth, least_mm);
             if (close.empty()) return {};
-            is_changed = change(close);
+            is_changed = change(close, tried % 2 == 0);
             lay_wefts();
         }
         assemble();
@@ -353,16 +353,15 @@ class Layout {
                        "pick " + std::to_string(m_cloth.yarns[meeting->yarn].number + 1));
     }
 
-    bool change(const std::vector<CloseSegments>& close) {
+    /// Changes one of each pair, first the one yarn, then the other.
+    bool change(const std::vector<CloseSegments>& close, bool other_first) {
         m_is_changed.assign(m_turn_variant.size(), false);
         bool any = false;
         for (const CloseSegments& pair : close) {
-            const Meeting& at = pair.meeting;
-            if (change_turn(at.other, pair.other_segment) || change_turn(at.yarn, pair.segment)) {
-                any = true;
-            } else if (change_row(at.other, pair.other_segment) || change_row(at.yarn, pair.segment)) {
-                any = true;
-            }
+            std::pair one{pair.meeting.yarn, pair.segment}, two{pair.meeting.other, pair.other_segment};
+            if (other_first) std::swap(one, two);
+            any = change_turn(one.first, one.second) || change_turn(two.first, two.second) ||
+                  change_row(one.first, one.second) || change_row(two.first, two.second) || any;
         }
         return any;
     }

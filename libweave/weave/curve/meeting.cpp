@@ -81,16 +81,17 @@ class Segments {
         const double side = std::max((mean / static_cast<double>(m_segments.size())).maxCoeff(), 1e-9);
         m_origin = low;
         const double most = 4 * static_cast<double>(m_segments.size()) + 64;
-        for (double growth = 1;; growth *= 1.25) {
-            double cells = 1;
-            for (int d = 0; d < 3; ++d) {
-                const double length = is_periodic(d) ? period(d) : high[d] - low[d];
-                const double count = std::max(1.0, std::floor(length / (side * growth)));
-                m_count[static_cast<std::size_t>(d)] = static_cast<std::int64_t>(count);
-                m_side[d] = std::max(length / count, 1e-9);
-                cells *= count;
-            }
-            if (cells <= most) return;
+        Vec3 length = high - low;
+        for (const int d : {0, 1}) {
+            if (is_periodic(d)) length[d] = period(d);
+        }
+        Vec3 count = (length / side).array().floor().max(1.0);
+        for (double growth = 1.25; count.prod() > most; growth *= 1.25) {
+            count = (length / (side * growth)).array().floor().max(1.0);
+        }
+        for (int d = 0; d < 3; ++d) {
+            m_count[static_cast<std::size_t>(d)] = static_cast<std::int64_t>(count[d]);
+            m_side[d] = std::max(length[d] / count[d], 1e-9);
         }
     }
 

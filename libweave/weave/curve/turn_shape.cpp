@@ -17,6 +17,20 @@ constexpr double lanes_begin = 0.35, lanes_end = 0.65;
 /// Levels that a turn keeps from a pick that it passes, where there is room.
 constexpr double clear_levels = 0.5;
 
+/// Numbers from 0 to 1 that differ well from variant to variant, 0 for the regular one: multiples of the
+/// irrational numbers of Roberts' sequence in three dimensions.
+double spread(std::size_t variant, std::size_t dimension) {
+    constexpr double steps[] = {0.8191725134, 0.6710436067, 0.5497004779};
+    const double all = static_cast<double>(variant) * steps[dimension];
+    return all - std::floor(all);
+}
+
+/// The same from -1/2 to 1/2.
+double aside(std::size_t variant, std::size_t dimension) {
+    const double part = spread(variant, dimension);
+    return part > 0.5 ? part - 1 : part;
+}
+
 /// The place nearest to `wish` that is `clear_levels` from all of these heights.
 double nearest_free(std::vector<double> heights, double wish) {
     std::sort(heights.begin(), heights.end());
@@ -93,9 +107,9 @@ void TurnShapes::assign_lanes(const std::vector<std::size_t>& bends, double reac
 std::vector<Vec3> TurnShapes::keys(std::size_t number, std::size_t variant) const {
     const WeftBend& bend = m_wefts.bends[number];
     const Vec3 from = end_of(bend, false), to = end_of(bend, true);
-    const double other = static_cast<double>(variant % 5) * 0.11;
-    const double outside = m_lanes[number].outside * (1 - other) * (bend.turn.side == Side::left ? -1 : 1);
-    const double raised = (variant % 2 == 0 ? 0.17 : -0.17) * static_cast<double>(variant);
+    const double outside =
+        m_lanes[number].outside * (1 - spread(variant, 0) / 2) * (bend.turn.side == Side::left ? -1 : 1);
+    const double raised = 2 * aside(variant, 1);
     const auto place = [&](double row, double angle, double level) {
         return Vec3(row, from.y() + outside * std::sin(angle), level);
     };
@@ -195,7 +209,7 @@ bool TurnShapes::passes_above(const WeftBend& outer, const WeftBend& inner) cons
 double TurnShapes::bulge_of(std::size_t number, std::size_t variant) const {
     const WeftBend& bend = m_wefts.bends[number];
     const std::size_t row = m_wefts.parts[bend.from].row;
-    if (row != m_wefts.parts[bend.to].row || bend.closes) return 0;
+    if (row != m_wefts.parts[bend.to].row || bend.closes) return aside(variant, 2);
     const double a = end_of(bend, false).z(), b = end_of(bend, true).z();
     std::size_t between = 0, later = 0;
     each_passing(number, row, [&](const WeftPart& part, double level) {
@@ -203,9 +217,9 @@ double TurnShapes::bulge_of(std::size_t number, std::size_t variant) const {
         ++between;
         later += part.pick > bend.turn.to_pick ? 1 : 0;
     });
-    if (between == 0 && variant == 0) return 0;
+    if (between == 0) return aside(variant, 2);
     const double wish = 2 * later >= between ? -0.5 : 0.5;
-    return variant % 2 == 0 ? wish : -wish;
+    return wish + 2 * aside(variant, 2);
 }
 
 }  // namespace weave

@@ -28,8 +28,13 @@ class Wrapping {
         std::vector<Pick> all;
         for (std::size_t k = 0; k < times; ++k) all.insert(all.end(), picks.begin(), picks.end());
         const WeftWay way = weft_way(repeated(block.card_image(), times), all);
+        std::vector<Turn> turns;
         for (const Turn& turn : way.turns) {
-            if (turn.from_pick / picks.size() == own) add(turn, own * picks.size(), picks.size());
+            if (turn.from_pick / picks.size() == own) turns.push_back(turn);
+        }
+        for (const Turn& turn : turns) {
+            const bool closes = turn.to_pick >= (own + 1) * picks.size();
+            if (!closes || is_ring(turn.feeder, turns)) add(turn, own * picks.size(), picks.size());
         }
         pull_in();
     }
@@ -37,6 +42,14 @@ class Wrapping {
     WeftParts parts() && { return std::move(m_parts); }
 
   private:
+    /// Whether a feeder's yarn turns after each of its picks. One that is open anywhere is cut between the
+    /// repeats as well, so that all of it lies in the one.
+    bool is_ring(std::uint32_t feeder, const std::vector<Turn>& turns) const {
+        const auto is_its = [&](const auto& one) { return one.feeder == feeder; };
+        return std::count_if(turns.begin(), turns.end(), is_its) ==
+               std::count_if(m_parts.parts.begin(), m_parts.parts.end(), is_its);
+    }
+
     /// Pick numbers of a turn less `before`.
     void add(Turn turn, std::size_t before, std::size_t picks) {
         turn.from_pick -= before;

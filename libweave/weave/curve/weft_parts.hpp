@@ -41,7 +41,7 @@ WeftParts straight_parts(const Block& block, const std::vector<Pick>& picks);
 /// Every pick between its turns, as loom/weft_way.hpp finds them. A crossed pick runs from edge to edge, and
 /// so do its neighbours on the side where it turns to them. In a cloth that repeats along the warp
 /// (`repeats`) the way is that of the middle of three repeats, and a feeder whose last pick ends on the side
-/// where its first begins turns into the next repeat.
+/// where its first begins turns into the next repeat, if it turns after all the others too.
 WeftParts wrapped_parts(const Block& block, const std::vector<Pick>& picks, bool repeats);
 
 /// The parts within a region; a yarn is cut where it leaves it.
