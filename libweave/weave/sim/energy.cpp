@@ -97,7 +97,7 @@ double Energy<Real>::add_fields(const std::vector<Real>& state, std::vector<Real
 }
 
 template <class Real>
-double Energy<Real>::safe_share(const std::vector<Real>& state, const std::vector<Real>& change) {
+double Energy<Real>::safe_share(const std::vector<Real>& state, const std::vector<Real>& change, double most) {
     const std::size_t samples = m_fabric.samples();
     m_moved.resize(3 * samples);
     const std::vector<SegmentPlace>& segments = m_fabric.segment_places();
@@ -124,7 +124,7 @@ double Energy<Real>::safe_share(const std::vector<Real>& state, const std::vecto
             if (change_of_pair > 0) share = std::min(share, 0.45 * static_cast<double>(apart.norm()) / change_of_pair);
         }
         return share;
-    }, 1.0);
+    }, most);
 }
 
 template class Energy<float>;

@@ -25,9 +25,9 @@ class Energy {
     [[nodiscard]] const Executor& executor() const { return m_executor; }
     [[nodiscard]] std::size_t evaluations() const { return m_evaluations; }
 
-    /// How much of a change of state may be made at once so that no two yarns can pass through one another: no pair of
+    /// How much of a change of state, at most `most`, may be made at once so that no two yarns can pass through one another: no pair of
     /// near samples comes closer by half its distance or more, and no sample moves by a quarter of the least reach.
-    double safe_share(const std::vector<Real>& state, const std::vector<Real>& change);
+    double safe_share(const std::vector<Real>& state, const std::vector<Real>& change, double most);
 
   private:
     void gather(std::vector<Real>& gradient) const;

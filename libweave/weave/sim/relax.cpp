@@ -3,13 +3,15 @@
 #include <algorithm>
 #include <chrono>
 #include <cmath>
+#include <cstdio>
+#include <cstdlib>
 
 namespace weave::sim {
 
 namespace {
 
 /// Below this residual the matrix is exact.
-constexpr double exact_below = 1e-2;
+const double exact_below = getenv("EX") ? atof(getenv("EX")) : 1e-2;
 
 double seconds_since(std::chrono::steady_clock::time_point start) {
     return std::chrono::duration<double>(std::chrono::steady_clock::now() - start).count();
@@ -116,6 +118,7 @@ class Newton {
             if (cg.negative) {
                 m_result.curves_down = true;
                 m_damping += std::max(1.5 * lack(cg.negative_direction), m_damping);
+                if (getenv("DBG")) printf("    negative after %zu: damping %.3g\n", cg.iterations, m_damping);
                 continue;
             }
             if (accept_step()) return true;
@@ -154,33 +157,63 @@ class Newton {
 
     bool accept_step() {
         m_hessian.to_slots(m_change_rows, m_change);
-        double slope = 0;
-        for (std::size_t i = 0; i < m_change_rows.size(); ++i) slope -= m_force[i] * m_change_rows[i];
-        if (!(slope < 0)) return false;
-        double share = m_energy.safe_share(m_state, m_change);
-        const bool cut = share < 1;
-        const std::vector<Real> before = m_state;
+        m_slope = 0;
+        for (std::size_t i = 0; i < m_change_rows.size(); ++i) m_slope -= m_force[i] * m_change_rows[i];
+        if (!(m_slope < 0)) return false;
+        const double most = m_energy.safe_share(m_state, m_change, longest_stretch);
+        double share = std::min(1.0, most);
+        m_before = m_state;
         for (int halving = 0; halving < 8; ++halving, share /= 2) {
-            m_state = before;
-            for (std::size_t i = 0; i < m_state.size(); ++i) m_state[i] += static_cast<Real>(share) * m_change[i];
-            m_energy.fabric().follow(m_state);
-            const double value = m_energy.evaluate(m_state, m_trial);
+            const double value = try_share(share);
             const double gain = m_value - value, noise = 1e-12 * std::abs(m_value);
-            const bool falls = gain >= -1e-4 * share * slope;
+            const bool falls = gain >= -1e-4 * share * m_slope;
             const bool settles = std::abs(gain) <= noise && residual_of(m_trial) < m_result.residual;
             if (!falls && !settles) continue;
-            const double expected = -share * slope * (1 - share / 2);
+            const double expected = -share * m_slope * (1 - share / 2);
             if (halving == 0 && gain > 0.5 * expected) m_damping = m_damping < 1e-8 ? 0 : m_damping / 4;
             if (halving > 1) m_damping = std::max(2 * m_damping, 1e-6);
-            m_value = value;
-            m_gradient.swap(m_trial);
+            const bool goes_on = falls && halving == 0 && gain > 1.5 * expected;
+            if (getenv("DBG")) printf("    share %.3g most %.3g halv %d damp %.2g gain/exp %.3g cg %zu\n", share, most, halving, m_damping, gain / expected, m_result.cg_iterations);
+            take(value);
+            if (goes_on) stretch(share, most);
             return true;
         }
-        m_state = before;
+        m_state = m_before;
         m_energy.evaluate(m_state, m_trial);
         return false;
     }
 
+    double try_share(double share) {
+        m_state = m_before;
+        for (std::size_t i = 0; i < m_state.size(); ++i) m_state[i] += static_cast<Real>(share) * m_change[i];
+        m_energy.fabric().follow(m_state);
+        return m_energy.evaluate(m_state, m_trial);
+    }
+
+    void take(double value) {
+        m_value = value;
+        m_gradient.swap(m_trial);
+    }
+
+    /// The energy fell by more than the matrix told, so it curves less along the step: twice as far, while that pays.
+    void stretch(double share, double most) {
+        std::vector<Real> best = m_state;
+        while (share < most) {
+            const double longer = std::min(2 * share, most), before = m_value;
+            const double value = try_share(longer);
+            if (value >= before) break;
+            take(value);
+            best = m_state;
+            if (before - value < -0.1 * (longer - share) * m_slope) break;
+            share = longer;
+        }
+        if (best != m_state) {
+            m_state = best;
+            m_energy.evaluate(m_state, m_gradient);
+        }
+    }
+
+    static constexpr double longest_stretch = 64;
     static constexpr std::size_t most_cg = 200;
 
     Energy<Real>& m_energy;
@@ -189,7 +222,8 @@ class Newton {
     Hessian<Real> m_hessian;
     BlockMatrix m_matrix;
     IncompleteCholesky m_preconditioner;
-    std::vector<Real> m_gradient, m_trial, m_change;
+    std::vector<Real> m_gradient, m_trial, m_change, m_before;
+    double m_slope = 0;
     std::vector<double> m_force, m_change_rows, m_product;
     std::vector<float> m_scale;
     double m_value = 0, m_damping = 1e-3, m_damped = 0;
