@@ -76,26 +76,59 @@ std::size_t count_of(const Yarns& yarns, System system) {
     return static_cast<std::size_t>(std::ranges::count(yarns.yarns, system, &SimulatedYarn::system));
 }
 
-PageText words_of(const Yarns& yarns, const ClothView& view, const TubeScene& scene) {
-    PageText text;
-    text.title = printable(yarns.title.empty() ? "Relaxed cloth" : yarns.title, 80);
-    text.subtitle = "relaxed yarns, seen " + side_words(view) + "  ·  " +
-                    counted(count_of(yarns, System::weft), "weft") + " × " +
-                    counted(count_of(yarns, System::warp), "warp") + "  ·  coloured by " +
-                    words_of(view.colour).subtitle;
-    std::string note = "Shown " + size_words(scene.size) + " (x × y × z)";
-    if (view.repeat[0] * view.repeat[1] > 1)
-        note += ", the piece " + std::to_string(view.repeat[0]) + " × " + std::to_string(view.repeat[1]) +
-                " times";
-    if (yarns.region.last_row + 1 < yarns.cloth_rows + yarns.region.first_row ||
-        yarns.region.last_column + 1 < yarns.cloth_columns + yarns.region.first_column) {
-        note += ", rows " + std::to_string(yarns.region.first_row + 1) + " to " +
-                std::to_string(yarns.region.last_row + 1) + " of " + std::to_string(yarns.cloth_rows) +
-                " and columns " + std::to_string(yarns.region.first_column + 1) + " to " +
-                std::to_string(yarns.region.last_column + 1) + " of " + std::to_string(yarns.cloth_columns);
+/// The text, cut with an ellipsis where it is wider than that.
+std::string fitting(const std::string& text, double width, double size, bool bold) {
+    for (std::size_t most = 80; most > 1; --most) {
+        std::string cut = printable(text, most);
+        if (Canvas::text_width(cut, size, bold) <= width) return cut;
     }
-    if (view.cut) note += ". Cut at " + view.cut->words + "; flat discs are yarns cut through";
-    text.notes.push_back(note + ".");
+    return {};
+}
+
+/// Parts of a sentence set in lines of at most this width.
+std::vector<std::string> in_lines(const std::vector<std::string>& parts, const char* between, double width) {
+    std::vector<std::string> lines;
+    for (const std::string& part : parts) {
+        const std::string longer = lines.empty() ? part : lines.back() + between + part;
+        if (lines.empty() || Canvas::text_width(longer, Page::small_size) > width) {
+            lines.push_back(fitting(part, width, Page::small_size, false));
+        } else {
+            lines.back() = longer;
+        }
+    }
+    return lines;
+}
+
+std::vector<std::string> notes_of(const Yarns& yarns, const ClothView& view, const TubeScene& scene) {
+    std::vector<std::string> parts{"Shown: " + size_words(scene.size) + " (x × y × z)"};
+    if (view.repeat[0] * view.repeat[1] > 1)
+        parts.push_back("the piece " + std::to_string(view.repeat[0]) + " × " +
+                        std::to_string(view.repeat[1]) + " times");
+    const Region& region = yarns.region;
+    if (region.last_row - region.first_row + 1 < yarns.cloth_rows)
+        parts.push_back("rows " + std::to_string(region.first_row + 1) + " to " +
+                        std::to_string(region.last_row + 1) + " of " + std::to_string(yarns.cloth_rows));
+    if (region.last_column - region.first_column + 1 < yarns.cloth_columns)
+        parts.push_back("columns " + std::to_string(region.first_column + 1) + " to " +
+                        std::to_string(region.last_column + 1) + " of " +
+                        std::to_string(yarns.cloth_columns));
+    if (view.cut) parts.push_back("cut at " + view.cut->words + ", where flat discs are yarns cut through");
+    return parts;
+}
+
+PageText words_of(const Yarns& yarns, const ClothView& view, const TubeScene& scene) {
+    const double width = static_cast<double>(view.width) - 2 * Page::margin;
+    PageText text;
+    text.title = fitting(yarns.title.empty() ? "Relaxed cloth" : yarns.title, width, Page::title_size, true);
+    std::vector<std::string> lines = in_lines({"relaxed yarns, seen " + side_words(view),
+                                               counted(count_of(yarns, System::weft), "weft") + " × " +
+                                                   counted(count_of(yarns, System::warp), "warp"),
+                                               std::string("coloured by ") + words_of(view.colour).subtitle},
+                                              "  ·  ", width);
+    text.subtitle = lines.front();
+    text.notes.assign(lines.begin() + 1, lines.end());
+    lines = in_lines(notes_of(yarns, view, scene), "; ", width);
+    text.notes.insert(text.notes.end(), lines.begin(), lines.end());
     return text;
 }
 

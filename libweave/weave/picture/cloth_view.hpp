@@ -42,13 +42,13 @@ struct ClothView {
 struct ClothWords {
     /// `top`, `bottom`, `front`, `back`, `left`, `right`, `corner` (the default), or `AZIMUTH,ELEVATION` in
     /// degrees. `top` and `bottom` show the cloth as the pictures of face and back do.
-    std::string side;
+    std::string side{};
     /// `x=N`, `y=N` or `z=N` in mm: what lies between the viewer and this plane is cut away. Or a point and a
     /// normal, `PX,PY,PZ:NX,NY,NZ`.
-    std::string cut;
-    std::string colour;  ///< `yarn`, `strain`, `contact` or `moved`
-    std::string repeat;  ///< `NxM`, pieces along x and along y, 1 to 100 each
-    std::string size;    ///< `WIDTHxHEIGHT` in pixels, 400x300 to 8000x6000
+    std::string cut{};
+    std::string colour{};  ///< `yarn`, `strain`, `contact` or `moved`
+    std::string repeat{};  ///< `NxM`, pieces along x and along y, 1 to 100 each
+    std::string size{};    ///< `WIDTHxHEIGHT` in pixels, 400x300 to 8000x6000
     bool perspective = false;
 };
 

@@ -156,7 +156,7 @@ class SceneMaker {
         const double near = 1.5 * m_yarns.yarns[number].radius_mm;
         for (std::size_t k = 0; k + 1 < knots.size(); ++k) {
             TubePiece piece = piece_between(number, knots[k], knots[k + 1], move);
-            if (is_cut_away(piece)) continue;
+            if (m_scene.cut && !trim(piece)) continue;
             if (knots[k].along < near) piece.plane_from = start;
             if (knots.back().along - knots[k + 1].along < near) piece.plane_to = end;
             m_scene.pieces.push_back(piece);
@@ -177,12 +177,22 @@ class SceneMaker {
         return piece;
     }
 
-    [[nodiscard]] bool is_cut_away(const TubePiece& piece) const {
-        if (!m_scene.cut) return false;
-        const auto above = [&](const Vec3& place) {
-            return m_scene.cut->normal.dot(place) - m_scene.cut->height >= piece.radius;
+    /// Takes off the ends of a piece that lie more than a radius beyond the cut, so that it is not framed by
+    /// what nobody sees; false where nothing is left.
+    [[nodiscard]] bool trim(TubePiece& piece) const {
+        const auto beyond = [&](const Vec3& place) {
+            return m_scene.cut->normal.dot(place) - m_scene.cut->height - piece.radius;
         };
-        return above(piece.from) && above(piece.to);
+        const double from = beyond(piece.from), to = beyond(piece.to);
+        if (from >= 0 && to >= 0) return false;
+        if (from <= 0 && to <= 0) return true;
+        const double share = from / (from - to);
+        const Vec3 place = piece.from + share * (piece.to - piece.from);
+        const float value =
+            piece.value_from + static_cast<float>(share) * (piece.value_to - piece.value_from);
+        (from > 0 ? piece.from : piece.to) = place;
+        (from > 0 ? piece.value_from : piece.value_to) = value;
+        return true;
     }
 
     const Yarns& m_yarns;
@@ -191,12 +201,22 @@ class SceneMaker {
     TubeScene m_scene;
 };
 
-/// The box round all pieces, in their own axes.
-Eigen::AlignedBox3d box_round(const std::vector<TubePiece>& pieces) {
+/// The box round all pieces, in the cloth's axes, with ends that are flat.
+Eigen::AlignedBox3d box_round(const TubeScene& scene) {
     Eigen::AlignedBox3d box;
-    for (const TubePiece& piece : pieces) {
-        const Vec3 room = Vec3::Constant(piece.radius);
-        for (const Vec3& end : {piece.from, piece.to}) box.extend(end - room).extend(end + room);
+    const auto add = [&](const Vec3& place, const Eigen::Vector3f& tangent, double radius) {
+        // A disc across the yarn is as wide along an axis as the sine between the two.
+        const Vec3 room = radius * (1 - tangent.cast<double>().array().square()).max(0).sqrt().matrix();
+        box.extend(place - room).extend(place + room);
+    };
+    for (const TubePiece& piece : scene.pieces) {
+        add(piece.from, piece.tangent_from, piece.radius);
+        add(piece.to, piece.tangent_to, piece.radius);
+    }
+    for (int axis = 0; scene.cut && axis < 3; ++axis) {
+        const double way = scene.cut->normal[axis];
+        if (way == 1) box.max()[axis] = std::min(box.max()[axis], scene.cut->height);
+        if (way == -1) box.min()[axis] = std::max(box.min()[axis], -scene.cut->height);
     }
     return box;
 }
@@ -254,9 +274,11 @@ Result<TubeScene> make_scene(const Yarns& yarns, const ClothView& view, TubeCame
     } else {
         set_range(scene, view.colour);
     }
-    const Eigen::AlignedBox3d box = box_round(scene.pieces);
+    const Eigen::AlignedBox3d box = box_round(scene);
     scene.size = box.sizes();
-    camera.aim(box.center(), box.sizes().norm() / 2, view.perspective);
+    double thickest = 0;
+    for (const TubePiece& piece : scene.pieces) thickest = std::max(thickest, piece.radius);
+    camera.aim(box.center(), box.sizes().norm() / 2 + thickest, view.perspective);
     turn_to(scene, camera);
     return scene;
 }

@@ -15,7 +15,7 @@ struct TubeScene {
     std::optional<Plane> cut;
     std::vector<Colour> colours;  ///< of each yarn; empty where values colour the pieces
     double low = 0, high = 1;     ///< the values at both ends of the colour map
-    Vec3 size{0, 0, 0};           ///< of the cloth shown, mm, before it is cut
+    Vec3 size{0, 0, 0};           ///< of what is shown, along the cloth's axes, mm
 };
 
 /// The yarns as straight pieces that stray less than a twentieth of the radius from them, what is cut away

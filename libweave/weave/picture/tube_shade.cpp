@@ -169,8 +169,10 @@ Light shaded(const Light& colour, const Vec3& normal, const Vec3& way, float hid
     const float edge = static_cast<float>(std::min(1.0, facing / 0.45)), rim = edge * (2 - edge);
     const float shine =
         static_cast<float>(std::pow(std::max(0.0, normal.dot((lamp - way).normalized())), 30)) * 0.06F * open;
-    if (even)
-        return colour * ((0.42F + 0.62F * lit * open) * (0.45F + 0.55F * open) * (0.6F + 0.4F * rim) + 0.08F);
+    if (even) {
+        const float light = (0.42F + 0.62F * lit * open) * (0.45F + 0.55F * open) * (0.6F + 0.4F * rim);
+        return colour * (light + 0.08F) + shine;
+    }
     const float light = (0.34F + 0.16F * sky) * open + 0.74F * lit * std::sqrt(open) * (0.3F + 0.7F * open);
     return colour * light * (0.50F + 0.50F * rim) + shine;
 }
