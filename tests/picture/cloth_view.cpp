@@ -344,6 +344,14 @@ TEST_CASE("what cannot be drawn is refused with its reason") {
     for (Vec3& place : wild.yarns[0].spline.control) place *= 1e8;
     CHECK_NOTHROW(drawn(wild, view_of({.size = "400x300"})));
     CHECK(refusal(plain_weave(), view_of({.repeat = "100x100"})).message.find("pieces") != std::string::npos);
+    Yarns lump = cross();
+    SimulatedYarn& thick = lump.yarns[0];
+    for (int k = 0; k < 20'000; ++k) thick.spline.control.push_back({1e-6 * k, 0, 0});
+    thick.planned = thick.spline.control;
+    thick.strain.resize(thick.planned.size());
+    thick.contact_N.resize(thick.planned.size());
+    thick.radius_mm = 50;
+    CHECK(refusal(lump, {}).message.find("so thick") != std::string::npos);
     Yarns uneven = cross();
     uneven.yarns[0].strain.clear();
     CHECK(refusal(uneven, {}).code == ErrorCode::invalid);

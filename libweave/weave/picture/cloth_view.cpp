@@ -181,6 +181,20 @@ void draw_scale(Canvas& canvas, const TubeCamera& camera, Point right_end) {
     canvas.text({x - width / 2, y - 9}, short_number(length) + " mm", {.size = 12, .anchor = Anchor::middle});
 }
 
+/// Refuses pieces so thick that thousands lie over one another everywhere: no cloth, and hours of work.
+Status check_cover(const TubeScene& scene, const TubeCamera& camera, double pixels) {
+    constexpr double most_layers = 5000;
+    double covered = 0;
+    for (const TubePiece& piece : scene.pieces) {
+        for (const Vec3& end : {piece.from, piece.to}) {
+            const Rectangle box = camera.on_screen(camera.box_of(end, piece.radius));
+            covered += box.width * box.height / 2;
+        }
+    }
+    if (covered <= most_layers * pixels) return {};
+    return invalid("the yarns are so thick, and lie so close, that they cannot be told apart in a picture");
+}
+
 Result<std::string> draw_page(const Yarns& yarns, const ClothView& view) {
     TubeCamera camera(view.azimuth_deg, view.elevation_deg);
     WEAVE_TRY(const TubeScene scene, make_scene(yarns, view, camera));
@@ -196,6 +210,7 @@ Result<std::string> draw_page(const Yarns& yarns, const ClothView& view) {
     const auto wide = static_cast<double>(width), high = static_cast<double>(height);
     const double rim = 0.02 * std::min(wide, high);
     camera.fit(box_of(scene, camera), {rim, rim, wide - 2 * rim, high - 2 * rim});
+    WEAVE_CHECK_OK(check_cover(scene, camera, wide * high));
     const std::vector<std::uint32_t> pixels = render(scene, camera, width, height);
     page.canvas.pixels(static_cast<std::size_t>(body.x), static_cast<std::size_t>(body.y), width, height,
                        [&](std::size_t row, std::span<std::uint32_t> out) {

@@ -60,7 +60,8 @@ inline constexpr std::size_t most_tube_pieces = 2'000'000;
 
 /// A shaded picture of relaxed cloth, as PNG; the same content gives the same bytes, whatever the number of
 /// processors. Errors: no yarn, a cut that leaves nothing, a repeat where the piece is not periodic, more
-/// pieces than most_tube_pieces, SVG (there is none of this view).
+/// pieces than most_tube_pieces, yarns far thicker than their pieces are long, SVG (there is none of this
+/// view).
 Result<std::string> draw_cloth(const Yarns& yarns, const ClothView& view);
 
 }  // namespace weave
