@@ -6,7 +6,8 @@ namespace weave {
 
 namespace {
 
-constexpr double swatch_side = 12, swatch_gap = 18, row_height = 20, title_size = 16, small_size = 11.5;
+constexpr double swatch_side = 12, swatch_gap = 18, row_height = 20;
+constexpr double small_size = Page::small_size;
 
 double swatch_width(const Swatch& swatch) {
     return swatch_side + 6 + Canvas::text_width(swatch.text, small_size) + swatch_gap;
