@@ -136,3 +136,45 @@ TEST_CASE("a rejected flip names the yarns in the way as people count them") {
     REQUIRE_FALSE(flip(block, 0, 3));
     REQUIRE(flip(block, 1, 1));
 }
+
+TEST_CASE("many flips at once come to the same as one after the other, refusals in their order") {
+    for_all(
+        [](Random& random) {
+            const Block block = random_block(random);
+            std::vector<Flip> flips;
+            for (std::size_t k = random.between(0, 20); k > 0; --k)
+                flips.push_back(
+                    {random.between(0, block.picks()), random.between(0, block.ends()), random.coin()});
+            Block expected = block;
+            std::vector<RefusedFlip> refused;
+            for (const Flip& flip : flips) {
+                FlippedBlock next = apply_flips(expected, std::span(&flip, 1));
+                expected = std::move(next.block);
+                refused.insert(refused.end(), next.refused.begin(), next.refused.end());
+            }
+            const FlippedBlock made = apply_flips(block, flips);
+            REQUIRE(made.block == expected);
+            REQUIRE(made.refused.size() == refused.size());
+            for (std::size_t k = 0; k < refused.size(); ++k) {
+                REQUIRE(made.refused[k].flip == refused[k].flip);
+                REQUIRE(made.refused[k].reason == refused[k].reason);
+            }
+        },
+        property_cases() / 5);
+}
+
+TEST_CASE("flips in one stack leave no stacks behind on their way") {
+    constexpr std::uint32_t yarns = 300;
+    const Block block = make_block({yarns}, {yarns}, [](std::size_t, std::size_t) {
+                            std::vector<Slot> slots;
+                            for (std::size_t k = 0; k < yarns; ++k)
+                                slots.push_back(Slot::weft(k)), slots.push_back(Slot::warp(k));
+                            return Stack(std::move(slots));
+                        }).value();
+    std::vector<Flip> flips;
+    for (std::size_t k = 0; k < yarns; ++k) flips.push_back({k, k, true});
+    const FlippedBlock flipped = apply_flips(block, flips);
+    CHECK(flipped.refused.empty());
+    CHECK(flipped.block.stacks().size() == 1);
+    for (std::size_t k = 0; k < yarns; ++k) CHECK(flipped.block.weft_over(k, k));
+}

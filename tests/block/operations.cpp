@@ -191,12 +191,34 @@ TEST_CASE("attaching names the row or column in which blocks differ") {
     const Block deeper = random_block(random, {1, 2, 3}, {2, 2}),
                 longer = random_block(random, {1, 2}, {2, 2});
     REQUIRE(attach(one, wider, Face::plus_x).error().message ==
-            "cannot attach: column 1 has 2 ends in one block and 3 in the other");
+            "cannot attach: column 1 has 2 ends in the block and 3 in the other");
     REQUIRE(attach(one, deeper, Face::minus_y).error().message ==
-            "cannot attach: row 2 has 3 picks in one block and 1 in the other");
-    REQUIRE_THAT(attach(one, longer, Face::plus_y).error().message, Catch::Contains("3 and 2 rows"));
-    REQUIRE_THAT(attach(one, longer, Face::plus_z).error().message, Catch::Contains("3 rows and 2 columns"));
+            "cannot attach: row 2 has 3 picks in the other and 1 in the block");
+    REQUIRE(attach(one, longer, Face::plus_y).error().message ==
+            "the block has 3 rows and the other 2, which must be equal on the faces that meet");
     REQUIRE(attach(one, longer, Face::plus_x));
+}
+
+TEST_CASE("attaching says which block has what, on whichever face") {
+    Random random(1);
+    const Block toe = random_block(random, {1, 2, 1}, {2, 2}), sole = random_block(random, {1, 2, 3}, {2, 3}),
+                heel = random_block(random, {1, 2}, {2});
+    const std::vector<std::string> toe_sole{"toe", "sole"}, toe_heel{"toe", "heel"};
+    CHECK(attach(toe, sole, Face::plus_x, toe_sole).error().message ==
+          "cannot attach: column 1 has 2 ends in 'toe' and 3 in 'sole'");
+    CHECK(attach(toe, sole, Face::minus_x, toe_sole).error().message ==
+          "cannot attach: column 1 has 3 ends in 'sole' and 2 in 'toe'");
+    CHECK(attach(toe, sole, Face::plus_y, toe_sole).error().message ==
+          "cannot attach: row 2 has 1 pick in 'toe' and 3 in 'sole'");
+    CHECK(attach(toe, sole, Face::minus_y, toe_sole).error().message ==
+          "cannot attach: row 2 has 3 picks in 'sole' and 1 in 'toe'");
+    CHECK(attach(toe, heel, Face::plus_x, toe_heel).error().message ==
+          "'toe' has 2 columns and 'heel' 1, which must be equal on the faces that meet");
+    CHECK(attach(toe, heel, Face::plus_z, toe_heel).error().message ==
+          "'toe' has 3 rows and 2 columns, 'heel' 2 rows and 1 column; on top of each other they must be "
+          "equal");
+    CHECK_THAT(attach(toe, heel, Face::minus_z, toe_heel).error().message,
+               Catch::StartsWith("'heel' has 2 rows and 1 column, 'toe' 3 rows and 2 columns;"));
 }
 
 TEST_CASE("a stencil takes each stack from the block that it names") {
@@ -237,8 +259,11 @@ TEST_CASE("a stencil of blocks of different sizes fits where their repeated coun
     map.blocks[7] = 0;
     const std::vector<BlockPtr> differ{share(random_block(random, {2}, {1, 3})),
                                        share(random_block(random, {2, 2, 1}, {1, 3}))};
-    REQUIRE_THAT(stencil(differ, map).error().message,
-                 Catch::Contains("blocks 0 and 1") && Catch::Contains("row 2 has 2 picks"));
+    REQUIRE(stencil(differ, map).error().message ==
+            "block 0 and block 1 do not fit together: row 2 has 2 picks in block 0 and 1 in block 1");
+    const std::vector<std::string> names{"ground", "figure"};
+    REQUIRE(stencil(differ, map, names).error().message ==
+            "'ground' and 'figure' do not fit together: row 2 has 2 picks in 'ground' and 1 in 'figure'");
     const std::vector<BlockPtr> wide{share(random_block(random, {2}, {1, 3})),
                                      share(random_block(random, {2}, {1, 2}))};
     REQUIRE_THAT(stencil(wide, map).error().message, Catch::Contains("column 1 has 3 ends"));
@@ -299,4 +324,23 @@ TEST_CASE("no operation makes a block higher than the limit, however few yarns i
     CHECK(!tile(high, 1, 1, 2));
     CHECK(!attach(high, high, Face::plus_z));
     CHECK(attach(high, high, Face::plus_x));
+}
+
+TEST_CASE("renumbering a block whose table holds equal stacks twice leaves the other rows as they are") {
+    const Stack one({Slot::weft(0), Slot::warp(0)}), other({Slot::warp(0), Slot::weft(0)});
+    const Block block = Block::make({1, 1}, {1}, {one, one, other}, {1, 2}).value();
+    const std::vector<std::size_t> order{0};
+    CHECK(renumber_row(block, 0, order).value() == block);
+    const Block wide = Block::make({1}, {1, 1}, {one, one, other}, {1, 2}).value();
+    CHECK(renumber_column(wide, 0, order).value() == wide);
+}
+
+TEST_CASE("renumbering again and again leaves no stacks behind that no cell uses") {
+    const std::vector<std::size_t> order{1, 2, 0};
+    Block block = make_block({3, 3}, {1}, [](std::size_t, std::size_t) {
+                      return Stack({Slot::weft(0), Slot::warp(0), Slot::weft(1), Slot::weft(2)});
+                  }).value();
+    for (int k = 0; k < 2; ++k) block = renumber_row(block, 0, order).value();
+    CHECK(block.stacks().size() == 2);
+    CHECK(renumber_row(block, 0, order)->stacks().size() == 1);
 }

@@ -1,6 +1,7 @@
 #include <weave/block/stack.hpp>
 
 #include <block/brute.hpp>
+#include <support/memory.hpp>
 #include <support/random.hpp>
 
 using namespace weave;
@@ -114,4 +115,65 @@ TEST_CASE("a transposed card has picks and ends exchanged") {
             REQUIRE(turned.transposed() == card);  // the padding stays 0
         },
         2000);
+}
+
+TEST_CASE("a stack that is wrong names its yarns as they count through the block") {
+    const auto error = [](std::vector<std::uint32_t> t, std::vector<std::uint32_t> p,
+                          std::vector<Stack> stacks) {
+        std::vector<std::uint32_t> cells(stacks.size());
+        for (std::size_t k = 0; k < cells.size(); ++k) cells[k] = static_cast<std::uint32_t>(k);
+        return Block::make(std::move(t), std::move(p), std::move(stacks), std::move(cells)).error().text();
+    };
+    const Stack plain({Slot::weft(0), Slot::warp(0)});
+    CHECK_THAT(error({1}, {1, 2}, {plain, Stack({Slot::weft(0), Slot::warp(0), Slot::warp(0)})}),
+               Catch::EndsWith("stacks[0][1]: holds P1 twice"));
+    CHECK_THAT(error({1, 1}, {1}, {plain, Stack({Slot::weft(1), Slot::warp(0)})}),
+               Catch::EndsWith("stacks[1][0]: holds T2, but the only pick of this cell is T1"));
+    CHECK_THAT(error({1}, {1, 2}, {plain, Stack({Slot::weft(0), Slot::warp(4), Slot::warp(0)})}),
+               Catch::EndsWith("stacks[0][1]: holds P5, but the ends of this cell are P1 to P2"));
+}
+
+TEST_CASE(
+    "a cell that names no stack is refused, stacks that no cell names are left out, equal ones do no harm") {
+    const Stack over({Slot::warp(0), Slot::weft(0)}), under({Slot::weft(0), Slot::warp(0)});
+    CHECK(Block::make({1}, {1, 1}, {over}, {0, 1}).error().text() ==
+          "stacks[0][1]: is stack 1 of a table of 1, counted from 0");
+    const Stack tall({Slot(), Slot(), Slot(), Slot::weft(7)});  // what is not used is not looked at
+    const Block block = Block::make({1}, {1, 1}, {tall, under, under, tall, over}, {4, 2}).value();
+    CHECK(block.stacks().size() == 2);
+    CHECK(block.stack(0, 0) == over);
+    CHECK(block.stack(0, 1) == under);
+    CHECK(block.height() == 2);
+    CHECK(block.card_image().weft_over(0, 0));
+    CHECK_FALSE(block.card_image().weft_over(0, 1));
+    CHECK(Block::make({1}, {1, 1}, {over, over}, {0, 1}).value() ==
+          Block::make({1}, {1, 1}, {over}, {0, 0}).value());
+}
+
+TEST_CASE("the card of many tall stacks, all different, takes little more memory than the block") {
+    constexpr std::uint32_t picks = 4000, ends = 1500;
+    Random random(5);
+    std::vector<Stack> stacks;
+    std::vector<std::uint32_t> cells;
+    for (std::uint32_t end = 0; end < ends; ++end) {
+        std::vector<Slot> slots;
+        const std::size_t at = random.between(0, picks);
+        for (std::size_t k = 0; k < picks; ++k) {
+            if (k == at) slots.push_back(Slot::warp(0));
+            slots.push_back(Slot::weft((k + end) % picks));
+        }
+        if (at == picks) slots.push_back(Slot::warp(0));
+        stacks.emplace_back(std::move(slots));
+        cells.push_back(end);
+    }
+    const Block block =
+        Block::make({picks}, std::vector<std::uint32_t>(ends, 1), std::move(stacks), std::move(cells))
+            .value();
+    const double before = peak_mb();
+    const CardImage card = block.card_image();
+    CHECK(peak_mb() - before < 100);  // a list for each weft of each stack would take over 300 MB
+    for (int k = 0; k < 1000; ++k) {
+        const std::size_t pick = random.between(0, picks - 1), end = random.between(0, ends - 1);
+        REQUIRE(card.weft_over(pick, end) == block.weft_over(pick, end));
+    }
 }

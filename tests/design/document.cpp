@@ -453,3 +453,16 @@ TEST_CASE("files: errors name the file, and saving replaces it whole") {
     CHECK(std::distance(std::filesystem::directory_iterator(folder), {}) == 1);
     std::filesystem::remove_all(folder);
 }
+
+TEST_CASE("a stack that is wrong names its yarns as the document writes them") {
+    const auto error = [](const std::string& stacks) {
+        return read_document(
+                   R"({"format": "weave", "version": 1, "root": "a", "blocks": {"a": {"kind": "stacks", "stacks": )" +
+                   stacks + "}}}")
+            .error()
+            .text();
+    };
+    CHECK(error(R"([["T0 P0", "T0 P1 P1"]])") == "blocks.a.stacks[0][1]: holds P1 twice");
+    CHECK(error(R"([["T0 P0"], ["T2 P0"]])") ==
+          "blocks.a.stacks[1][0]: holds T2, but the only pick of this cell is T1");
+}

@@ -8,6 +8,7 @@
 #include <algorithm>
 #include <design/random_design.hpp>
 #include <set>
+#include <support/memory.hpp>
 
 using namespace weave;
 using namespace weave::testing;
@@ -247,7 +248,7 @@ TEST_CASE("a design that does not evaluate says which block and why, and evaluat
     REQUIRE_FALSE(failed);
     CHECK(failed.error().code == ErrorCode::bad_input);
     CHECK(failed.error().text() ==
-          "blocks.cloth: the blocks have 6 and 4 rows, which must be equal on the faces that meet");
+          "blocks.cloth: 'heel' has 6 rows and 'sole' 4, which must be equal on the faces that meet");
     edited(design, undo);
     CHECK(computed_for(evaluator, design) == 0);
 
@@ -357,4 +358,88 @@ TEST_CASE("remembering never changes the cloth, and computes no more than what d
             }
         },
         property_cases() / 5);
+}
+
+TEST_CASE("blocks that do not fit are named in the error, in attachments and stencils") {
+    Design design = shoe();
+    edited(design, PutBlock{"heel", leaf({{"T0 P0"}, {"T0 P0"}, {"T0 P0"}, {"T0 T1 P0"}})});
+    CHECK(evaluate(design).error().text() ==
+          "blocks.cloth: cannot attach: row 3 has 2 picks in 'heel' and 1 in 'sole'");
+    edited(design, PutBlock{"cloth", stencil_of({"toe", "heel"}, 4, 2, {0, 0, 0, 0, 1, 1, 1, 1})});
+    CHECK(evaluate(design).error().text() ==
+          "blocks.cloth: 'toe' and 'heel' do not fit together: row 3 has 1 pick in 'toe' and 2 in 'heel'");
+}
+
+namespace {
+
+/// A large block whose first row is renumbered again and again, each time as another block.
+Design renumbered(std::size_t rows, std::size_t columns, std::size_t times) {
+    Design design =
+        design_of({{"unit", leaf({{"T0 P0 T1"}})}, {"b0", node(TileOperation{"unit", rows, columns, 1})}},
+                  "b" + std::to_string(times));
+    for (std::size_t k = 1; k <= times; ++k) {
+        design.blocks["b" + std::to_string(k)] =
+            node(RenumberOperation{"b" + std::to_string(k - 1), System::weft, k % rows, {1, 0}});
+    }
+    return design;
+}
+
+}  // namespace
+
+TEST_CASE("evaluating once lets go of each block when nothing more is made from it") {
+    const Design design = renumbered(1024, 2048, 60);  // 8 MB each
+    const double before = peak_mb();
+    const Evaluation cloth = evaluate(design).value();
+    CHECK(cloth.block->rows() == 1024);
+    CHECK(peak_mb() - before <
+          350);  // all blocks together take 500 MB; a sanitizer keeps 256 of what was freed
+}
+
+TEST_CASE("an evaluator holds no more than its budget and computes what it forgot again") {
+    Design design = renumbered(10, 10, 20);
+    Evaluator frugal(500), lavish;
+    const Block cloth = cloth_of(lavish, design);
+    CHECK(cloth_of(frugal, design) == cloth);
+    CHECK(frugal.held() <= 500);
+    CHECK(lavish.held() > 2000);
+    CHECK(computed_for(lavish, design) == 0);
+    CHECK(computed_for(frugal, design) == 0);  // the cloth itself was used last
+    edited(design, PutBlock{"b20", node(RenumberOperation{"b19", System::weft, 3, {1, 0}})});
+    CHECK(computed_for(frugal, design) == 1);
+    edited(design, SetRoot{"b3"});
+    CHECK(computed_for(frugal, design) == 5);  // unit, b0, b1, b2, b3: forgotten long ago
+    CHECK(frugal.held() <= 500);
+    edited(design, RemoveBlock{"b20"});
+    static_cast<void>(cloth_of(lavish, design));
+    Evaluator fresh;
+    for (std::size_t k = 0; k < 20; ++k)
+        static_cast<void>(fresh.evaluate(design, "b" + std::to_string(k)).value());
+    CHECK(lavish.held() == fresh.held());  // what a removed block held is counted no more
+}
+
+TEST_CASE("whatever the budget, the cloth and its lost flips are the same") {
+    for_all(
+        [](Random& random) {
+            Design design;
+            std::vector<std::string> names;
+            for (std::size_t k = 0; k < 6; ++k) {
+                const std::string name = "b" + std::to_string(k);
+                design.blocks[name] = random_square(random, names);
+                names.push_back(name);
+            }
+            Evaluator frugal(random.between(0, 60));
+            for (std::size_t step = 0; step < 8; ++step) {
+                const std::size_t at = random.between(0, names.size() - 1);
+                const std::vector<std::string> below(names.begin(),
+                                                     names.begin() + static_cast<std::ptrdiff_t>(at));
+                if (random.coin()) design.blocks[names[at]] = random_square(random, below);
+                design.root = names[random.between(0, names.size() - 1)];
+                const Evaluation made = frugal.evaluate(design).value();
+                Evaluator lavish;
+                const Evaluation anew = lavish.evaluate(design).value();
+                REQUIRE(*made.block == *anew.block);
+                REQUIRE(made.lost_flips.size() == anew.lost_flips.size());
+            }
+        },
+        property_cases() / 20);
 }

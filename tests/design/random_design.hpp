@@ -48,10 +48,12 @@ inline SliceLeaf random_slice_leaf(Random& random) {
     for (auto& position : slice.positions) {
         for (std::size_t k = random.between(0, 3); k-- > 0;) {
             const Slot dot = slice.dots == System::weft ? Slot::weft(k, random.coin()) : Slot::warp(k);
-            position.push_back({dot, random.coin()});
+            position.push_back({dot, dot.is_weft() && random.coin()});
         }
-        for (std::size_t k = 0; k < paths; ++k)
-            position.push_back({slice.dots == System::weft ? Slot::warp(k) : Slot::weft(k), false});
+        for (std::size_t k = 0; k < paths; ++k) {
+            const Slot path = slice.dots == System::weft ? Slot::warp(k) : Slot::weft(k);
+            position.push_back({path, path.is_weft() && random.between(0, 5) == 0});
+        }
         position.resize(position.size() + random.between(0, 2));
         random.shuffle(position);
     }

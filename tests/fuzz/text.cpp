@@ -30,9 +30,9 @@ void try_slice(std::string_view text, System dots) {
     for (std::size_t at = 0; at <= text.size();) {
         const std::string_view line = text.substr(at, text.find('\n', at) - at);
         at += line.size() + 1;
-        auto position = parse_slice_position(line, dots);
+        auto position = parse_slice_position(line);
         if (!position) return;
-        const auto again = parse_slice_position(to_text(*position), dots);
+        const auto again = parse_slice_position(to_text(*position));
         must(again && *again == *position, "a position reads as it was written");
         slice.positions.push_back(std::move(*position));
     }

@@ -53,3 +53,17 @@ TEST_CASE("given directions and take-up repeat; a pick without feeder says nothi
     CHECK(colour_of_end(design, 3) == Colour{1, 2, 3});
     CHECK(colour_of_end(design, 2) == yarn_of_end(design, 2).colour);
 }
+
+TEST_CASE("further repeats start the plans anew, but the shuttles go on from where they stand") {
+    Design design;
+    const Block block = make_block({1, 1, 1}, {1}, [](auto, auto) {
+                            return Stack({Slot::warp(0), Slot::weft(0)});
+                        }).value();
+    const auto picks = pick_table(design, block, 2);
+    REQUIRE(picks.size() == 6);
+    CHECK(picks[2].direction == Direction::left_to_right);
+    CHECK(picks[3].direction == Direction::right_to_left);
+    CHECK(picks[5].row == 5);
+    design.weft.directions = {Direction::left_to_right, Direction::right_to_left};
+    CHECK(pick_table(design, block, 2)[3].direction == Direction::left_to_right);
+}

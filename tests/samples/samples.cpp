@@ -1,3 +1,13 @@
+#include <weave/block/from_card.hpp>
+#include <weave/design/document.hpp>
+#include <weave/design/evaluate.hpp>
+#include <weave/loom/check.hpp>
+#include <weave/loom/pick_table.hpp>
+#include <weave/loom/weft_way.hpp>
+#include <weave/samples/samples.hpp>
+
+#include <catch2/catch.hpp>
+
 #include <algorithm>
 #include <array>
 #include <filesystem>
@@ -5,23 +15,29 @@
 #include <string>
 #include <vector>
 
-#include <catch2/catch.hpp>
-
-#include <weave/block/from_card.hpp>
-#include <weave/design/document.hpp>
-#include <weave/design/evaluate.hpp>
-#include <weave/loom/check.hpp>
-#include <weave/samples/samples.hpp>
-
 using namespace weave;
 
 namespace {
 
 /// The samples that other parts of the project ask for by name.
-const std::vector<std::string> promised{
-    "plain", "twill-2-2", "satin-5", "satin-e", "twill-g", "three-colour-stencil", "layer-to-layer", "angle-interlock-a",
-    "angle-interlock-b", "orthogonal", "hexagon-tubes", "tl013-wrong", "tl013-corrected", "pocket", "i-beam", "shoe-baby",
-    "shoe-toddler", "shoe-adult"};
+const std::vector<std::string> promised{"plain",
+                                        "twill-2-2",
+                                        "satin-5",
+                                        "satin-e",
+                                        "twill-g",
+                                        "three-colour-stencil",
+                                        "layer-to-layer",
+                                        "angle-interlock-a",
+                                        "angle-interlock-b",
+                                        "orthogonal",
+                                        "hexagon-tubes",
+                                        "tl013-wrong",
+                                        "tl013-corrected",
+                                        "pocket",
+                                        "i-beam",
+                                        "shoe-baby",
+                                        "shoe-toddler",
+                                        "shoe-adult"};
 
 Block cloth_of(const std::string& name) {
     const Sample* sample = find_sample(name);
@@ -30,7 +46,8 @@ Block cloth_of(const std::string& name) {
 }
 
 LoomProfile loom_of(const Sample& sample) {
-    return load_profile(std::filesystem::path(WEAVE_SOURCE_DIR) / "db/looms" / (sample.loom + ".json")).value();
+    return load_profile(std::filesystem::path(WEAVE_SOURCE_DIR) / "db/looms" / (sample.loom + ".json"))
+        .value();
 }
 
 /// The first `picks` and `ends` of a card.
@@ -42,7 +59,19 @@ CardImage crop(const CardImage& card, std::size_t picks, std::size_t ends) {
     return part;
 }
 
-/// Whether an end of the card lies over pick a and under pick b, which is enough to keep them on its two sides.
+/// Whether the whole card's own reading is among those that the program offers.
+bool is_suggested(const CardImage& card, const std::vector<std::uint32_t>& t,
+                  const std::vector<std::uint32_t>& p) {
+    const auto offered = possible_groupings(card);
+    return std::any_of(offered.begin(), offered.end(), [&](const Grouping& grouping) {
+        const auto read = block_from_card(card, grouping.t, grouping.p);
+        REQUIRE(read);
+        return read->t() == t && read->p() == p;
+    });
+}
+
+/// Whether an end of the card lies over pick a and under pick b, which is enough to keep them on its two
+/// sides.
 bool end_passes_between(const CardImage& card, std::size_t end, std::size_t a, std::size_t b) {
     return card.weft_over(a, end) != card.weft_over(b, end);
 }
@@ -107,29 +136,23 @@ TEST_CASE("Every sample validates without errors on the loom that it names") {
     }
 }
 
-TEST_CASE("The stacks of every sample are among the first that its bare card suggests") {
+TEST_CASE(
+    "The stacks of every sample whose counts do not change are among those that its bare card suggests") {
+    // Baby and toddler shoe have more picks a row in the middle than at toe and heel. No suggestion changes
+    // its counts on the way, so of them only the part before the first change is found.
+    std::set<std::string> not_whole;
     for (const Sample& sample : samples()) {
         INFO(sample.name);
-        // Of a shoe whose rows hold four wefts here and six there, the rows up to the first change are looked at, and of what
-        // is larger than 60 x 60 stacks the first 60 x 60.
         const Block block = *evaluate(sample.make()).value().block;
+        if (is_suggested(block.card_image(), block.t(), block.p())) continue;
+        not_whole.insert(sample.name);
         std::size_t rows = 0;
-        while (rows < std::min<std::size_t>(block.rows(), 60) && block.t()[rows] == block.t()[0]) ++rows;
-        const std::size_t columns = std::min<std::size_t>(block.columns(), 60);
-        const CardImage card = crop(block.card_image(), block.first_pick(rows), block.first_end(columns));
-        const std::vector<std::uint32_t> t(rows, block.t()[0]);
-        const std::vector<std::uint32_t> p(block.p().begin(), block.p().begin() + static_cast<std::ptrdiff_t>(columns));
-        std::string offered;
-        bool found = false;
-        for (const Grouping& grouping : possible_groupings(card, 5)) {
-            const auto read = block_from_card(card, grouping.t, grouping.p);
-            REQUIRE(read);
-            found = found || (read->t() == t && read->p() == p);
-            offered += "\n  " + grouping.reason;
-        }
-        INFO("offered:" << offered);
-        CHECK(found);
+        while (rows < block.rows() && block.t()[rows] == block.t()[0]) ++rows;
+        CHECK(rows < block.rows());
+        CHECK(is_suggested(crop(block.card_image(), block.first_pick(rows), block.ends()),
+                           std::vector<std::uint32_t>(rows, block.t()[0]), block.p()));
     }
+    CHECK(not_whole == std::set<std::string>{"shoe-baby", "shoe-toddler"});
 }
 
 TEST_CASE("Pocket: the bottom and both sides are closed, the mouth and the inside are open") {
@@ -137,9 +160,9 @@ TEST_CASE("Pocket: the bottom and both sides are closed, the mouth and the insid
     const Block block = *evaluate(design).value().block;
     const CardImage card = block.card_image();
     constexpr std::size_t seam_rows = 5;
-    REQUIRE(block.rows() == 40);
-    // In each row pick 0 is the back, pick 1 the front. An end that lies under the back pick in one row and over the front
-    // pick in another goes through both layers.
+    REQUIRE(block.rows() == 40);  // 35 of the open part, 5 of the bottom
+    // In each row pick 0 is the back, pick 1 the front. An end that lies under the back pick in one row and
+    // over the front pick in another goes through both layers.
     const auto ties = [&](std::size_t end, std::size_t first_row, std::size_t last_row) {
         bool under_back = false, over_front = false;
         for (std::size_t row = first_row; row < last_row; ++row) {
@@ -155,7 +178,8 @@ TEST_CASE("Pocket: the bottom and both sides are closed, the mouth and the insid
     }
     CHECK(tied_at_the_bottom >= 25);
     CHECK(tied_above == 0);
-    // Each turn of the one shuttle goes from one layer to the other, on the right within a row and on the left to the next.
+    // Each turn of the one shuttle goes from one layer to the other, on the right within a row and on the
+    // left to the next.
     REQUIRE(design.weft.feeders.size() == 1);
     CHECK(design.scene.weft_mode == WeftMode::wraparound);
     for (std::size_t pick = 0; pick + 1 < card.picks(); ++pick) {
@@ -169,41 +193,55 @@ TEST_CASE("Pocket: the bottom and both sides are closed, the mouth and the insid
     CHECK(design.scene.fields.size() >= 1);
 }
 
-TEST_CASE("I-beam: outside the web nothing holds the web's weft, and its placeholders bind nothing") {
+TEST_CASE("I-beam: every turn of the web's shuttle rests in the web, and its placeholders bind nothing") {
     const Design design = find_sample("i-beam")->make();
     const Block block = *evaluate(design).value().block;
     const CardImage card = block.card_image();
+    const auto feeder_of = [&](std::size_t pick) {
+        return design.weft.feeder_order[pick % design.weft.feeder_order.size()].front();
+    };
     std::vector<std::size_t> web_picks;
     for (std::size_t pick = 0; pick < card.picks(); ++pick) {
-        if (design.weft.feeder_order[pick % design.weft.feeder_order.size()].front() == 1) web_picks.push_back(pick);
+        if (feeder_of(pick) == 1) web_picks.push_back(pick);
     }
     REQUIRE(web_picks.size() == 16);
     const std::size_t first_web_end = block.first_end(8), last_web_end = block.first_end(12) - 1;
-    for (std::size_t k = 0; k + 1 < web_picks.size(); ++k) {
-        bool caught_in_the_web = false;
-        for (std::size_t end = 0; end < card.ends(); ++end) {
-            const bool differs = end_passes_between(card, end, web_picks[k], web_picks[k + 1]);
-            if (end < first_web_end || end > last_web_end) {
-                CHECK_FALSE(differs);
-            } else {
-                caught_in_the_web = caught_in_the_web || differs;
-            }
-        }
-        CHECK(caught_in_the_web);
+    const WeftWay way = weft_way(card, pick_table(design, block));
+    for (const Turn& turn : way.turns) CHECK(turn.caught_by == CaughtBy::end);
+    std::size_t web_spans = 0;
+    for (const PickSpan& span : way.spans) {
+        if (span.feeder != 1) continue;
+        ++web_spans;
+        INFO("web pick " << span.pick << " spans ends " << span.first << " to " << span.last);
+        CHECK_FALSE(span.crossed);
+        // The first and the last pick of the web's shuttle come from the left edge and go back to it.
+        const bool tail = span.pick == web_picks.front() || span.pick == web_picks.back();
+        CHECK(span.first == (tail ? 0 : std::clamp(span.first, first_web_end, last_web_end)));
+        CHECK(span.last == std::clamp(span.last, first_web_end, last_web_end));
     }
+    CHECK(web_spans == web_picks.size());
     std::size_t placeholders = 0;
     for (std::size_t column = 0; column < block.columns(); ++column) {
-        for (const Slot slot : block.stack(0, column).slots()) placeholders += slot.is_warp() && slot.is_loose() ? 1 : 0;
+        for (const Slot slot : block.stack(0, column).slots())
+            placeholders += slot.is_warp() && slot.is_loose() ? 1 : 0;
     }
     CHECK(placeholders == 16 * 5);
-    // The web ties the flanges: its ends bind, two by two, the wefts from the bottom flange's highest to the top flange's
-    // lowest. An end binds a weft level that it lies under in one row and over in another.
+    // The web ties the flanges: its ends bind, two by two, the wefts from the bottom flange's highest to the
+    // top flange's lowest. An end binds a weft level that it lies under in one row and over in another.
+    // Each shuttle inserts its wefts of a row from the bottom up.
+    const auto pick_at = [&](std::size_t row, std::size_t level) {
+        const std::uint32_t feeder = level < 3 ? 0 : level < 7 ? 1 : 2;
+        std::size_t below = level - std::array<std::size_t, 3>{0, 3, 7}[feeder], pick = 10 * row;
+        while (feeder_of(pick) != feeder || below-- > 0) ++pick;
+        return pick;
+    };
     std::array<bool, 10> tied{};  // level k to level k + 1
     for (std::size_t end = first_web_end; end <= last_web_end; ++end) {
         std::array<bool, 10> bound{};
         for (std::size_t level = 0; level < 10; ++level) {
             for (std::size_t row = 1; row < block.rows(); ++row) {
-                bound[level] = bound[level] || card.weft_over(10 * row + level, end) != card.weft_over(level, end);
+                bound[level] = bound[level] || card.weft_over(pick_at(row, level), end) !=
+                                                   card.weft_over(pick_at(0, level), end);
             }
             if (level > 0 && bound[level] && bound[level - 1]) tied[level - 1] = true;
         }
@@ -215,12 +253,13 @@ TEST_CASE("Hexagon tubes: walls join and part in turn, and the outermost wefts a
     const Design design = find_sample("hexagon-tubes")->make();
     const Block block = *evaluate(design).value().block;
     const CardImage card = block.card_image();
-    // Layer k has weft k of each row and end k of each column. Two layers are joined in a row where an end of one lies
-    // on the far side of the other's weft.
+    // Layer k has weft k of each row and end k of each column. Two layers are joined in a row where an end of
+    // one lies on the far side of the other's weft.
     const auto joined = [&](std::size_t row, std::size_t lower) {
         for (std::size_t column = 0; column < block.columns(); ++column) {
             const std::size_t end = block.first_end(column) + lower;
-            if (!card.weft_over(4 * row + lower + 1, end) || card.weft_over(4 * row + lower, end + 1)) return true;
+            if (!card.weft_over(4 * row + lower + 1, end) || card.weft_over(4 * row + lower, end + 1))
+                return true;
         }
         return false;
     };
@@ -232,11 +271,13 @@ TEST_CASE("Hexagon tubes: walls join and part in turn, and the outermost wefts a
         CHECK(joined(row, 2) == outer);
     }
     CHECK(design.scene.pins.size() == 48);
-    for (const Pin& pin : design.scene.pins) CHECK((pin.is_pick && (pin.number % 4 == 0 || pin.number % 4 == 3)));
+    for (const Pin& pin : design.scene.pins)
+        CHECK((pin.is_pick && (pin.number % 4 == 0 || pin.number % 4 == 3)));
 }
 
 TEST_CASE("TL013: the versions differ in exactly the crossings of the upper section that the notes name") {
-    const CardImage wrong = cloth_of("tl013-wrong").card_image(), corrected = cloth_of("tl013-corrected").card_image();
+    const CardImage wrong = cloth_of("tl013-wrong").card_image(),
+                    corrected = cloth_of("tl013-corrected").card_image();
     REQUIRE((wrong.picks() == 96 && wrong.ends() == 40));
     std::size_t differences = 0;
     for (std::size_t pick = 0; pick < wrong.picks(); ++pick) {
@@ -257,15 +298,18 @@ TEST_CASE("TL013: the versions differ in exactly the crossings of the upper sect
     CHECK(design.blocks.at("tl013")->flips.empty());
 }
 
-TEST_CASE("TL013: only in the corrected version does a zigzag cross the upper section evenly on its way up and down") {
-    const auto lean = [](const CardImage& card) {  // rows over the upper section's weft before, less after, the upper turn
-        int sum = 0;
-        for (std::size_t row = 0; row < 16; ++row) {
-            const std::size_t step = row % 8;
-            if (!card.weft_over(6 * row + 3, 2)) sum += step < 4 ? 1 : step > 4 ? -1 : 0;
-        }
-        return sum;
-    };
+TEST_CASE(
+    "TL013: only in the corrected version does a zigzag cross the upper section evenly on its way up and "
+    "down") {
+    const auto lean =
+        [](const CardImage& card) {  // rows over the upper section's weft before, less after, the upper turn
+            int sum = 0;
+            for (std::size_t row = 0; row < 16; ++row) {
+                const std::size_t step = row % 8;
+                if (!card.weft_over(6 * row + 3, 2)) sum += step < 4 ? 1 : step > 4 ? -1 : 0;
+            }
+            return sum;
+        };
     CHECK(lean(cloth_of("tl013-wrong").card_image()) == 4);
     CHECK(lean(cloth_of("tl013-corrected").card_image()) == 0);
 }
@@ -273,9 +317,9 @@ TEST_CASE("TL013: only in the corrected version does a zigzag cross the upper se
 namespace {
 
 std::size_t stencils_in(const Design& design) {
-    return static_cast<std::size_t>(std::count_if(design.blocks.begin(), design.blocks.end(), [](const auto& named) {
-        return std::holds_alternative<StencilOperation>(named.second->source);
-    }));
+    return static_cast<std::size_t>(std::count_if(
+        design.blocks.begin(), design.blocks.end(),
+        [](const auto& named) { return std::holds_alternative<StencilOperation>(named.second->source); }));
 }
 
 }  // namespace
@@ -321,7 +365,9 @@ TEST_CASE("Toddler shoe: nine blocks in three stencils, their wefts renumbered t
     CHECK(picks_a_row == std::set<std::uint32_t>{6, 8});
 }
 
-TEST_CASE("Adult shoe: full size, at least 68 different blocks, all of them used, and loose only where it is trimmed") {
+TEST_CASE(
+    "Adult shoe: full size, at least 68 different blocks, all of them used, and loose only where it is "
+    "trimmed") {
     const Design design = find_sample("shoe-adult")->make();
     const auto* operation = std::get_if<StencilOperation>(&design.blocks.at(design.root)->source);
     REQUIRE(operation != nullptr);

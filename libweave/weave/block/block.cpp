@@ -1,7 +1,9 @@
 #include <weave/block/block.hpp>
+#include <weave/core/text.hpp>
 
 #include <algorithm>
 #include <string>
+#include <utility>
 
 namespace weave {
 
@@ -18,42 +20,66 @@ std::vector<std::size_t> running_sums(const std::vector<std::uint32_t>& counts) 
     return sums;
 }
 
-std::string count_of(std::size_t number, const char* noun) {
-    return std::to_string(number) + " " + noun + (number == 1 ? "" : "s");
-}
-
+/// One stack against the counts of its row and column; `first` is the cell's first pick and end.
 Status check_cell(const Stack& stack, std::size_t picks, std::size_t ends, std::size_t row,
-                  std::size_t column) {
+                  std::size_t column, std::pair<std::size_t, std::size_t> first) {
     const std::string where = cell_name(row, column);
     if (stack.wefts() != picks) {
-        return bad_input("holds " + count_of(stack.wefts(), "pick") + ", but row " + std::to_string(row) +
+        return bad_input("holds " + counted(stack.wefts(), "pick") + ", but row " + std::to_string(row) +
                              " has " + std::to_string(picks),
                          where);
     }
     if (stack.warps() != ends) {
-        return bad_input("holds " + count_of(stack.warps(), "end") + ", but column " +
-                             std::to_string(column) + " has " + std::to_string(ends),
+        return bad_input("holds " + counted(stack.warps(), "end") + ", but column " + std::to_string(column) +
+                             " has " + std::to_string(ends),
                          where);
     }
-    if (Status fine = stack.check(); !fine) return std::move(fine).error().in(where);
+    if (Status fine = stack.check(first.first, first.second); !fine) return std::move(fine).error().in(where);
     return {};
 }
 
-/// The pixels of one stack: per weft a row of bits, most significant first, bit k for warp k.
-std::vector<std::vector<std::uint8_t>> pixels_of(const Stack& stack) {
-    std::vector<std::uint8_t> warps_below((stack.warps() + 7) / 8);
-    std::vector<std::vector<std::uint8_t>> rows(stack.wefts());
-    for (const Slot slot : stack.slots()) {
-        if (slot.is_warp())
-            warps_below[slot.index() / 8] |= static_cast<std::uint8_t>(0x80 >> slot.index() % 8);
-        if (slot.is_weft()) rows[slot.index()] = warps_below;
+/// The pixels of all stacks of a table in one run of bytes: per stack and weft a row of bits, most
+/// significant first, bit k for warp k.
+class StackPixels {
+  public:
+    explicit StackPixels(const std::vector<Stack>& stacks);
+    /// The row of one weft.
+    [[nodiscard]] const std::uint8_t* row(std::uint32_t stack, std::size_t weft) const {
+        return &m_bytes[m_stacks[stack].first_byte + weft * m_stacks[stack].row_bytes];
     }
-    return rows;
+
+  private:
+    struct Place {
+        std::size_t first_byte = 0, row_bytes = 0;
+    };
+    std::vector<Place> m_stacks;
+    std::vector<std::uint8_t> m_bytes;
+};
+
+StackPixels::StackPixels(const std::vector<Stack>& stacks) {
+    std::size_t bytes = 0;
+    for (const Stack& stack : stacks) {
+        m_stacks.push_back({bytes, (stack.warps() + 7) / 8});
+        bytes += stack.wefts() * m_stacks.back().row_bytes;
+    }
+    m_bytes.resize(bytes);
+    std::vector<std::uint8_t> warps_below;
+    for (std::size_t k = 0; k < stacks.size(); ++k) {
+        const Place place = m_stacks[k];
+        warps_below.assign(place.row_bytes, 0);
+        for (const Slot slot : stacks[k].slots()) {
+            if (slot.is_warp())
+                warps_below[slot.index() / 8] |= static_cast<std::uint8_t>(0x80 >> slot.index() % 8);
+            if (slot.is_weft())
+                std::copy(warps_below.begin(), warps_below.end(),
+                          m_bytes.begin() +
+                              static_cast<std::ptrdiff_t>(place.first_byte + slot.index() * place.row_bytes));
+        }
+    }
 }
 
 /// ORs `bits` (`count` of them, padding 0) into a row of the card at bit `at`.
-void put_bits(std::span<std::uint8_t> row, std::size_t at, const std::vector<std::uint8_t>& bits,
-              std::size_t count) {
+void put_bits(std::span<std::uint8_t> row, std::size_t at, const std::uint8_t* bits, std::size_t count) {
     const std::size_t shift = at % 8;
     std::size_t byte = at / 8;
     for (std::size_t done = 0; done < count; done += 8, ++byte) {
@@ -74,7 +100,7 @@ Status check_height(std::size_t height) {
 Status check_slots(std::size_t stacks, std::size_t height) {
     WEAVE_CHECK_OK(check_height(height));
     if (height == 0 || stacks <= most_slots / height) return {};
-    return bad_input(count_of(stacks, "different stack") + " of " + count_of(height, "slot") +
+    return bad_input(counted(stacks, "different stack") + " of " + counted(height, "slot") +
                      " are more than the limit of " + std::to_string(most_slots) + " slots");
 }
 
@@ -87,13 +113,20 @@ Result<Block> Block::make(std::vector<std::uint32_t> t, std::vector<std::uint32_
     if (block.picks() == 0 || block.ends() == 0)
         return bad_input("a block needs at least one pick and one end");
     WEAVE_CHECK_OK(check_card_size(block.picks(), block.ends()));
-    std::vector<bool> checked(stacks.size());
+    std::vector<bool> used(stacks.size());
     for (std::size_t row = 0, cell = 0; row < t.size(); ++row) {
         for (std::size_t column = 0; column < p.size(); ++column, ++cell) {
-            const Stack& stack = stacks[cells[cell]];
-            if (checked[cells[cell]] && stack.wefts() == t[row] && stack.warps() == p[column]) continue;
-            WEAVE_CHECK_OK(check_cell(stack, t[row], p[column], row, column));
-            checked[cells[cell]] = true;
+            const std::uint32_t number = cells[cell];
+            if (number >= stacks.size()) {
+                return bad_input("is stack " + std::to_string(number) + " of a table of " +
+                                     std::to_string(stacks.size()) + ", counted from 0",
+                                 cell_name(row, column));
+            }
+            const Stack& stack = stacks[number];
+            if (used[number] && stack.wefts() == t[row] && stack.warps() == p[column]) continue;
+            WEAVE_CHECK_OK(check_cell(stack, t[row], p[column], row, column,
+                                      {block.first_pick(row), block.first_end(column)}));
+            used[number] = true;
             height = std::max(height, stack.height());
         }
     }
@@ -103,7 +136,21 @@ Result<Block> Block::make(std::vector<std::uint32_t> t, std::vector<std::uint32_
     block.m_height = height;
     block.m_stacks = std::move(stacks);
     block.m_cells = std::move(cells);
+    block.leave_out_unused(used);
     return block;
+}
+
+void Block::leave_out_unused(const std::vector<bool>& used) {
+    if (std::find(used.begin(), used.end(), false) == used.end()) return;
+    std::vector<std::uint32_t> moved(used.size());
+    std::vector<Stack> kept;
+    for (std::size_t k = 0; k < used.size(); ++k) {
+        moved[k] = static_cast<std::uint32_t>(kept.size());
+        if (used[k]) kept.push_back(std::move(m_stacks[k]));
+    }
+    kept.shrink_to_fit();
+    m_stacks = std::move(kept);
+    for (std::uint32_t& cell : m_cells) cell = moved[cell];
 }
 
 std::size_t Block::row_of_pick(std::size_t pick) const {
@@ -127,16 +174,14 @@ bool Block::weft_over(std::size_t pick, std::size_t end) const {
 }
 
 CardImage Block::card_image() const {
-    std::vector<std::vector<std::vector<std::uint8_t>>> pixels;
-    pixels.reserve(m_stacks.size());
-    for (const Stack& stack : m_stacks) pixels.push_back(pixels_of(stack));
+    const StackPixels pixels(m_stacks);
     CardImage card(picks(), ends());
     for (std::size_t row = 0; row < rows(); ++row) {
         for (std::size_t weft = 0; weft < m_t[row]; ++weft) {
             const auto bits = card.row(m_first_pick[row] + weft);
             for (std::size_t column = 0; column < columns(); ++column) {
-                const std::uint32_t number = m_cells[row * columns() + column];
-                put_bits(bits, m_first_end[column], pixels[number][weft], m_p[column]);
+                const std::uint8_t* const drawn = pixels.row(m_cells[row * columns() + column], weft);
+                put_bits(bits, m_first_end[column], drawn, m_p[column]);
             }
         }
     }

@@ -13,7 +13,8 @@
 
 namespace weave {
 
-/// No block may be higher, in slots: real cloth has dozens of layers, and a hostile file could ask for billions.
+/// No block may be higher, in slots: real cloth has dozens of layers, and a hostile file could ask for
+/// billions.
 inline constexpr std::size_t most_height = std::size_t{1} << 20;
 /// No operation in height fills more slots in the different stacks of its result.
 inline constexpr std::size_t most_slots = std::size_t{1} << 28;
@@ -32,8 +33,10 @@ Status check_slots(std::size_t stacks, std::size_t height);
 class Block {
   public:
     /// Checks every constraint of the paper's section 4.1. `cells` has t.size() * p.size() entries, row by
-    /// row, each an index into `stacks`. `height` is raised to the tallest stack where it is smaller and is
-    /// at most most_height. Errors name the first bad cell as `stacks[row][column]`.
+    /// row, each an index into `stacks`. Stacks that no cell names are left out of the block; equal ones may
+    /// stand in the table more than once, which only costs room. `height` is raised to the tallest stack that
+    /// is used where it is smaller and is at most most_height. Errors name the first bad cell as
+    /// `stacks[row][column]`.
     static Result<Block> make(std::vector<std::uint32_t> t, std::vector<std::uint32_t> p,
                               std::vector<Stack> stacks, std::vector<std::uint32_t> cells,
                               std::size_t height = 0);
@@ -57,7 +60,7 @@ class Block {
     [[nodiscard]] const Stack& stack(std::size_t row, std::size_t column) const {
         return m_stacks[m_cells[row * columns() + column]];
     }
-    /// The table of different stacks, and for each cell, row by row, its entry.
+    /// The table of stacks, each used by some cell, and for each cell, row by row, its entry.
     [[nodiscard]] const std::vector<Stack>& stacks() const { return m_stacks; }
     [[nodiscard]] std::span<const std::uint32_t> cells() const { return m_cells; }
     [[nodiscard]] std::span<const std::uint32_t> cells(std::size_t row) const {
@@ -74,6 +77,7 @@ class Block {
 
   private:
     Block() = default;
+    void leave_out_unused(const std::vector<bool>& used);
 
     std::vector<std::uint32_t> m_t, m_p;
     std::vector<std::size_t> m_first_pick{0}, m_first_end{0};

@@ -1,5 +1,6 @@
 #pragma once
 
+#include <algorithm>
 #include <bit>
 #include <cstddef>
 #include <cstdint>
@@ -16,6 +17,11 @@ inline std::uint64_t bits_at(std::span<const std::uint8_t> row, std::size_t at, 
     word <<= shift;
     if (shift != 0 && first + 8 < row.size()) word |= std::uint64_t{row[first + 8]} >> (8 - shift);
     return count == 0 ? 0 : word >> (64 - count) << (64 - count);
+}
+
+/// Whether every row has one pick (or every column one end).
+inline bool all_single(std::span<const std::uint32_t> counts) {
+    return std::all_of(counts.begin(), counts.end(), [](std::uint32_t count) { return count == 1; });
 }
 
 /// How two sets of yarns lie to each other.

@@ -1,6 +1,10 @@
 #include <weave/block/flip.hpp>
 
 #include <algorithm>
+#include <cstdint>
+#include <map>
+#include <optional>
+#include <utility>
 
 namespace weave {
 
@@ -23,6 +27,53 @@ bool lies_over(const Stack& stack, std::size_t weft, std::size_t warp) {
         if (slot.is_weft() && slot.index() == weft) return false;
     }
     return false;
+}
+
+std::string pair_of(const Flip& wish) {
+    return "pick " + std::to_string(wish.pick + 1) + " and end " + std::to_string(wish.end + 1);
+}
+
+std::string no_crossing(const Block& block, const Flip& wish) {
+    return "there is no crossing of " + pair_of(wish) + ": the block has " + std::to_string(block.picks()) +
+           " picks and " + std::to_string(block.ends()) + " ends";
+}
+
+bool is_inside(const Block& block, const Flip& wish) {
+    return wish.pick < block.picks() && wish.end < block.ends();
+}
+
+std::size_t cell_of(const Block& block, const Flip& wish) {
+    return block.row_of_pick(wish.pick) * block.columns() + block.column_of_end(wish.end);
+}
+
+/// The numbers of the flips cell by cell, those of one cell in their order, those outside the block last.
+/// Flips of different cells do not touch each other, so they may be made in this order; and a stack that many
+/// flips change then goes into the table once.
+std::vector<std::size_t> by_cell(const Block& block, std::span<const Flip> flips) {
+    std::vector<std::pair<std::size_t, std::size_t>> keyed;
+    keyed.reserve(flips.size());
+    for (std::size_t k = 0; k < flips.size(); ++k)
+        keyed.emplace_back(is_inside(block, flips[k]) ? cell_of(block, flips[k]) : SIZE_MAX, k);
+    std::sort(keyed.begin(), keyed.end());
+    std::vector<std::size_t> order;
+    order.reserve(keyed.size());
+    for (const auto& [cell, k] : keyed) order.push_back(k);
+    return order;
+}
+
+/// Makes one flip in the stack of its cell, or says why not.
+std::optional<std::string> refusal(const Block& block, Stack& stack, const Flip& wish) {
+    const std::size_t first_pick = block.first_pick(block.row_of_pick(wish.pick));
+    const std::size_t first_end = block.first_end(block.column_of_end(wish.end));
+    const std::size_t weft = wish.pick - first_pick, warp = wish.end - first_end;
+    if (lies_over(stack, weft, warp) == wish.weft_over) return {};
+    FlippedStack flipped = flip(stack, weft, warp);
+    if (!flipped.valid) {
+        return pair_of(wish) + " cannot be flipped alone: in the way stand " +
+               named(flipped.in_the_way, first_pick, first_end);
+    }
+    stack = std::move(flipped.stack);
+    return {};
 }
 
 }  // namespace
@@ -67,33 +118,29 @@ FlippedBlock apply_flips(const Block& block, std::span<const Flip> flips) {
     cells.reserve(block.cells().size());
     for (const std::uint32_t cell : block.cells()) cells.push_back(moved[cell]);
 
-    std::vector<RefusedFlip> refused;
-    for (const Flip& wish : flips) {
-        const std::string pair =
-            "pick " + std::to_string(wish.pick + 1) + " and end " + std::to_string(wish.end + 1);
-        if (wish.pick >= block.picks() || wish.end >= block.ends()) {
-            refused.push_back({wish, "there is no crossing of " + pair + ": the block has " +
-                                         std::to_string(block.picks()) + " picks and " +
-                                         std::to_string(block.ends()) + " ends"});
+    std::map<std::size_t, std::string> refusals;
+    const std::vector<std::size_t> order = by_cell(block, flips);
+    for (std::size_t k = 0; k < order.size();) {
+        const Flip& first = flips[order[k]];
+        if (!is_inside(block, first)) {
+            refusals[order[k++]] = no_crossing(block, first);
             continue;
         }
-        const std::size_t row = block.row_of_pick(wish.pick), column = block.column_of_end(wish.end);
-        const std::size_t first_pick = block.first_pick(row), first_end = block.first_end(column);
-        std::uint32_t& cell = cells[row * block.columns() + column];
-        const Stack stack = table.at(cell);
-        if (lies_over(stack, wish.pick - first_pick, wish.end - first_end) == wish.weft_over) continue;
-        FlippedStack flipped = flip(stack, wish.pick - first_pick, wish.end - first_end);
-        if (flipped.valid) {
-            cell = table.number_of(std::move(flipped.stack));
-        } else {
-            refused.push_back({wish, pair + " cannot be flipped alone: in the way stand " +
-                                         named(flipped.in_the_way, first_pick, first_end)});
+        const std::size_t cell = cell_of(block, first);
+        Stack stack = table.at(cells[cell]);
+        for (;
+             k < order.size() && is_inside(block, flips[order[k]]) && cell_of(block, flips[order[k]]) == cell;
+             ++k) {
+            if (auto reason = refusal(block, stack, flips[order[k]])) refusals[order[k]] = std::move(*reason);
         }
+        cells[cell] = table.number_of(std::move(stack));
     }
     Result<Block> made =
         Block::make(block.t(), block.p(), std::move(table).take(), std::move(cells), block.height());
     assert(made);  // a flip only exchanges yarns within their stack
-    return {std::move(made).value(), std::move(refused)};
+    FlippedBlock flipped{std::move(made).value(), {}};
+    for (auto& [k, reason] : refusals) flipped.refused.push_back({flips[k], std::move(reason)});
+    return flipped;
 }
 
 Result<Block> flip(const Block& block, std::size_t pick, std::size_t end) {

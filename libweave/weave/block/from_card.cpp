@@ -161,10 +161,6 @@ Error contradicts(const Contradiction& found, std::size_t row, std::size_t colum
                    "stacks[" + std::to_string(row) + "][" + std::to_string(column) + "]");
 }
 
-bool all_single(const Counts& counts) {
-    return std::all_of(counts.begin(), counts.end(), [](std::uint32_t count) { return count == 1; });
-}
-
 /// One pick and one end a cell: the pixel itself numbers the stack. Four hundred million crossings pass here.
 Result<Block> single_block(const CardImage& card, Counts t, Counts p) {
     std::vector<std::uint32_t> cells(card.picks() * card.ends());

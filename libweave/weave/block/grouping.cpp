@@ -165,10 +165,6 @@ bool is_regular(const Counts& counts) {
     return counts.size() <= 2 || 2 * period_of(counts) <= counts.size();
 }
 
-bool is_single(const Counts& counts) {
-    return std::all_of(counts.begin(), counts.end(), [](std::uint32_t count) { return count == 1; });
-}
-
 /// One reading of one system and how far down it ranks.
 struct Reading {
     Counts counts;
@@ -230,7 +226,7 @@ Readings readings_of(const Yarns& yarns, bool picks) {
     return readings;
 }
 
-std::string counted(const Counts& counts, const char* yarns, const char* line) {
+std::string counts_said(const Counts& counts, const char* yarns, const char* line) {
     const auto [least, most] = std::minmax_element(counts.begin(), counts.end());
     std::string text;
     if (*least == *most) {
@@ -251,9 +247,8 @@ struct Ranked {
 
 std::string reason_for(const Ranked& grouping) {
     const auto part = [](const Reading& reading, const char* yarns, const char* line) {
-        const bool single =
-            std::all_of(reading.counts.begin(), reading.counts.end(), [](auto n) { return n == 1; });
-        return counted(reading.counts, yarns, line) + (single ? "" : std::string(", which ") + reading.why);
+        const std::string counts = counts_said(reading.counts, yarns, line);
+        return all_single(reading.counts) ? counts : counts + ", which " + reading.why;
     };
     return part(grouping.t, "pick", "row") + "; " + part(grouping.p, "end", "column");
 }
@@ -348,7 +343,7 @@ std::vector<Grouping> possible_groupings(const CardImage& card, std::size_t most
     const Yarns picks(card), ends(turned);
     const Readings pick_readings = readings_of(picks, true), end_readings = readings_of(ends, false);
     std::vector<Ranked> ranked = ranked_pairs(pick_readings, end_readings, card.ends());
-    const bool nothing_found = is_single(ranked.front().t.counts) && is_single(ranked.front().p.counts);
+    const bool nothing_found = all_single(ranked.front().t.counts) && all_single(ranked.front().p.counts);
     offer_early(ranked, even_stacks(card, nothing_found ? 3 : 2, nothing_found), nothing_found ? 2 : 3);
     std::vector<Grouping> groupings;
     for (const Ranked& candidate : ranked) {

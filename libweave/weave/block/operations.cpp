@@ -45,21 +45,31 @@ Stack piled_times(const Stack& stack, std::size_t height, std::size_t times) {
     return Stack(std::move(slots));
 }
 
-std::string differs(const char* line, std::size_t index, const char* yarn, std::uint32_t one,
-                    std::uint32_t other) {
-    return std::string(line) + " " + std::to_string(index) + " has " + counted(one, yarn) +
-           " in one block and " + std::to_string(other) + " in the other";
+/// What errors call two blocks.
+struct Pair {
+    std::string one, other;
+    [[nodiscard]] Pair swapped() const { return {other, one}; }
+};
+
+std::string quoted(const std::string& name) {
+    return "'" + name + "'";
 }
 
-Status check_same(const Counts& one, const Counts& other, const char* line, const char* yarns) {
+std::string differs(const char* line, std::size_t index, const char* yarn, const Pair& names,
+                    std::uint32_t one, std::uint32_t other) {
+    return std::string(line) + " " + std::to_string(index) + " has " + counted(one, yarn) + " in " +
+           names.one + " and " + std::to_string(other) + " in " + names.other;
+}
+
+Status check_same(const Counts& one, const Counts& other, const char* line, const char* yarns,
+                  const Pair& names) {
     if (one.size() != other.size()) {
-        return bad_input("the blocks have " + std::to_string(one.size()) + " and " +
-                         std::to_string(other.size()) + " " + line +
-                         "s, which must be equal on the faces that meet");
+        return bad_input(names.one + " has " + counted(one.size(), line) + " and " + names.other + " " +
+                         std::to_string(other.size()) + ", which must be equal on the faces that meet");
     }
     for (std::size_t i = 0; i < one.size(); ++i) {
         if (one[i] != other[i])
-            return bad_input("cannot attach: " + differs(line, i, yarns, one[i], other[i]));
+            return bad_input("cannot attach: " + differs(line, i, yarns, names, one[i], other[i]));
     }
     return {};
 }
@@ -76,8 +86,8 @@ struct MergedTables {
     }
 };
 
-Result<Block> attach_x(const Block& first, const Block& second) {
-    WEAVE_CHECK_OK(check_same(first.p(), second.p(), "column", "end"));
+Result<Block> attach_x(const Block& first, const Block& second, const Pair& names) {
+    WEAVE_CHECK_OK(check_same(first.p(), second.p(), "column", "end", names));
     MergedTables merged;
     std::vector<std::uint32_t> cells;
     cells.reserve(first.cells().size() + second.cells().size());
@@ -91,8 +101,8 @@ Result<Block> attach_x(const Block& first, const Block& second) {
                        std::max(first.height(), second.height()));
 }
 
-Result<Block> attach_y(const Block& first, const Block& second) {
-    WEAVE_CHECK_OK(check_same(first.t(), second.t(), "row", "pick"));
+Result<Block> attach_y(const Block& first, const Block& second, const Pair& names) {
+    WEAVE_CHECK_OK(check_same(first.t(), second.t(), "row", "pick", names));
     MergedTables merged;
     merged.add(first);
     merged.add(second);
@@ -108,11 +118,12 @@ Result<Block> attach_y(const Block& first, const Block& second) {
                        std::max(first.height(), second.height()));
 }
 
-Result<Block> attach_z(const Block& lower, const Block& upper) {
+Result<Block> attach_z(const Block& lower, const Block& upper, const Pair& names) {
     if (lower.rows() != upper.rows() || lower.columns() != upper.columns()) {
-        return bad_input("one block has " + std::to_string(lower.rows()) + " rows and " +
-                         std::to_string(lower.columns()) + " columns, the other " +
-                         std::to_string(upper.rows()) + " and " + std::to_string(upper.columns()) +
+        const auto size = [](const Block& block) {
+            return counted(block.rows(), "row") + " and " + counted(block.columns(), "column");
+        };
+        return bad_input(names.one + " has " + size(lower) + ", " + names.other + " " + size(upper) +
                          "; on top of each other they must be equal");
     }
     WEAVE_CHECK_OK(check_height(lower.height() + upper.height()));
@@ -153,11 +164,15 @@ Status check_stencil(std::span<const BlockPtr> blocks, const StencilMap& map) {
 }
 
 /// The picks (or ends) of each line of the stencil, on which all blocks must agree.
-Result<Counts> common_counts(std::span<const BlockPtr> blocks, std::size_t lines,
-                             const Counts& (Block::*counts)() const, const char* line, const char* yarns) {
+Result<Counts> common_counts(std::span<const BlockPtr> blocks, std::span<const std::string> names,
+                             std::size_t lines, const Counts& (Block::*counts)() const, const char* line,
+                             const char* yarns) {
     const auto count_at = [&](const BlockPtr& block, std::size_t i) {
         const Counts& own = ((*block).*counts)();
         return own[i % own.size()];
+    };
+    const auto name_of = [&](std::size_t k) {
+        return names.empty() ? "block " + std::to_string(k) : quoted(names[k]);
     };
     Counts common(lines);
     for (std::size_t i = 0; i < lines; ++i) {
@@ -165,8 +180,9 @@ Result<Counts> common_counts(std::span<const BlockPtr> blocks, std::size_t lines
         for (std::size_t k = 1; k < blocks.size(); ++k) {
             const std::uint32_t other = count_at(blocks[k], i);
             if (other == common[i]) continue;
-            return bad_input("blocks 0 and " + std::to_string(k) +
-                             " do not fit together: " + differs(line, i, yarns, common[i], other));
+            const Pair pair{name_of(0), name_of(k)};
+            return bad_input(pair.one + " and " + pair.other +
+                             " do not fit together: " + differs(line, i, yarns, pair, common[i], other));
         }
     }
     return common;
@@ -191,25 +207,30 @@ Result<Block> renumbered(const Block& block, System system, std::size_t line,
         return bad_input("the new order of " + name + std::to_string(line) + " must name each of its " +
                          std::to_string(count) + (row ? " picks" : " ends") + " once, from 0 on");
     }
-    StackTable table;
-    for (const Stack& stack : block.stacks()) static_cast<void>(table.number_of(stack));
+    MergedTables merged;
+    merged.add(block);
+    const std::vector<std::uint32_t>& moved = merged.moved.front();
     std::map<std::uint32_t, std::uint32_t> known;
-    std::vector<std::uint32_t> cells(block.cells().begin(), block.cells().end());
+    std::vector<std::uint32_t> cells;
+    cells.reserve(block.cells().size());
+    for (const std::uint32_t cell : block.cells()) cells.push_back(moved[cell]);
     const std::size_t first = row ? line * block.columns() : line, step = row ? 1 : block.columns();
     const std::size_t length = row ? block.columns() : block.rows();
     for (std::size_t k = 0; k < length; ++k) {
         std::uint32_t& cell = cells[first + k * step];
         const auto [entry, is_new] = known.try_emplace(cell, 0);
         if (is_new) {
-            std::vector<Slot> slots(block.stacks()[cell].slots().begin(), block.stacks()[cell].slots().end());
+            const auto old = merged.table.at(cell).slots();
+            std::vector<Slot> slots(old.begin(), old.end());
             for (Slot& slot : slots) {
                 if (row ? slot.is_weft() : slot.is_warp()) slot = slot.renumbered(new_number[slot.index()]);
             }
-            entry->second = table.number_of(Stack(std::move(slots)));
+            entry->second = merged.table.number_of(Stack(std::move(slots)));
         }
         cell = entry->second;
     }
-    return Block::make(block.t(), block.p(), std::move(table).take(), std::move(cells), block.height());
+    return Block::make(block.t(), block.p(), std::move(merged.table).take(), std::move(cells),
+                       block.height());
 }
 
 }  // namespace
@@ -246,28 +267,33 @@ const std::vector<std::string>& face_names() {
     return names;
 }
 
-Result<Block> attach(const Block& block, const Block& other, Face face) {
+Result<Block> attach(const Block& block, const Block& other, Face face, std::span<const std::string> names) {
+    assert(names.empty() || names.size() == 2);
+    const Pair pair =
+        names.empty() ? Pair{"the block", "the other"} : Pair{quoted(names[0]), quoted(names[1])};
     switch (face) {
         case Face::plus_x:
-            return attach_x(block, other);
+            return attach_x(block, other, pair);
         case Face::minus_x:
-            return attach_x(other, block);
+            return attach_x(other, block, pair.swapped());
         case Face::plus_y:
-            return attach_y(block, other);
+            return attach_y(block, other, pair);
         case Face::minus_y:
-            return attach_y(other, block);
+            return attach_y(other, block, pair.swapped());
         case Face::plus_z:
-            return attach_z(block, other);
+            return attach_z(block, other, pair);
         case Face::minus_z:
-            return attach_z(other, block);
+            return attach_z(other, block, pair.swapped());
     }
     return bad_input("a block has six faces");
 }
 
-Result<Block> stencil(std::span<const BlockPtr> blocks, const StencilMap& map) {
+Result<Block> stencil(std::span<const BlockPtr> blocks, const StencilMap& map,
+                      std::span<const std::string> names) {
+    assert(names.empty() || names.size() == blocks.size());
     WEAVE_CHECK_OK(check_stencil(blocks, map));
-    WEAVE_TRY(Counts t, common_counts(blocks, map.rows, &Block::t, "row", "pick"));
-    WEAVE_TRY(Counts p, common_counts(blocks, map.columns, &Block::p, "column", "end"));
+    WEAVE_TRY(Counts t, common_counts(blocks, names, map.rows, &Block::t, "row", "pick"));
+    WEAVE_TRY(Counts p, common_counts(blocks, names, map.columns, &Block::p, "column", "end"));
     MergedTables merged;
     std::size_t height = 0;
     for (const BlockPtr& block : blocks) {

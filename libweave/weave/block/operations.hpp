@@ -22,8 +22,10 @@ enum class Face : std::uint8_t { plus_x, minus_x, plus_y, minus_y, plus_z, minus
 const std::vector<std::string>& face_names();
 
 /// Joins `other` to that face of `block` (paper, Algorithms 2 and 3). In x both need the same p, in y the
-/// same t, in z the same numbers of rows and columns; an error names the first row or column that differs.
-Result<Block> attach(const Block& block, const Block& other, Face face);
+/// same t, in z the same numbers of rows and columns; an error names the first row or column that differs,
+/// and which block has what. `names`, if given, are what it calls the two.
+Result<Block> attach(const Block& block, const Block& other, Face face,
+                     std::span<const std::string> names = {});
 
 /// Which block each stack is taken from: one entry per stack of the result. Row 0 is the bottom row of the
 /// picture, column 0 its left.
@@ -39,8 +41,10 @@ struct StencilMap {
 
 /// Merges blocks by a stencil (paper, Algorithm 4): cell (i, j) is cell (i mod r, j mod c) of the block that
 /// the map names there. Errors: an empty map, an entry that names no block, blocks whose repeated t or p
-/// differ (the first such row or column is named).
-Result<Block> stencil(std::span<const BlockPtr> blocks, const StencilMap& map);
+/// differ (the first such row or column is named, and which block has what). `names`, if given, are what
+/// errors call the blocks; else they are called by their numbers.
+Result<Block> stencil(std::span<const BlockPtr> blocks, const StencilMap& map,
+                      std::span<const std::string> names = {});
 
 /// Changes the insertion order of the picks of one row: the k-th pick becomes the one that was number
 /// order[k] of that row, from 0. Permutes rows of the card image within the row of the block and changes

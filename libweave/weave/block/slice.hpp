@@ -13,7 +13,7 @@ namespace weave {
 /// slice.
 struct SliceYarn {
     Slot yarn;              ///< numbers count within the position for dots, through the slice for paths
-    bool disabled = false;  ///< a dot that is drawn but not woven: it becomes an empty slot
+    bool disabled = false;  ///< a weft that is drawn but not woven: it becomes an empty slot
     friend bool operator==(const SliceYarn&, const SliceYarn&) = default;
 };
 
@@ -26,18 +26,20 @@ struct Slice {
     friend bool operator==(const Slice&, const Slice&) = default;
 };
 
-/// The slice as a block of one column (dots are wefts) or one row (dots are warps). Disabled dots become
-/// empty slots: they no longer count in t or p and the numbers of the others close up, spacing stays. Errors
-/// name the position.
+/// The slice as a block of one column (dots are wefts) or one row (dots are warps). A disabled weft becomes
+/// an empty slot in every stack of its row: a dot in its position, a path at all positions, wherever along
+/// the slice it is disabled. It no longer counts in t, and the numbers of the others close up; spacing stays.
+/// Warps cannot be disabled: an end runs through the whole cloth, whatever the slice shows of it. Errors name
+/// the position.
 Result<Block> to_block(const Slice& slice);
 
 /// Column `column` of a block as a warp slice (dots are wefts), or row `row` as a weft slice.
 Result<Slice> warp_slice(const Block& block, std::size_t column);
 Result<Slice> weft_slice(const Block& block, std::size_t row);
 
-/// Reads one position as people write it, bottom first: as in parse_stack, a disabled dot in brackets: `T0 P0
-/// (T1) P1`. Dots count from 0 within the position.
-Result<std::vector<SliceYarn>> parse_slice_position(std::string_view text, System dots);
+/// Reads one position as people write it, bottom first: as in parse_stack, a disabled weft in brackets: `T0
+/// P0 (T1) P1`. Dots count from 0 within the position, paths through the slice.
+Result<std::vector<SliceYarn>> parse_slice_position(std::string_view text);
 std::string to_text(const std::vector<SliceYarn>& position);
 
 }  // namespace weave

@@ -12,17 +12,23 @@ Stack::Stack(std::vector<Slot> slots) : m_slots(std::move(slots)) {
     }
 }
 
-Status Stack::check() const {
+Status Stack::check(std::size_t first_pick, std::size_t first_end) const {
     std::vector<bool> seen_weft(m_wefts), seen_warp(m_warps);
     for (const Slot slot : m_slots) {
         if (slot.is_empty()) continue;
-        std::vector<bool>& seen = slot.is_weft() ? seen_weft : seen_warp;
-        const std::string name = (slot.is_weft() ? "T" : "P") + std::to_string(slot.index());
+        const bool weft = slot.is_weft();
+        std::vector<bool>& seen = weft ? seen_weft : seen_warp;
+        const auto name = [&](std::size_t index) {
+            return (weft ? "T" : "P") + std::to_string(index + (weft ? first_pick : first_end));
+        };
         if (slot.index() >= seen.size()) {
-            return bad_input("holds " + name + ", but only " + std::to_string(seen.size()) +
-                             (slot.is_weft() ? " picks" : " ends") + " stand in this cell");
+            const std::string yarns = weft ? "pick" : "end";
+            return bad_input("holds " + name(slot.index()) + ", but the " +
+                             (seen.size() == 1 ? "only " + yarns + " of this cell is " + name(0)
+                                               : yarns + "s of this cell are " + name(0) + " to " +
+                                                     name(seen.size() - 1)));
         }
-        if (seen[slot.index()]) return bad_input("holds " + name + " twice");
+        if (seen[slot.index()]) return bad_input("holds " + name(slot.index()) + " twice");
         seen[slot.index()] = true;
     }
     return {};  // as many numbers as yarns, all below that count, none twice: so none is missing

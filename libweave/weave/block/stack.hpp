@@ -65,8 +65,9 @@ class Stack {
     [[nodiscard]] std::size_t warps() const { return m_warps; }
 
     /// Whether the stack holds wefts 0 … wefts()-1 and warps 0 … warps()-1 exactly once each.
-    /// Otherwise a sentence that names the yarn which is missing or repeated.
-    [[nodiscard]] Status check() const;
+    /// Otherwise a sentence that names the yarn which is foreign or repeated as documents write it: counted
+    /// through the whole block, so from the first pick and end of the cell.
+    [[nodiscard]] Status check(std::size_t first_pick = 0, std::size_t first_end = 0) const;
 
     /// Position of each weft (or warp) from the bottom, by its number in the cell. The stack must pass
     /// check().

@@ -12,29 +12,7 @@ namespace {
 
 constexpr int deepest_level = 64;
 constexpr std::size_t most_members =
-    4096;  // ordered objects search linearly: a bound keeps hostile files cheap
-
-/// Looks over the parser's shoulder and stops it at what it would accept: repeated names, and objects without
-/// end.
-class Watcher {
-  public:
-    bool operator()(nlohmann::detail::parse_event_t event, const Json& value) {
-        using Event = nlohmann::detail::parse_event_t;
-        if (event == Event::object_start) m_names.emplace_back();
-        if (event == Event::object_end) m_names.pop_back();
-        if (event == Event::key) {
-            const auto& name = value.get_ref<const std::string&>();
-            if (!m_names.back().insert(name).second) throw bad_input("repeats the member '" + name + "'");
-            if (m_names.back().size() > most_members) {
-                throw bad_input("has an object with more than " + std::to_string(most_members) + " members");
-            }
-        }
-        return true;
-    }
-
-  private:
-    std::vector<std::set<std::string>> m_names;
-};
+    4096;  // who reads ordered objects searches linearly: a bound keeps hostile files cheap
 
 /// The parser recurses nowhere, but whoever walks the result does: so depth is bounded before parsing starts.
 bool nests_too_deep(std::string_view text) {
@@ -65,6 +43,81 @@ std::string parser_message(std::string message) {
     if (place != std::string::npos) return message.substr(place + 4);
     const auto bracket = message.find("] ");
     return bracket == std::string::npos ? message : message.substr(bracket + 2);
+}
+
+/// Builds the value from what the parser reports, and stops it at what it would accept: repeated names, and
+/// objects without end. nlohmann's own builder with a callback is no help: at the end of each object it looks
+/// through all that its parent holds so far, so a long list of objects takes a time that grows with its
+/// square.
+class Builder final : public nlohmann::json_sax<Json> {
+  public:
+    bool null() override { return add(nullptr); }
+    bool boolean(bool value) override { return add(value); }
+    bool number_integer(number_integer_t value) override { return add(value); }
+    bool number_unsigned(number_unsigned_t value) override { return add(value); }
+    bool number_float(number_float_t value, const string_t&) override { return add(value); }
+    bool string(string_t& value) override { return add(std::move(value)); }
+    bool binary(binary_t& value) override { return add(std::move(value)); }
+    bool start_object(std::size_t) override { return open(Json::value_t::object); }
+    bool start_array(std::size_t) override { return open(Json::value_t::array); }
+    bool end_object() override { return close(); }
+    bool end_array() override { return close(); }
+    bool key(string_t& name) override;
+    bool parse_error(std::size_t, const std::string&, const nlohmann::json::exception& trouble) override {
+        return refuse("is not JSON: " + parser_message(trouble.what()));
+    }
+
+    [[nodiscard]] Result<Json> result() && {
+        if (m_error) return std::move(*m_error);
+        return std::move(m_root);
+    }
+
+  private:
+    /// An object or array that has begun and not ended.
+    struct Open {
+        Json* value;
+        std::set<std::string> names;  ///< of its members so far
+    };
+
+    /// Where the next value goes. A parent does not grow while a child is open, so that pointers stay right.
+    Json& place() {
+        if (m_open.empty()) return m_root;
+        Json& parent = *m_open.back().value;
+        if (parent.is_array()) return parent.get_ref<Json::array_t&>().emplace_back();
+        return parent.get_ref<Json::object_t&>().back().second;  // of the member whose name came last
+    }
+    bool add(Json value) {
+        place() = std::move(value);
+        return true;
+    }
+    bool open(Json::value_t type) {
+        Json& value = place();
+        value = Json(type);
+        m_open.push_back({&value, {}});
+        return true;
+    }
+    bool close() {
+        m_open.pop_back();
+        return true;
+    }
+    bool refuse(std::string message) {
+        m_error = bad_input(std::move(message));
+        return false;
+    }
+
+    Json m_root;
+    std::vector<Open> m_open;
+    std::optional<Error> m_error;
+};
+
+bool Builder::key(string_t& name) {
+    Open& object = m_open.back();
+    if (!object.names.insert(name).second) return refuse("repeats the member '" + name + "'");
+    if (object.names.size() > most_members)
+        return refuse("has an object with more than " + std::to_string(most_members) + " members");
+    // at the end, without the search for an equal name that emplace() of the object makes
+    object.value->get_ref<Json::object_t&>().emplace_back(std::move(name), nullptr);
+    return true;
 }
 
 std::u16string utf16(std::string_view utf8) {
@@ -176,15 +229,9 @@ Result<Json> parse_json(std::string_view text) {
     if (nests_too_deep(text)) {
         return bad_input("nests deeper than " + std::to_string(deepest_level) + " levels");
     }
-    Watcher watcher;
-    try {
-        return Json::parse(text,
-                           [&watcher](int, auto event, const Json& value) { return watcher(event, value); });
-    } catch (const nlohmann::json::exception& trouble) {
-        return bad_input("is not JSON: " + parser_message(trouble.what()));
-    } catch (Error& stopped) {
-        return std::move(stopped);
-    }
+    Builder builder;
+    Json::sax_parse(text.begin(), text.end(), &builder);
+    return std::move(builder).result();
 }
 
 std::string ecmascript_number(double value) {

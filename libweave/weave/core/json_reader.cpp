@@ -77,6 +77,11 @@ double JsonReader::number(const std::string& key, Range range, std::optional<dou
     return spare;
 }
 
+std::optional<double> JsonReader::optional_number(const std::string& key, Range range) {
+    if (!has(key)) return {};
+    return number(key, range);
+}
+
 std::int64_t JsonReader::integer(const std::string& key, std::int64_t low, std::int64_t high,
                                  std::optional<std::int64_t> fallback) {
     const std::int64_t spare = fallback.value_or(low);

@@ -33,6 +33,8 @@ class JsonReader {
     [[nodiscard]] const Json& json() const { return *m_value; }
 
     double number(const std::string& key, Range range, std::optional<double> fallback = {});
+    /// A number that may be missing and then stands for something that only the caller knows.
+    std::optional<double> optional_number(const std::string& key, Range range);
     std::int64_t integer(const std::string& key, std::int64_t low, std::int64_t high,
                          std::optional<std::int64_t> fallback = {});
     bool boolean(const std::string& key, std::optional<bool> fallback = {});

@@ -16,4 +16,7 @@ bool is_utf8(std::string_view text);
 /// `1 pick`, `2 picks`.
 std::string counted(std::size_t number, const std::string& noun);
 
+/// A place in a list of a document: `flips[3]`.
+std::string indexed(const std::string& list, std::size_t index);
+
 }  // namespace weave

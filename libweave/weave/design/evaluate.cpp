@@ -24,10 +24,11 @@ Result<Block> make(const TileOperation& operation, const std::vector<BlockPtr>& 
     return tile(*children[0], operation.x, operation.y, operation.z);
 }
 Result<Block> make(const AttachOperation& operation, const std::vector<BlockPtr>& children) {
-    return attach(*children[0], *children[1], operation.face);
+    const std::string names[] = {operation.of, operation.other};
+    return attach(*children[0], *children[1], operation.face, names);
 }
 Result<Block> make(const StencilOperation& operation, const std::vector<BlockPtr>& children) {
-    return stencil(children, *operation.map);
+    return stencil(children, *operation.map, operation.of);
 }
 Result<Block> make(const RenumberOperation& operation, const std::vector<BlockPtr>& children) {
     return operation.system == System::weft ? renumber_row(*children[0], operation.line, operation.order)
@@ -47,10 +48,13 @@ Result<BlockPtr> block_of(const Node& node, const std::vector<BlockPtr>& childre
     return std::make_shared<const Block>(std::move(flipped.block));
 }
 
-/// So many that a name's versions stay within some 16 MB, unless the latest alone is larger.
-std::size_t versions_to_keep(const Block& block) {
-    constexpr std::size_t most = 8, most_cells = std::size_t{1} << 22;
-    return std::clamp<std::size_t>(most_cells / block.cells().size(), 1, most);
+constexpr std::size_t most_versions = 8;
+
+/// What a block holds: its cells, and the slots of its stacks.
+std::size_t weight(const Block& block) {
+    std::size_t slots = 0;
+    for (const Stack& stack : block.stacks()) slots += stack.height();
+    return block.cells().size() + slots;
 }
 
 }  // namespace
@@ -63,46 +67,108 @@ Result<Evaluation> Evaluator::evaluate(const Design& design, const std::string& 
     WEAVE_CHECK_OK(check(design));
     if (!design.blocks.contains(block))
         return bad_input("'" + block.substr(0, 80) + "' is not a block of this design");
+    const std::vector<std::string> order = bottom_up(design, block);
+    for (const std::string& name : order) recognise(name, design.blocks.at(name));
     Evaluation evaluation;
-    for (const std::string& name : bottom_up(design, block)) {
-        WEAVE_CHECK_OK(make_known(name, design.blocks.at(name)));
-        const Known& made = known(name);
-        evaluation.lost_flips.insert(evaluation.lost_flips.end(), made.lost_flips.begin(),
-                                     made.lost_flips.end());
-        evaluation.block = made.block;
+    WEAVE_TRY(evaluation.block, cloth(order));
+    for (const std::string& name : order) {
+        const std::vector<LostFlip>& lost = latest(name).lost_flips;
+        evaluation.lost_flips.insert(evaluation.lost_flips.end(), lost.begin(), lost.end());
     }
-    std::erase_if(m_known, [&](const auto& versions) { return !design.blocks.contains(versions.first); });
+    for (auto known = m_known.begin(); known != m_known.end();) {
+        if (design.blocks.contains(known->first)) {
+            ++known;
+            continue;
+        }
+        for (Version& version : known->second) forget(version);
+        known = m_known.erase(known);
+    }
     return evaluation;
 }
 
-Status Evaluator::make_known(const std::string& name, const NodePtr& node) {
-    std::vector<BlockPtr> children;
-    for (const std::string& child : children_of(*node)) children.push_back(known(child).block);
-    std::vector<Known>& versions = m_known[name];
-    const auto found = std::find_if(versions.begin(), versions.end(), [&](const Known& version) {
+/// Makes the version of `name` that this node is now the latest; the names that it is made from are
+/// recognised.
+void Evaluator::recognise(const std::string& name, const NodePtr& node) {
+    std::vector<std::size_t> children;
+    for (const std::string& child : children_of(*node)) children.push_back(latest(child).id);
+    std::vector<Version>& versions = m_known[name];
+    const auto found = std::find_if(versions.begin(), versions.end(), [&](const Version& version) {
         return version.node == node && version.children == children;
     });
     if (found != versions.end()) {
         std::rotate(versions.begin(), found, found + 1);
-        return {};
+        return;
     }
+    versions.insert(versions.begin(), Version{++m_last_id, node, std::move(children), nullptr, 0, {}});
+    if (versions.size() <= most_versions) return;
+    forget(versions.back());
+    versions.pop_back();
+}
+
+/// The block of the last name. Only what it needs and is not remembered is made; each block is at hand as
+/// long as something is still to be made from it, whatever the budget.
+Result<BlockPtr> Evaluator::cloth(const std::vector<std::string>& order) {
+    std::map<std::string, std::size_t> uses{{order.back(), 1}};
+    std::map<std::string, BlockPtr> at_hand;
+    for (auto name = order.rbegin(); name != order.rend(); ++name) {
+        if (!uses.contains(*name)) continue;
+        if (const BlockPtr& block = latest(*name).block) {
+            at_hand[*name] = block;
+            touch(latest(*name));
+            continue;
+        }
+        for (const std::string& child : children_of(*latest(*name).node)) ++uses[child];
+    }
+    for (const std::string& name : order) {
+        if (!uses.contains(name) || at_hand.contains(name)) continue;
+        std::vector<BlockPtr> children;
+        const std::vector<std::string> child_names = children_of(*latest(name).node);
+        for (const std::string& child : child_names) children.push_back(at_hand.at(child));
+        WEAVE_CHECK_OK(make(name, children));
+        at_hand[name] = latest(name).block;
+        for (const std::string& child : child_names) {
+            if (--uses[child] == 0) at_hand.erase(child);
+        }
+        keep_within_budget();
+    }
+    return at_hand.at(order.back());
+}
+
+Status Evaluator::make(const std::string& name, const std::vector<BlockPtr>& children) {
+    Version& version = latest(name);
     std::vector<RefusedFlip> refused;
-    Result<BlockPtr> block = block_of(*node, children, refused);
-    if (!block) {
-        if (versions.empty()) m_known.erase(name);
-        return std::move(block).error().under("blocks." + name);
-    }
+    Result<BlockPtr> block = block_of(*version.node, children, refused);
+    if (!block) return std::move(block).error().under("blocks." + name);
     ++m_computed;
-    std::vector<LostFlip> lost;
-    for (RefusedFlip& flip : refused) lost.push_back({name, flip.flip, std::move(flip.reason)});
-    const std::size_t keep = versions_to_keep(**block);
-    versions.insert(versions.begin(), {node, std::move(children), std::move(block).value(), std::move(lost)});
-    versions.resize(std::min(versions.size(), keep));
+    version.lost_flips.clear();
+    for (RefusedFlip& flip : refused) version.lost_flips.push_back({name, flip.flip, std::move(flip.reason)});
+    version.block = std::move(block).value();
+    m_held += weight(*version.block);
+    touch(version);
     return {};
 }
 
+void Evaluator::forget(Version& version) {
+    if (version.block) m_held -= weight(*version.block);
+    version.block = nullptr;
+}
+
+void Evaluator::keep_within_budget() {
+    while (m_held > m_budget) {
+        Version* oldest = nullptr;
+        for (auto& [name, versions] : m_known) {
+            for (Version& version : versions) {
+                if (!version.block || version.used == m_clock) continue;
+                if (oldest == nullptr || version.used < oldest->used) oldest = &version;
+            }
+        }
+        if (oldest == nullptr) return;
+        forget(*oldest);
+    }
+}
+
 Result<Evaluation> evaluate(const Design& design) {
-    return Evaluator().evaluate(design);
+    return Evaluator(0).evaluate(design);
 }
 
 }  // namespace weave

@@ -5,16 +5,16 @@ namespace weave {
 
 namespace {
 
-/// `wish`, `wish-2`, `wish-3` …, never longer than a block name may be.
-std::string numbered(const std::string& wish, std::size_t k) {
+/// The k-th name to try, from 1: `wish`, `wish-2`, `wish-3` …, never longer than a block name may be.
+std::string name_tried(const std::string& wish, std::size_t k) {
     return k < 2 ? wish.substr(0, 64) : wish.substr(0, 48) + "-" + std::to_string(k);
 }
 
 /// The name under which `node` goes into the design: that of an equal block, or a free one.
 std::string place_for(const Design& design, const std::string& wish, const Node& node) {
     for (std::size_t k = 1;; ++k) {
-        const auto there = design.blocks.find(numbered(wish, k));
-        if (there == design.blocks.end() || *there->second == node) return numbered(wish, k);
+        const auto there = design.blocks.find(name_tried(wish, k));
+        if (there == design.blocks.end() || *there->second == node) return name_tried(wish, k);
     }
 }
 
@@ -22,8 +22,8 @@ std::string place_for(const Design& design, const std::string& wish, const Node&
 
 std::string free_name(const Design& design, const std::string& wish) {
     std::size_t k = 1;
-    while (design.blocks.contains(numbered(wish, k))) ++k;
-    return numbered(wish, k);
+    while (design.blocks.contains(name_tried(wish, k))) ++k;
+    return name_tried(wish, k);
 }
 
 std::string bring_in(Design& into, const Design& from) {

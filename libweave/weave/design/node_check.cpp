@@ -9,10 +9,6 @@ namespace {
 
 constexpr auto most_number = static_cast<std::size_t>(most_yarn_number);
 
-std::string numbered(const std::string& list, std::size_t k) {
-    return list + "[" + std::to_string(k) + "]";
-}
-
 Status check_source(const StacksLeaf& leaf) {
     return leaf.block ? Status() : bad_input("has no stacks", "stacks");
 }
@@ -21,7 +17,7 @@ Status check_counts(const std::vector<std::uint32_t>& counts, const std::string&
     if (counts.empty()) return bad_input("needs at least one number", where);
     for (std::size_t k = 0; k < counts.size(); ++k) {
         if (counts[k] > most_number)
-            return bad_input("must be from 0 to " + std::to_string(most_number), numbered(where, k));
+            return bad_input("must be from 0 to " + std::to_string(most_number), indexed(where, k));
     }
     return {};
 }
@@ -85,7 +81,7 @@ Status check_source(const StencilOperation& stencil) {
     if (wrong == map.blocks.end()) return {};
     return bad_input("names number " + std::to_string(*wrong) + ", but there are only " +
                          std::to_string(stencil.of.size()) + ", counted from 0",
-                     numbered("map", static_cast<std::size_t>(wrong - map.blocks.begin()) / map.columns));
+                     indexed("map", static_cast<std::size_t>(wrong - map.blocks.begin()) / map.columns));
 }
 
 Status check_source(const RenumberOperation& renumber) {
@@ -94,7 +90,7 @@ Status check_source(const RenumberOperation& renumber) {
         return bad_input("must be from 0 to " + std::to_string(most_number), line);
     for (std::size_t k = 0; k < renumber.order.size(); ++k) {
         if (renumber.order[k] > most_number)
-            return bad_input("must be from 0 to " + std::to_string(most_number), numbered("order", k));
+            return bad_input("must be from 0 to " + std::to_string(most_number), indexed("order", k));
     }
     return {};
 }
@@ -105,7 +101,7 @@ Status check(const Node& node) {
     WEAVE_CHECK_OK(std::visit([](const auto& source) { return check_source(source); }, node.source));
     for (std::size_t k = 0; k < node.flips.size(); ++k) {
         if (node.flips[k].pick > most_number || node.flips[k].end > most_number)
-            return bad_input("names a crossing that no cloth has", numbered("flips", k));
+            return bad_input("names a crossing that no cloth has", indexed("flips", k));
     }
     return {};
 }

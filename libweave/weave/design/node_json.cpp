@@ -1,3 +1,4 @@
+#include <weave/core/text.hpp>
 #include <weave/design/node_json.hpp>
 #include <weave/design/plan_json.hpp>
 
@@ -13,7 +14,7 @@ const std::vector<std::string> system_names{"warp", "weft"};
 const std::vector<std::string> side_names{"under", "over"};
 
 Error in_list(Error error, const std::string& list, std::size_t i, std::optional<std::size_t> j = {}) {
-    error.where = list + "[" + std::to_string(i) + "]" + (j ? "[" + std::to_string(*j) + "]" : "");
+    error.where = j ? indexed(indexed(list, i), *j) : indexed(list, i);
     return error;
 }
 
@@ -203,7 +204,7 @@ Result<NodeSource> read_slice(JsonReader& reader) {
     for (std::size_t k = 0; k < positions.size(); ++k) {
         if (!positions[k].is_string())
             return in_list(bad_input("must be a text such as 'T0 P0 (T1) P1'"), "positions", k);
-        auto position = parse_slice_position(positions[k].get_ref<const std::string&>(), slice.dots);
+        auto position = parse_slice_position(positions[k].get_ref<const std::string&>());
         if (!position) return in_list(std::move(position).error(), "positions", k);
         slice.positions.push_back(std::move(position).value());
     }

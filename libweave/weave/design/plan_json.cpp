@@ -14,7 +14,6 @@ constexpr std::int64_t scene_version = 1;
 
 const std::vector<std::string> boundary_names{"periodic", "frozen", "free"};
 const std::vector<std::string> weft_mode_names{"periodic", "wraparound"};
-const std::vector<std::string> insertion_names{"shuttle", "rapier", "air-jet"};
 const std::vector<std::string> pin_names{"end", "pick"};
 
 template <class Enum>
@@ -139,16 +138,11 @@ Json to_json(const SystemScene& system) {
     return json;
 }
 
-std::optional<double> optional_number(JsonReader& reader, const std::string& key, Range range) {
-    if (!reader.has(key)) return {};
-    return reader.number(key, range);
-}
-
 SystemScene system_scene(JsonReader reader) {
     SystemScene system;
-    system.strain = optional_number(reader, "strain", {1, 2});
-    system.stiffness_scale = optional_number(reader, "stiffness_scale", factor_range);
-    system.radius_scale = optional_number(reader, "radius_scale", factor_range);
+    system.strain = reader.optional_number("strain", {1, 2});
+    system.stiffness_scale = reader.optional_number("stiffness_scale", factor_range);
+    system.radius_scale = reader.optional_number("radius_scale", factor_range);
     reader.no_others();
     return system;
 }
@@ -278,6 +272,11 @@ WeftPlan weft_from_json(JsonReader reader) {
     return weft;
 }
 
+const std::vector<std::string>& insertion_kinds() {
+    static const std::vector<std::string> names{"shuttle", "rapier", "air-jet"};
+    return names;
+}
+
 Json to_json(const Scene& scene) {
     Json json{{"version", scene_version}};
     if (scene.dx_mm) json["dx_mm"] = *scene.dx_mm;
@@ -286,7 +285,7 @@ Json to_json(const Scene& scene) {
     json["boundary_x"] = name_of(boundary_names, scene.boundary_x);
     json["boundary_y"] = name_of(boundary_names, scene.boundary_y);
     json["weft_mode"] = name_of(weft_mode_names, scene.weft_mode);
-    json["insertion"] = name_of(insertion_names, scene.insertion);
+    json["insertion"] = name_of(insertion_kinds(), scene.insertion);
     json["warp"] = to_json(scene.warp);
     json["weft"] = to_json(scene.weft);
     json["pins"] = Json::array();
@@ -311,13 +310,13 @@ Scene scene_from_json(JsonReader reader) {
             "is newer than this program, which knows scenes up to version " + std::to_string(scene_version),
             "version");
     }
-    scene.dx_mm = optional_number(reader, "dx_mm", {1e-6, 1e6});
-    scene.dy_mm = optional_number(reader, "dy_mm", {1e-6, 1e6});
-    scene.dz_mm = optional_number(reader, "dz_mm", {1e-6, 1e6});
+    scene.dx_mm = reader.optional_number("dx_mm", {1e-6, 1e6});
+    scene.dy_mm = reader.optional_number("dy_mm", {1e-6, 1e6});
+    scene.dz_mm = reader.optional_number("dz_mm", {1e-6, 1e6});
     scene.boundary_x = enum_member(reader, "boundary_x", boundary_names, scene.boundary_x);
     scene.boundary_y = enum_member(reader, "boundary_y", boundary_names, scene.boundary_y);
     scene.weft_mode = enum_member(reader, "weft_mode", weft_mode_names, scene.weft_mode);
-    scene.insertion = enum_member(reader, "insertion", insertion_names, scene.insertion);
+    scene.insertion = enum_member(reader, "insertion", insertion_kinds(), scene.insertion);
     scene.warp = system_scene(reader.object("warp", true));
     scene.weft = system_scene(reader.object("weft", true));
     for (JsonReader& item : reader.objects("pins", true)) {

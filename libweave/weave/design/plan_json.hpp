@@ -15,6 +15,9 @@ WarpPlan warp_from_json(JsonReader reader);
 WeftPlan weft_from_json(JsonReader reader);
 Scene scene_from_json(JsonReader reader);
 
+/// `shuttle` and so on, by value of Insertion, as documents and loom profiles write them.
+const std::vector<std::string>& insertion_kinds();
+
 /// Reads a sequence member, recording what is wrong with it.
 Sequence sequence_member(JsonReader& reader, const std::string& key, std::size_t below,
                          const Sequence& fallback);

@@ -35,6 +35,7 @@ RuleReport::~RuleReport() {
 
 void RuleReport::find(Place place, const std::string& message) {
     if (!wanted()) return;
+    ++m_report.counts[static_cast<std::size_t>(m_severity)];
     if (++m_found <= most_findings_per_rule) {
         m_report.findings.push_back({m_id, m_severity, place.pick, place.end, message});
     }
@@ -58,6 +59,13 @@ namespace {
 
 using check_detail::Subject;
 
+bool has_loose_ends(const Block& block) {
+    return std::any_of(block.stacks().begin(), block.stacks().end(), [](const Stack& stack) {
+        return std::any_of(stack.slots().begin(), stack.slots().end(),
+                           [](Slot slot) { return slot.is_warp() && slot.is_loose(); });
+    });
+}
+
 /// Worst first, then by rule, pick and end; a finding without a place stands after those with one, as it
 /// counts the rest.
 bool comes_before(const Finding& a, const Finding& b) {
@@ -71,23 +79,22 @@ bool comes_before(const Finding& a, const Finding& b) {
 
 }  // namespace
 
-std::size_t CheckReport::count(Severity severity) const {
-    return static_cast<std::size_t>(std::count_if(findings.begin(), findings.end(),
-                                                  [=](const Finding& f) { return f.severity == severity; }));
-}
-
 CheckReport check_for_loom(const Design& design, const Evaluation& cloth, const LoomProfile& profile,
                            const std::optional<TakeUps>& take_ups) {
     const Block& block = *cloth.block;
     Subject subject{design, cloth, profile, take_ups, block, block.card_image(), pick_table(design, block),
-                    {},     false};
+                    {},     {},    false};
     subject.turns = profile.insertion == Insertion::shuttle && design.scene.weft_mode == WeftMode::wraparound;
-    if (subject.turns) subject.way = weft_way(subject.card, subject.picks);
+    if (subject.turns) {
+        if (has_loose_ends(block)) subject.loose = loose_ends(block);
+        subject.way = weft_way(subject.card, subject.picks, subject.loose ? &*subject.loose : nullptr);
+    }
 
     CheckReport report;
     check_detail::check_structure(subject, report);
     check_detail::check_floats(subject, report);
     check_detail::check_hooks(subject, report);
+    check_detail::check_selvedge(subject, report);
     check_detail::check_lifts(subject, report);
     check_detail::check_feeders(subject, report);
     check_detail::check_turns(subject, report);

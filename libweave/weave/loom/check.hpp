@@ -4,6 +4,7 @@
 #include <weave/design/evaluate.hpp>
 #include <weave/loom/profile.hpp>
 
+#include <array>
 #include <cstddef>
 #include <optional>
 #include <string>
@@ -30,10 +31,15 @@ struct NotEvaluated {
 using TakeUps = std::vector<double>;
 
 struct CheckReport {
-    std::vector<Finding> findings;  ///< worst first, then by rule, pick, end
+    /// Worst first, then by rule, pick, end. No rule lists more than a hundred; one more says how many there
+    /// were besides.
+    std::vector<Finding> findings;
+    std::array<std::size_t, 4> counts{};  ///< of all that was found, listed or not, by Severity
     std::vector<NotEvaluated> not_evaluated;
     std::vector<std::string> passed;  ///< rules that were evaluated and found nothing
-    [[nodiscard]] std::size_t count(Severity severity) const;
+    [[nodiscard]] std::size_t count(Severity severity) const {
+        return counts[static_cast<std::size_t>(severity)];
+    }
 };
 
 /// Everything that validation knows about.

@@ -59,7 +59,8 @@ struct Subject {
     const Block& block;
     CardImage card;
     std::vector<Pick> picks;
-    WeftWay way;         ///< empty unless `turns`
+    std::optional<CardImage> loose;  ///< loose_ends(), if the weft turns and there are any
+    WeftWay way;         ///< through one repeat, with the loose ends trimmed; empty unless `turns`
     bool turns = false;  ///< the weft turns in the cloth: a shuttle loom, and a design in wraparound
 };
 
@@ -71,12 +72,13 @@ std::string percent(double share);
 
 void check_structure(const Subject& subject, CheckReport& report);  ///< block.*, flips.*
 void check_floats(const Subject& subject, CheckReport& report);     ///< float.*, bind.*
-void check_hooks(const Subject& subject,
-                 CheckReport& report);  ///< hooks.*, selvedge.*, picks.limit, name.limit
-void check_lifts(const Subject& subject, CheckReport& report);    ///< lift.*
-void check_feeders(const Subject& subject, CheckReport& report);  ///< feeders.*
-void check_turns(const Subject& subject, CheckReport& report);    ///< turn.*, insertion.match, repeat.doubled
-void check_warp(const Subject& subject,
-                CheckReport& report);  ///< take-up.*, reed.*, warp.density, consumption
+void check_hooks(const Subject& subject, CheckReport& report);      ///< hooks.*, picks.limit, name.limit
+void check_selvedge(const Subject& subject, CheckReport& report);   ///< selvedge.*
+void check_lifts(const Subject& subject, CheckReport& report);      ///< lift.*
+void check_feeders(const Subject& subject, CheckReport& report);    ///< feeders.*
+/// turn.*, insertion.match, repeat.doubled
+void check_turns(const Subject& subject, CheckReport& report);
+/// take-up.*, reed.*, warp.density, cloth.width, consumption
+void check_warp(const Subject& subject, CheckReport& report);
 
 }  // namespace weave::check_detail

@@ -1,4 +1,4 @@
-// Rules about the warp and its way through the loom: take-up, reed, density, consumption.
+// Rules about the warp and its way through the loom: take-up, reed, density, width, consumption.
 
 #include <weave/loom/check_detail.hpp>
 
@@ -86,32 +86,35 @@ void check_width(const Subject& subject, CheckReport& report) {
     RuleReport rule(report, subject.profile, "reed.width");
     const auto limit = subject.profile.limits.reed_width_mm;
     if (!limit) return rule.not_evaluated("the profile does not tell the width of the reed");
-    const std::size_t repeats = subject.profile.hook_rule == HookRule::repeats ? subject.profile.repeats : 1;
-    const bool point = subject.profile.hook_rule == HookRule::point;
-    const std::size_t ends = point ? 2 * subject.block.ends() - 1 : subject.block.ends() * repeats;
+    const std::size_t ends =
+        ends_on_loom(subject.profile, subject.block.ends()) + hooks_in(subject.profile.selvedge);
     const double width_mm = 10 * static_cast<double>(ends) / subject.design.warp.density_ends_per_cm;
     if (width_mm <= *limit) return;
-    rule.find({}, counted(ends, "end") + " at " + decimal(subject.design.warp.density_ends_per_cm) +
-                      " to the centimetre are " + decimal(width_mm) + " mm wide, but the reed takes " +
-                      decimal(*limit) + " mm");
+    const bool selvedge = hooks_in(subject.profile.selvedge) > 0;
+    rule.find({}, counted(ends, "end") + (selvedge ? ", the selvedge among them," : "") + " at " +
+                      decimal(subject.design.warp.density_ends_per_cm) + " to the centimetre are " +
+                      decimal(width_mm) + " mm wide, but the reed takes " + decimal(*limit) + " mm");
 }
 
 void check_dents(const Subject& subject, CheckReport& report) {
     RuleReport rule(report, subject.profile, "reed.dents");
     const std::size_t in_dent = subject.design.warp.ends_per_dent,
-                      left = in_dent == 0 ? 0 : subject.block.ends() % in_dent;
+                      left = in_dent == 0 ? 0 : ends_on_loom(subject.profile, subject.block.ends()) % in_dent;
     if (in_dent == 0) return rule.not_evaluated("the design does not tell how many ends go through a dent");
     if (left == 0) return;
     rule.find({}, "with " + counted(in_dent, "end") + " to a dent the last dent holds only " +
                       std::to_string(left));
 }
 
+/// A warp is set up only so exactly; less than this share of the harness's density is no difference.
+constexpr double density_tolerance = 0.01;
+
 void check_density(const Subject& subject, CheckReport& report) {
     RuleReport rule(report, subject.profile, "warp.density");
     const auto harness = subject.profile.density_ends_per_cm;
     if (!harness) return rule.not_evaluated("the profile does not tell the density of the harness");
     const double density = subject.design.warp.density_ends_per_cm;
-    if (std::abs(density - *harness) <= 0.01 * *harness) return;
+    if (std::abs(density - *harness) <= density_tolerance * *harness) return;
     rule.find({}, "the design has " + decimal(density) + " ends to the centimetre, the harness " +
                       decimal(*harness) + ": the cloth comes out " +
                       (density > *harness ? "wider" : "narrower") + " than drawn");
@@ -126,6 +129,8 @@ void check_warp(const Subject& subject, CheckReport& report) {
     check_width(subject, report);
     check_dents(subject, report);
     check_density(subject, report);
+    RuleReport(report, subject.profile, "cloth.width")
+        .not_evaluated("needs the cloth as it lies off the loom, from a simulation");
     RuleReport(report, subject.profile, "consumption")
         .not_evaluated("needs the relaxed length of every end and pick from a simulation");
 }

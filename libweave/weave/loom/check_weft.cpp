@@ -1,4 +1,4 @@
-// Rules about the weft and the shed: feeders, lifts, and the way of a shuttle's yarn.
+// Rules about the weft and the shed: feeders and lifts.
 
 #include <weave/loom/check_detail.hpp>
 
@@ -97,112 +97,6 @@ void check_face_down(const Subject& subject, const std::vector<std::size_t>& lif
                       std::to_string(lifted));
 }
 
-const char* name_of(Side side) {
-    return side == Side::left ? "left" : "right";
-}
-
-const char* name_of(Insertion insertion) {
-    switch (insertion) {
-        case Insertion::shuttle:
-            return "a shuttle";
-        case Insertion::rapier:
-            return "a rapier";
-        case Insertion::air_jet:
-            return "an air jet";
-    }
-    return "";
-}
-
-/// Why turns are not judged; empty if they are.
-std::string no_turns(const Subject& subject) {
-    if (subject.profile.insertion != Insertion::shuttle)
-        return "this loom cuts each pick, so its weft has no turns";
-    if (!subject.turns)
-        return "the design is drawn in periodic mode, where every pick runs from edge to edge";
-    return {};
-}
-
-void check_caught(const Subject& subject, CheckReport& report) {
-    RuleReport rule(report, subject.profile, "turn.caught");
-    if (const std::string reason = no_turns(subject); !reason.empty()) return rule.not_evaluated(reason);
-    for (const Turn& turn : subject.way.turns) {
-        if (turn.caught_by != CaughtBy::none) continue;
-        rule.find(at_pick(turn.to_pick), "the turn on the " + std::string(name_of(turn.side)) +
-                                             " from pick " + person(turn.from_pick) + " to pick " +
-                                             person(turn.to_pick) +
-                                             " is caught by no end and no pick: the weft of feeder " +
-                                             person(turn.feeder) + " pulls through");
-    }
-}
-
-void check_crossed(const Subject& subject, CheckReport& report) {
-    RuleReport rule(report, subject.profile, "turn.crossed");
-    if (const std::string reason = no_turns(subject); !reason.empty()) return rule.not_evaluated(reason);
-    std::set<std::pair<std::size_t, std::uint32_t>> uncaught;  // already reported by turn.caught
-    for (const Turn& turn : subject.way.turns) {
-        if (turn.caught_by != CaughtBy::none) continue;
-        uncaught.emplace(turn.from_pick, turn.feeder);
-        uncaught.emplace(turn.to_pick, turn.feeder);
-    }
-    for (const PickSpan& span : subject.way.spans) {
-        if (!span.crossed || uncaught.contains({span.pick, span.feeder})) continue;
-        rule.find(at_pick(span.pick), "the turns at the two ends of pick " + person(span.pick) +
-                                          " pull past each other, so nothing of it stays in the cloth");
-    }
-}
-
-/// Where a feeder's next pick does not start where its last one ended. Needs no card, so it is judged in
-/// periodic mode, too.
-void check_box(const Subject& subject, CheckReport& report) {
-    RuleReport rule(report, subject.profile, "turn.box");
-    if (subject.profile.insertion != Insertion::shuttle) {
-        return rule.not_evaluated("this loom has no shuttle that would have to stand on one side");
-    }
-    const CardImage no_ends(subject.picks.size(), 1);
-    for (const MissedBox& missed : weft_way(no_ends, subject.picks).missed_boxes) {
-        const bool stands_right = subject.picks[missed.from_pick].direction == Direction::left_to_right;
-        rule.find(at_pick(missed.to_pick),
-                  "pick " + person(missed.to_pick) + " starts on the " + (stands_right ? "left" : "right") +
-                      ", but the shuttle of feeder " + person(missed.feeder) + " stands on the " +
-                      (stands_right ? "right" : "left") + " since pick " + person(missed.from_pick));
-    }
-}
-
-void check_cut(const Subject& subject, CheckReport& report) {
-    RuleReport rule(report, subject.profile, "turn.cut");
-    if (subject.design.scene.weft_mode != WeftMode::wraparound) {
-        return rule.not_evaluated("the design is drawn in periodic mode, without turns");
-    }
-    if (subject.profile.insertion == Insertion::shuttle) return;
-    rule.find({}, "the design relies on weft that turns inside the cloth, but this loom inserts with " +
-                      std::string(name_of(subject.profile.insertion)) +
-                      " and cuts each pick: no loop will hold");
-}
-
-void check_insertion(const Subject& subject, CheckReport& report) {
-    RuleReport rule(report, subject.profile, "insertion.match");
-    if (subject.design.scene.insertion == subject.profile.insertion) return;
-    rule.find({}, "the design is drawn for " + std::string(name_of(subject.design.scene.insertion)) +
-                      ", but this loom inserts with " + name_of(subject.profile.insertion));
-}
-
-void check_repeat(const Subject& subject, CheckReport& report) {
-    RuleReport rule(report, subject.profile, "repeat.doubled");
-    if (subject.profile.insertion != Insertion::shuttle) {
-        return rule.not_evaluated("this loom cuts each pick, so each starts afresh");
-    }
-    std::map<std::uint32_t, std::size_t> counts;
-    for (const Pick& pick : subject.picks) {
-        for (const std::uint32_t feeder : pick.feeders) ++counts[feeder];
-    }
-    for (const auto& [feeder, picks] : counts) {
-        if (picks % 2 == 0) continue;
-        rule.find({}, "feeder " + person(feeder) + " makes " + counted(picks, "pick") +
-                          " in a repeat, an odd number: its shuttle ends on the other side, so only two "
-                          "repeats are a whole round");
-    }
-}
-
 }  // namespace
 
 void check_lifts(const Subject& subject, CheckReport& report) {
@@ -216,15 +110,6 @@ void check_feeders(const Subject& subject, CheckReport& report) {
     check_per_pick(subject, report);
     check_no_feeder(subject, report);
     check_feeder_range(subject, report);
-}
-
-void check_turns(const Subject& subject, CheckReport& report) {
-    check_caught(subject, report);
-    check_crossed(subject, report);
-    check_box(subject, report);
-    check_cut(subject, report);
-    check_insertion(subject, report);
-    check_repeat(subject, report);
 }
 
 }  // namespace weave::check_detail

@@ -4,12 +4,6 @@ namespace weave {
 
 namespace {
 
-std::size_t hooks_in(const std::vector<HookRange>& ranges) {
-    std::size_t hooks = 0;
-    for (const auto& range : ranges) hooks += range.last - range.first + 1;
-    return hooks;
-}
-
 /// The hook at a place of the body, counted through its ranges.
 std::size_t body_hook(const LoomProfile& profile, std::size_t place) {
     for (const auto& range : profile.body) {
@@ -35,6 +29,12 @@ void mark(std::vector<HookUse>& uses, const std::vector<std::size_t>& hooks, Hoo
 
 }  // namespace
 
+std::size_t hooks_in(const std::vector<HookRange>& ranges) {
+    std::size_t hooks = 0;
+    for (const auto& range : ranges) hooks += range.last - range.first + 1;
+    return hooks;
+}
+
 std::size_t most_ends(const LoomProfile& profile) {
     const std::size_t hooks = hooks_in(profile.body);
     switch (profile.hook_rule) {
@@ -48,6 +48,19 @@ std::size_t most_ends(const LoomProfile& profile) {
             return profile.hook_of_end.size();
     }
     return 0;
+}
+
+std::size_t ends_on_loom(const LoomProfile& profile, std::size_t ends) {
+    switch (profile.hook_rule) {
+        case HookRule::point:
+            return ends == 0 ? 0 : 2 * ends - 1;
+        case HookRule::repeats:
+            return ends * profile.repeats;
+        case HookRule::straight:
+        case HookRule::list:
+            return ends;
+    }
+    return ends;
 }
 
 std::vector<std::size_t> hooks_of_end(const LoomProfile& profile, std::size_t end, std::size_t ends) {

@@ -51,16 +51,17 @@ const YarnType& yarn_of_feeder(const Design& design, std::uint32_t feeder) {
 
 }  // namespace
 
-std::vector<Pick> pick_table(const Design& design, const Block& block) {
+std::vector<Pick> pick_table(const Design& design, const Block& block, std::size_t repeats) {
     const WeftPlan& plan = design.weft;
     Shuttles shuttles(plan.feeders.size());
     std::vector<Pick> picks;
-    picks.reserve(block.picks());
-    for (std::size_t row = 0; row < block.rows(); ++row) {
+    picks.reserve(repeats * block.picks());
+    for (std::size_t n = 0; n < repeats * block.rows(); ++n) {
+        const std::size_t row = n % block.rows();
         for (std::size_t k = block.first_pick(row); k < block.first_pick(row + 1); ++k) {
             Pick pick;
             if (!plan.feeder_order.empty()) pick.feeders = plan.feeder_order[k % plan.feeder_order.size()];
-            pick.row = row;
+            pick.row = n;
             pick.direction = plan.directions.empty() ? shuttles.throw_pick(pick.feeders)
                                                      : plan.directions[k % plan.directions.size()];
             pick.take_up = plan.take_up.empty() ? k + 1 == block.first_pick(row + 1)

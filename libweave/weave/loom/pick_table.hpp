@@ -15,11 +15,13 @@ struct Pick {
     std::vector<std::uint32_t> feeders;  ///< indices into WeftPlan::feeders; none, one or two
     Direction direction = Direction::left_to_right;
     bool take_up = true;  ///< the cloth advances after this pick
-    std::size_t row = 0;  ///< of the block, from 0
+    std::size_t row = 0;  ///< of the block, from 0; counts on through repeats
 };
 
-/// The weft insertion order: one entry per pick, from the first.
-std::vector<Pick> pick_table(const Design& design, const Block& block);
+/// The weft insertion order: one entry per pick, from the first, of so many repeats of the cloth. Every
+/// repeat starts the plans of the design anew; only shuttles that go back and forth go on from where they
+/// stand.
+std::vector<Pick> pick_table(const Design& design, const Block& block, std::size_t repeats = 1);
 
 /// The same as a CSV text for people and mills: pick (from 1), row, feeder, direction, take-up, yarn, colour.
 std::string pick_table_csv(const Design& design, const std::vector<Pick>& picks);

@@ -46,9 +46,9 @@ inline constexpr std::size_t most_hooks = 65536;
 
 /// Limits that validation holds a design to. Absent means: this loom does not limit it.
 struct LoomLimits {
-    std::size_t float_face = 0,
-                float_back =
-                    0;  ///< longest float on a face, in crossed yarns of the other system; 0: no limit
+    /// Longest float on a face, in stacks that it passes: yarns that lie on each other count as one. 0: no
+    /// limit.
+    std::size_t float_face = 0, float_back = 0;
     std::optional<double>
         lift_difference;               ///< largest change of the share of lifted ends between picks, 0 … 1
     std::optional<double> lift_share;  ///< largest share of ends lifted on one pick, 0 … 1
@@ -103,9 +103,15 @@ struct LoomProfile {
 Result<LoomProfile> read_profile(std::string_view text);
 Result<LoomProfile> load_profile(const std::filesystem::path& path);
 
+std::size_t hooks_in(const std::vector<HookRange>& ranges);
+
 /// How many ends this loom can carry: all body hooks (straight), half of them and the tip (point), their
 /// share of each repeat (repeats), or as many as are listed (list).
 std::size_t most_ends(const LoomProfile& profile);
+
+/// Ends between the selvedges when a design of `ends` is on this loom: as many (straight, list), with the
+/// mirror image (point), or in every repeat (repeats).
+std::size_t ends_on_loom(const LoomProfile& profile, std::size_t ends);
 
 /// The hooks (from 0) that lift end `end` of a design with `ends` ends, none where it does not fit. Straight
 /// and list: one. Point: the end's own and its mirror image's; the last end is the tip and stands once.

@@ -29,8 +29,10 @@
 #include <algorithm>
 #include <array>
 #include <bit>
+#include <map>
 #include <optional>
 #include <set>
+#include <span>
 #include <utility>
 
 namespace weave {
@@ -98,7 +100,8 @@ std::size_t outermost(Side side, std::size_t low, std::size_t high, ByteAt byte_
 
 class Loops {
   public:
-    Loops(const CardImage& card, const std::vector<Pick>& picks) : m_card(card), m_ends(card.ends()) {
+    Loops(const CardImage& card, const std::vector<Pick>& picks, const CardImage* loose)
+        : m_card(card), m_loose(loose), m_ends(card.ends()) {
         follow_feeders(picks);
         find_obstacles();
         lay_out();
@@ -121,7 +124,7 @@ class Loops {
     /// Strands in the order of picks; a loop wherever a feeder's next pick starts where the last one ended.
     void follow_feeders(const std::vector<Pick>& picks) {
         std::vector<std::size_t> last_strand;
-        for (std::size_t k = 0; k < std::min(picks.size(), m_card.picks()); ++k) {
+        for (std::size_t k = 0; k < picks.size(); ++k) {
             for (const std::uint32_t feeder : picks[k].feeders) {
                 if (feeder >= last_strand.size()) last_strand.resize(std::size_t{feeder} + 1, nowhere);
                 const std::size_t before = std::exchange(last_strand[feeder], m_strands.size());
@@ -138,10 +141,7 @@ class Loops {
         loop.turn.from_pick = m_strands[from].pick;
         loop.turn.to_pick = m_strands[to].pick;
         loop.turn.side = end_of(picks[loop.turn.from_pick].direction);
-        if (start_of(picks[loop.turn.to_pick].direction) != loop.turn.side) {
-            m_way.missed_boxes.push_back({loop.turn.feeder, loop.turn.from_pick, loop.turn.to_pick});
-            return;
-        }
+        if (start_of(picks[loop.turn.to_pick].direction) != loop.turn.side) return;
         loop.from = from;
         loop.to = to;
         loop.catching_depth = depth_of_difference(loop.turn);
@@ -154,10 +154,24 @@ class Loops {
         return side == Side::left ? end : m_ends - 1 - end;
     }
 
+    std::span<const std::uint8_t> row(std::size_t pick) const { return m_card.row(pick % m_card.picks()); }
+
+    bool weft_over(std::size_t pick, std::size_t end) const {
+        return m_card.weft_over(pick % m_card.picks(), end);
+    }
+
+    /// Eight ends of two picks, a bit set where the end is firm at both.
+    unsigned firm(std::size_t byte, std::size_t pick, std::size_t other) const {
+        if (m_loose == nullptr) return 0xffU;
+        const std::size_t picks = m_card.picks();
+        return ~(unsigned{m_loose->row(pick % picks)[byte]} | m_loose->row(other % picks)[byte]);
+    }
+
     std::size_t depth_of_difference(const Turn& turn) const {
-        const auto a = m_card.row(turn.from_pick), b = m_card.row(turn.to_pick);
-        const std::size_t end =
-            outermost(turn.side, 0, m_ends - 1, [&](std::size_t i) { return a[i] ^ b[i]; });
+        const auto a = row(turn.from_pick), b = row(turn.to_pick);
+        const std::size_t end = outermost(turn.side, 0, m_ends - 1, [&](std::size_t i) {
+            return static_cast<unsigned>(a[i] ^ b[i]) & firm(i, turn.from_pick, turn.to_pick);
+        });
         return end == nowhere ? m_ends : depth_of(turn.side, end);
     }
 
@@ -217,8 +231,8 @@ class Loops {
     bool passes_above(const Loop& outer, const Loop& inner) const {
         if (inner.catching_depth >= m_ends) return true;
         const std::size_t end = end_at(inner.turn.side, inner.catching_depth);
-        const bool from = m_card.weft_over(outer.turn.from_pick, end);
-        return from != m_card.weft_over(outer.turn.to_pick, end) || from;
+        const bool from = weft_over(outer.turn.from_pick, end);
+        return from != weft_over(outer.turn.to_pick, end) || from;
     }
 
     std::size_t end_at(Side side, std::size_t depth) const {
@@ -241,9 +255,11 @@ class Loops {
         const std::size_t outer = loop.depth, inner = loop.catching_depth - 1;  // depths
         low = std::max(low, left ? outer : m_ends - 1 - inner);
         high = std::min(high, left ? inner : m_ends - 1 - outer);
-        const auto bight = m_card.row(loop.turn.from_pick), c = m_card.row(m_strands[strand].pick);
+        const std::size_t pick = m_strands[strand].pick;
+        const auto bight = row(loop.turn.from_pick), c = row(pick);
         const std::size_t end = outermost(loop.turn.side, low, high, [&](std::size_t i) {
-            return loop_above ? c[i] & ~bight[i] : ~c[i] & bight[i];
+            const int held = loop_above ? c[i] & ~bight[i] : ~c[i] & bight[i];
+            return static_cast<unsigned>(held) & firm(i, loop.turn.from_pick, pick);
         });
         return end == nowhere ? m_ends : depth_of(loop.turn.side, end);
     }
@@ -365,6 +381,7 @@ class Loops {
     }
 
     const CardImage& m_card;
+    const CardImage* m_loose;
     std::size_t m_ends;
     std::vector<Strand> m_strands;
     std::vector<Loop> m_loops;
@@ -375,9 +392,40 @@ class Loops {
 
 }  // namespace
 
-WeftWay weft_way(const CardImage& card, const std::vector<Pick>& picks) {
-    if (card.ends() == 0) return {};
-    return Loops(card, picks).way();
+WeftWay weft_way(const CardImage& card, const std::vector<Pick>& picks, const CardImage* loose) {
+    if (card.ends() == 0 || card.picks() == 0) return {};
+    return Loops(card, picks, loose).way();
+}
+
+CardImage loose_ends(const Block& block) {
+    CardImage loose(block.picks(), block.ends());
+    for (std::size_t row = 0; row < block.rows(); ++row) {
+        for (std::size_t column = 0; column < block.columns(); ++column) {
+            for (const Slot slot : block.stack(row, column).slots()) {
+                if (!slot.is_warp() || !slot.is_loose()) continue;
+                for (std::size_t pick = block.first_pick(row); pick < block.first_pick(row + 1); ++pick) {
+                    loose.set(pick, block.first_end(column) + slot.index(), true);
+                }
+            }
+        }
+    }
+    return loose;
+}
+
+std::vector<MissedBox> missed_boxes(const std::vector<Pick>& picks) {
+    std::vector<MissedBox> missed;
+    std::map<std::uint32_t, std::size_t> last_pick;
+    for (std::size_t k = 0; k < picks.size(); ++k) {
+        for (const std::uint32_t feeder : picks[k].feeders) {
+            const auto [last, first_time] = last_pick.try_emplace(feeder, k);
+            if (first_time) continue;
+            if (end_of(picks[last->second].direction) != start_of(picks[k].direction)) {
+                missed.push_back({feeder, last->second, k});
+            }
+            last->second = k;
+        }
+    }
+    return missed;
 }
 
 }  // namespace weave

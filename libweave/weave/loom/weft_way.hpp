@@ -39,9 +39,8 @@ struct MissedBox {
 
 /// The way of every feeder's yarn through the cloth in wraparound.
 struct WeftWay {
-    std::vector<Turn> turns;
+    std::vector<Turn> turns;      ///< ordered by the pick they come from, then feeder
     std::vector<PickSpan> spans;  ///< ordered by pick, then feeder
-    std::vector<MissedBox> missed_boxes;
 };
 
 /// Where the loops are caught on a shuttle loom. Loops are pulled inwards until an end between their two
@@ -56,6 +55,16 @@ struct WeftWay {
 /// A loop hooked by another is caught by a pick of that other; `end` is the next end that it cannot pass.
 /// Beyond its turns no pick stays in the fabric. Where a pick is crossed, turns of the feeders around it are
 /// what its yarn would do if the crossed pick stayed: a defect to mend, no prediction.
-WeftWay weft_way(const CardImage& card, const std::vector<Pick>& picks);
+///
+/// More picks than the card has are further repeats of it. `loose`, of the size of the card, is true at the
+/// crossings whose end is not to hold any loop: with loose_ends() the way is that after trimming, but
+/// where loops of two feeders hook each other between firm ends they may come to rest at a loose one.
+WeftWay weft_way(const CardImage& card, const std::vector<Pick>& picks, const CardImage* loose = nullptr);
+
+/// The crossings at which the end is loose on purpose.
+CardImage loose_ends(const Block& block);
+
+/// Where a shuttle would have to start from the side on which it does not stand. It does not turn there.
+std::vector<MissedBox> missed_boxes(const std::vector<Pick>& picks);
 
 }  // namespace weave

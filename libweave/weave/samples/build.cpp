@@ -8,7 +8,8 @@ namespace weave::sample {
 
 Stack cell(std::size_t wefts, std::span<const End> ends, Below loose_wefts) {
     const auto ends_below = [&](std::size_t weft) {
-        return std::count_if(ends.begin(), ends.end(), [&](const End& end) { return (end.below >> weft & 1) == 0; });
+        return std::count_if(ends.begin(), ends.end(),
+                             [&](const End& end) { return (end.below >> weft & 1) == 0; });
     };
     std::vector<std::size_t> from_below(wefts);
     std::iota(from_below.begin(), from_below.end(), std::size_t{0});
@@ -35,7 +36,9 @@ Stack cell(std::size_t wefts, std::span<const End> ends, Below loose_wefts) {
 
 namespace {
 
-NodePtr node(NodeSource source) { return std::make_shared<const Node>(Node{std::move(source), {}}); }
+NodePtr node(NodeSource source) {
+    return std::make_shared<const Node>(Node{std::move(source), {}});
+}
 
 }  // namespace
 
@@ -54,7 +57,9 @@ NodePtr preset(std::string family, std::map<std::string, std::int64_t> options) 
     return node(PresetLeaf{{std::move(family), std::move(options)}});
 }
 
-NodePtr tiled(std::string of, std::size_t x, std::size_t y) { return node(TileOperation{std::move(of), x, y, 1}); }
+NodePtr tiled(std::string of, std::size_t x, std::size_t y) {
+    return node(TileOperation{std::move(of), x, y, 1});
+}
 
 NodePtr attached(std::string of, std::string other, Face face) {
     return node(AttachOperation{std::move(of), std::move(other), face});
@@ -68,7 +73,9 @@ NodePtr renumbered(std::string of, std::size_t row, std::vector<std::size_t> ord
     return node(RenumberOperation{std::move(of), System::weft, row, std::move(order)});
 }
 
-Colour colour(std::string_view text) { return parse_colour(text).value(); }
+Colour colour(std::string_view text) {
+    return parse_colour(text).value();
+}
 
 YarnType yarn(std::string name, std::string_view shade, double radius_mm, double tex, double stretch_N,
               double bend_N_mm2) {
@@ -83,7 +90,8 @@ YarnType yarn(std::string name, std::string_view shade, double radius_mm, double
 }
 
 YarnType cotton(std::string name, std::string_view shade, double radius_mm, double tex) {
-    // A spun cotton yarn stretches about 6 % at 0.15 N/tex; its fibres slide, so it bends far softer than a rod.
+    // A spun cotton yarn stretches about 6 % at 0.15 N/tex; its fibres slide, so it bends far softer than a
+    // rod.
     return yarn(std::move(name), shade, radius_mm, tex, 2.5 * tex, 1e-4 * tex);
 }
 

@@ -1,9 +1,9 @@
+#include <weave/samples/build.hpp>
+#include <weave/samples/makers.hpp>
+
 #include <algorithm>
 #include <cmath>
 #include <numbers>
-
-#include <weave/samples/build.hpp>
-#include <weave/samples/makers.hpp>
 
 namespace weave::sample {
 
@@ -12,11 +12,14 @@ namespace {
 constexpr std::size_t modulo(std::ptrdiff_t value, std::ptrdiff_t size) {
     return static_cast<std::size_t>((value % size + size) % size);
 }
-constexpr std::ptrdiff_t whole(std::size_t value) { return static_cast<std::ptrdiff_t>(value); }
+constexpr std::ptrdiff_t whole(std::size_t value) {
+    return static_cast<std::ptrdiff_t>(value);
+}
 
 /// Two-layer cloths have weft 0 and end 0 in the back layer, weft 1 and end 1 in the face layer.
 Design two_layers(std::string title, std::string notes) {
-    Design design = cloth(std::move(title), std::move(notes), cotton("face warp", "#e08a2c"), cotton("weft", "#8f959b"));
+    Design design =
+        cloth(std::move(title), std::move(notes), cotton("face warp", "#e08a2c"), cotton("weft", "#8f959b"));
     design.warp.yarns.push_back(cotton("back warp", "#3f6fb0"));
     design.warp.order.once = {1, 0};
     design.warp.beams = {{"back"}, {"face"}};
@@ -27,10 +30,11 @@ Design two_layers(std::string title, std::string notes) {
     return design;
 }
 
-/// A block of warp slices side by side: column j holds the ends at `height(i, j, e)` among the wefts of row i.
+/// A block of warp slices side by side: column j holds the ends at `height(i, j, e)` among the wefts of row
+/// i.
 template <class HeightOfEnd>
-void add_slices(Design& design, const std::string& name, std::size_t rows, std::size_t columns, std::size_t wefts,
-                std::size_t ends, HeightOfEnd height) {
+void add_slices(Design& design, const std::string& name, std::size_t rows, std::size_t columns,
+                std::size_t wefts, std::size_t ends, HeightOfEnd height) {
     std::string so_far;
     for (std::size_t j = 0; j < columns; ++j) {
         std::vector<Stack> stacks;
@@ -59,10 +63,11 @@ Design composite(std::string title, std::string notes) {
 }  // namespace
 
 Design satin_e() {
-    Design design = two_layers("Satin E: two-layer satin",
-                               "Both layers are 5-end satins that show their warp outside. Every other binding point of a "
-                               "back end is raised over the face pick, where its neighbours float and hide it, so that "
-                               "the layers hold together.");
+    Design design = two_layers(
+        "Satin E: two-layer satin",
+        "Both layers are 5-end satins that show their warp outside. Every other binding point of a "
+        "back end is raised over the face pick, where its neighbours float and hide it, so that "
+        "the layers hold together.");
     add(design, "satin-e", stacks(10, 5, 2, 2, [](std::size_t i, std::size_t j) {
             const bool face_binds = j == 2 * i % 5;
             const bool back_binds = j == (2 * i + 2) % 5;
@@ -73,9 +78,10 @@ Design satin_e() {
 }
 
 Design twill_g() {
-    Design design = two_layers("Twill G: two-layer twill",
-                               "A 3/1 twill on the face and a 1/3 twill behind it. The back ends rise over the face "
-                               "picks along every other twill line, which draws the face in to a diagonal dent.");
+    Design design =
+        two_layers("Twill G: two-layer twill",
+                   "A 3/1 twill on the face and a 1/3 twill behind it. The back ends rise over the face "
+                   "picks along every other twill line, which draws the face in to a diagonal dent.");
     add(design, "twill-g", stacks(8, 8, 2, 2, [](std::size_t i, std::size_t j) {
             const std::ptrdiff_t line = whole(j) - whole(i);
             const std::size_t back = modulo(line, 8) == 2 ? 2 : modulo(line, 4) == 2 ? 1 : 0;
@@ -114,10 +120,11 @@ StencilMap flower(std::size_t size) {
 }  // namespace
 
 Design three_colour_stencil() {
-    Design design = cloth("Three-colour stencil",
-                          "Figure 1 of the paper: three two-layer satins, each with another colour on the face, merged "
-                          "by a stencil image. The layers change places along the outlines of the image, which joins them.",
-                          cotton("white warp", "#efe6d2"), cotton("red", "#c0392b"));
+    Design design = cloth(
+        "Three-colour stencil",
+        "Figure 1 of the paper: three two-layer satins, each with another colour on the face, merged "
+        "by a stencil image. The layers change places along the outlines of the image, which joins them.",
+        cotton("white warp", "#efe6d2"), cotton("red", "#c0392b"));
     design.weft.yarns.push_back(cotton("blue", "#2f5d9b"));
     design.weft.feeders = {{"red", 0}, {"blue", 1}};
     design.weft.feeder_order = {{0}, {1}};
@@ -131,9 +138,12 @@ Design three_colour_stencil() {
 }
 
 Design layer_to_layer() {
-    Design design = composite("Layer to layer",
-                              "Four levels of wefts. Each end binds two neighbouring levels: it rises over both, comes "
-                              "back between them and dives under both. Neighbouring slices are half a repeat apart.");
+    Design design = composite(
+        "Layer to layer",
+        "Four levels of wefts and five ends a column. Each of the three inner ends binds two neighbouring "
+        "levels: it rises over both, comes back between them and dives under both. The lowest and the "
+        "highest end bind one level each, the bottom and the top one. Neighbouring slices are half a "
+        "repeat apart.");
     static constexpr std::ptrdiff_t step[] = {1, 0, -1, 0};
     add_slices(design, "layer-to-layer", 4, 2, 4, 5, [](std::size_t i, std::size_t j, std::size_t e) {
         const std::ptrdiff_t height = whole(e) + step[(i + 2 * j) % 4];
@@ -143,9 +153,10 @@ Design layer_to_layer() {
 }
 
 Design angle_interlock_a() {
-    Design design = composite("Angle interlock A",
-                              "Through the thickness: every end crosses all four levels of wefts on a slant, from one "
-                              "face to the other and back, and there is no other warp.");
+    Design design =
+        composite("Angle interlock A",
+                  "Through the thickness: every end crosses all four levels of wefts on a slant, from one "
+                  "face to the other and back, and there is no other warp.");
     static constexpr std::size_t height[] = {0, 0, 1, 2, 3, 4, 4, 3, 2, 1};
     add_slices(design, "angle-interlock-a", 10, 10, 4, 1,
                [](std::size_t i, std::size_t j, std::size_t) { return height[(i + 3 * j) % 10]; });
@@ -153,23 +164,26 @@ Design angle_interlock_a() {
 }
 
 Design angle_interlock_b() {
-    Design design = composite("Angle interlock B",
-                              "Three levels of wefts, binders on a slant from face to face, and beside each binder two "
-                              "straight stuffer ends, one between the lower and one between the upper two levels.");
+    Design design =
+        composite("Angle interlock B",
+                  "Three levels of wefts, binders on a slant from face to face, and beside each binder two "
+                  "straight stuffer ends, one between the lower and one between the upper two levels.");
     design.warp.yarns.push_back(yarn("stuffer", "#3f6fb0", 0.25, 300, 13000, 0.9));
     design.warp.order.once = {1, 1, 0};
     design.warp.beams = {{"binders"}, {"stuffers"}};
     design.warp.beam_order.once = {1, 1, 0};
     static constexpr std::size_t height[] = {0, 0, 1, 2, 3, 3, 2, 1};
-    add_slices(design, "angle-interlock-b", 8, 8, 3, 3,
-               [](std::size_t i, std::size_t j, std::size_t e) { return e < 2 ? e + 1 : height[(i + 3 * j) % 8]; });
+    add_slices(design, "angle-interlock-b", 8, 8, 3, 3, [](std::size_t i, std::size_t j, std::size_t e) {
+        return e < 2 ? e + 1 : height[(i + 3 * j) % 8];
+    });
     return design;
 }
 
 Design orthogonal() {
-    Design design = composite("Orthogonal",
-                              "Four levels of wefts and three straight stuffer ends between them; a binder stands "
-                              "upright between its turns over the top and under the bottom weft.");
+    Design design =
+        composite("Orthogonal",
+                  "Four levels of wefts and three straight stuffer ends between them; a binder stands "
+                  "upright between its turns over the top and under the bottom weft.");
     design.warp.yarns.push_back(yarn("stuffer", "#3f6fb0", 0.25, 300, 13000, 0.9));
     design.warp.order.once = {1, 1, 1, 0};
     design.warp.beams = {{"stuffers"}, {"binders"}};
@@ -181,9 +195,10 @@ Design orthogonal() {
 }
 
 Design stitched_layers() {
-    Design design = composite("Four stitched layers",
-                              "Four plain-weave layers, each with its own wefts and ends. On a satin of points an end "
-                              "of a layer dives under the weft of the layer below it, which stitches the two together.");
+    Design design =
+        composite("Four stitched layers",
+                  "Four plain-weave layers, each with its own wefts and ends. On a satin of points an end "
+                  "of a layer dives under the weft of the layer below it, which stitches the two together.");
     add_slices(design, "stitched-layers", 8, 8, 4, 4, [](std::size_t i, std::size_t j, std::size_t e) {
         const bool up = (i + j) % 2 == 0;
         const bool stitches = e > 0 && modulo(3 * whole(i) - whole(j) + 2 * whole(e), 8) == 1;

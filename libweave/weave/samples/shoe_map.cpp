@@ -12,16 +12,19 @@ struct Point {
     double across = 0, along = 0;
 };
 
-/// The outline of the flat shoe (a right one, seen from above) as points that a smooth closed curve runs through, in
-/// columns and rows; the heel is at row 22, the toe at row 975.
-constexpr std::array<Point, 27> outline{{{200, 22},  {262, 34},  {308, 78},  {330, 150}, {336, 240}, {330, 340}, {322, 440},
-                                         {328, 540}, {344, 640}, {354, 730}, {350, 810}, {326, 880}, {282, 935}, {222, 968},
-                                         {165, 975}, {112, 950}, {74, 895},  {54, 820},  {48, 730},  {56, 640},  {70, 540},
-                                         {76, 440},  {70, 340},  {64, 240},  {70, 150},  {92, 78},   {138, 34}}};
+/// The outline of the flat shoe (a right one, seen from above) as points that a smooth closed curve runs
+/// through, in columns and rows; the heel is at row 22, the toe at row 975.
+constexpr std::array<Point, 27> outline{
+    {{200, 22},  {262, 34},  {308, 78},  {330, 150}, {336, 240}, {330, 340}, {322, 440},
+     {328, 540}, {344, 640}, {354, 730}, {350, 810}, {326, 880}, {282, 935}, {222, 968},
+     {165, 975}, {112, 950}, {74, 895},  {54, 820},  {48, 730},  {56, 640},  {70, 540},
+     {76, 440},  {70, 340},  {64, 240},  {70, 150},  {92, 78},   {138, 34}}};
 
 /// A point of the Catmull-Rom curve through the outline, `t` of the way from point k to the next.
 Point on_outline(std::size_t k, double t) {
-    const auto point = [&](std::size_t step) { return outline[(k + outline.size() + step - 1) % outline.size()]; };
+    const auto point = [&](std::size_t step) {
+        return outline[(k + outline.size() + step - 1) % outline.size()];
+    };
     const auto curve = [t](double a, double b, double c, double d) {
         return b + 0.5 * t * (c - a + t * (2 * a - 5 * b + 4 * c - d + t * (3 * (b - c) + d - a)));
     };
@@ -29,7 +32,8 @@ Point on_outline(std::size_t k, double t) {
     return {curve(a.across, b.across, c.across, d.across), curve(a.along, b.along, c.along, d.along)};
 }
 
-/// The columns from `left` to `right` that lie inside the outline in each row; left > right where there are none.
+/// The columns from `left` to `right` that lie inside the outline in each row; left > right where there are
+/// none.
 struct Span {
     double left = shoe_columns, right = 0;
 };
@@ -42,8 +46,10 @@ std::vector<Span> outline_spans() {
         for (std::size_t step = 1; step <= steps; ++step) {
             const Point here = on_outline(k, static_cast<double>(step) / steps);
             const auto [low, high] = std::minmax(before.along, here.along);
-            for (auto row = static_cast<std::size_t>(std::ceil(low - 0.5)); static_cast<double>(row) + 0.5 <= high; ++row) {
-                const double share = (static_cast<double>(row) + 0.5 - before.along) / (here.along - before.along);
+            for (auto row = static_cast<std::size_t>(std::ceil(low - 0.5));
+                 static_cast<double>(row) + 0.5 <= high; ++row) {
+                const double share =
+                    (static_cast<double>(row) + 0.5 - before.along) / (here.along - before.along);
                 const double across = before.across + share * (here.across - before.across);
                 spans[row].left = std::min(spans[row].left, across);
                 spans[row].right = std::max(spans[row].right, across);
@@ -54,8 +60,8 @@ std::vector<Span> outline_spans() {
     return spans;
 }
 
-/// Distance to the outline in cells, positive inside, by two sweeps with steps of 3 straight and 4 aslant (a third too many
-/// each). Beyond the far field it does not matter and stays at its limit.
+/// Distance to the outline in cells, positive inside, by two sweeps with steps of 3 straight and 4 aslant (a
+/// third too many each). Beyond the far field it does not matter and stays at its limit.
 class Distances {
   public:
     explicit Distances(const std::vector<Span>& spans) : m_inside(size), m_thirds(size, far) {
@@ -111,7 +117,9 @@ struct Place {
     double inward;  ///< cells inside the outline
 };
 
-double squared(double x) { return x * x; }
+double squared(double x) {
+    return x * x;
+}
 
 /// Less than 1 inside an ellipse.
 double ellipse(const Place& at, double along, double half_width, double half_length) {
@@ -123,10 +131,18 @@ constexpr double opening_middle = 262, opening_half_width = 72, opening_half_len
 constexpr double tongue_tip = 352, throat_end = 692;
 constexpr double first_eyelet = 446, eyelet_step = 42, eyelets = 6;
 
-double tongue_half_width(double along) { return 44 - 16 * std::clamp((along - 400) / 300, 0.0, 1.0); }
-double heel_line(double side) { return 98 + 150 * squared(side); }
-double quarter_line(double side) { return throat_end + 26 - 190 * squared(side); }
-double cap_line(double side) { return 806 + 34 * squared(side); }
+double tongue_half_width(double along) {
+    return 44 - 16 * std::clamp((along - 400) / 300, 0.0, 1.0);
+}
+double heel_line(double side) {
+    return 98 + 150 * squared(side);
+}
+double quarter_line(double side) {
+    return throat_end + 26 - 190 * squared(side);
+}
+double cap_line(double side) {
+    return 806 + 34 * squared(side);
+}
 
 bool in_opening(const Place& at, double margin) {
     // Narrower towards the toe, as a shoe is at the throat.
@@ -139,12 +155,15 @@ bool on_tongue(const Place& at, double margin) {
     if (across >= half || at.along < tongue_tip || at.along > throat_end + margin) return false;
     const double from_tip = at.along - tongue_tip, from_end = throat_end + margin - at.along;
     const double round_tip = 26, round_end = half;
-    if (from_tip < round_tip && squared(across / half) + squared((round_tip - from_tip) / round_tip) > 1) return false;
+    if (from_tip < round_tip && squared(across / half) + squared((round_tip - from_tip) / round_tip) > 1)
+        return false;
     return from_end >= round_end || squared(across) + squared(round_end - from_end) < squared(half);
 }
 
 bool on_seam(const Place& at) {
-    const auto line = [&](double where, double half_width) { return std::abs(at.along - where) < half_width; };
+    const auto line = [&](double where, double half_width) {
+        return std::abs(at.along - where) < half_width;
+    };
     return line(heel_line(at.side), 4) || line(cap_line(at.side), 4) || line(cap_line(at.side) + 14, 2.5) ||
            (line(quarter_line(at.side), 4) && !on_tongue(at, 34));
 }
@@ -194,7 +213,8 @@ Recipe upper_at(const Place& at, Recipe below) {
         return with(std::abs(at.across) < 20 ? Upper::warp_rib : Upper::warp_face, Join::sparse);
     }
     if (at.along > cap_line(at.side)) return with(Upper::diamond, Join::none);
-    if (at.along > quarter_line(at.side)) return with(on_vent(at) ? Upper::weft_face : Upper::basket, Join::none);
+    if (at.along > quarter_line(at.side))
+        return with(on_vent(at) ? Upper::weft_face : Upper::basket, Join::none);
     if (on_stripe(at)) return with(Upper::warp_face, Join::none);
     return with(at.across < 0 ? Upper::twill_left : Upper::twill_right, Join::none);
 }
@@ -241,7 +261,8 @@ std::vector<Recipe> shoe_recipes() {
     recipes.reserve(shoe_rows * shoe_columns);
     for (std::size_t row = 0; row < shoe_rows; ++row) {
         const Span& span = spans[row];
-        const double middle = (span.left + span.right) / 2, half = std::max(1.0, (span.right - span.left) / 2);
+        const double middle = (span.left + span.right) / 2,
+                     half = std::max(1.0, (span.right - span.left) / 2);
         for (std::size_t column = 0; column < shoe_columns; ++column) {
             const double across = static_cast<double>(column) + 0.5 - middle;
             recipes.push_back(recipe_at({across, static_cast<double>(row) + 0.5, std::abs(across) / half,

@@ -1,14 +1,15 @@
-#include <array>
-#include <cmath>
-
 #include <weave/samples/build.hpp>
 #include <weave/samples/makers.hpp>
+
+#include <array>
+#include <cmath>
 
 namespace weave::sample {
 
 namespace {
 
-/// The half width, in columns, of a shoe's outline where it is rounded off: at `along` of `length` rows from the tip.
+/// The half width, in columns, of a shoe's outline where it is rounded off: at `along` of `length` rows from
+/// the tip.
 double rounded(double along, double length, double full, double power) {
     const double rest = 1 - std::min(1.0, along / length);
     return full * std::pow(1 - std::pow(rest, power), 1 / power);
@@ -27,14 +28,15 @@ StencilMap draw(std::size_t rows, std::size_t columns, BlockOfCell block_of_cell
     return map;
 }
 
-/// A plain-weave layer of one end and two wefts: in every other column the first weft lies over the end, else the second.
+/// A plain-weave layer of one end and two wefts: in every other column the first weft lies over the end, else
+/// the second.
 Below plain_pair(std::size_t first, std::size_t second, std::size_t column) {
     return Below{1} << (column % 2 == 0 ? second : first);
 }
 
-// The baby shoe. End 0 of a column is the sole's, end 1 the top's. Toe and heel have four wefts a row that the shuttle inserts
-// in the order sole, top, sole, top, so each turn ties the layers together at a side. The middle has six:
-// sole, right top there and back, sole, left top there and back.
+// The baby shoe. End 0 of a column is the sole's, end 1 the top's. Toe and heel have four wefts a row that
+// the shuttle inserts in the order sole, top, sole, top, so each turn ties the layers together at a side. The
+// middle has six: sole, right top there and back, sole, left top there and back.
 
 constexpr std::size_t baby_columns = 40;
 
@@ -44,16 +46,19 @@ Stack baby_shoe(std::size_t, std::size_t j) {
 }
 
 /// Outside the shoe the wefts lie loose between the loose ends: the turns pull them in to the edge.
-Stack baby_outside(std::size_t wefts) { return cell(wefts, {loose_at(0), loose_at(wefts)}, lowest(wefts)); }
+Stack baby_outside(std::size_t wefts) {
+    return cell(wefts, {loose_at(0), loose_at(wefts)}, lowest(wefts));
+}
 
-/// At the tips both layers are woven as one: both ends bind all four wefts, and no two wefts share a shed, or the turn
-/// between them would pull out.
+/// At the tips both layers are woven as one: both ends bind all four wefts, and no two wefts share a shed, or
+/// the turn between them would pull out.
 Stack baby_seam(std::size_t, std::size_t j) {
     if (j % 2 == 0) return cell(4, {End{0b0011U}, End{0b0111U}});
     return cell(4, {End{0b1000U}, End{0b1010U}});
 }
 
-/// The middle where the top end weaves with wefts `first` and `second`; the other half's top wefts lie idle inside the shoe.
+/// The middle where the top end weaves with wefts `first` and `second`; the other half's top wefts lie idle
+/// inside the shoe.
 Stack baby_middle(std::size_t j, std::size_t first, std::size_t second) {
     const Below sole = plain_pair(0, 3, j), top = plain_pair(first, second, j);
     const Below own = Below{1} << first | Below{1} << second;
@@ -96,9 +101,11 @@ void plan_shoe(Design& design) {
 
 Design shoe_baby() {
     Design design = cloth("Baby shoe",
-                          "Two plain-weave layers, a top and a sole, from seven blocks and three stencils. One shuttle "
-                          "closes the sides by its turns, and in the middle weaves the left and the right top layer apart, so "
-                          "that a hole for the ankle stays open once the loose ends are trimmed.",
+                          "Two plain-weave layers, a top and a sole, from seven blocks and three stencils. "
+                          "One shuttle closes the sides by its turns, and in the middle weaves the left and "
+                          "the right top layer apart, so that a hole for the ankle stays open once the "
+                          "loose ends are trimmed. The paper counts six blocks but names seven, A to G; "
+                          "here there are the seven that it names.",
                           cotton("top warp", "#e08a2c", 0.2, 80), cotton("weft", "#8f959b", 0.2, 80));
     design.warp.yarns.push_back(cotton("sole warp", "#3f6fb0", 0.2, 80));
     design.warp.order.once = {1, 0};
@@ -125,14 +132,16 @@ Design shoe_baby() {
 
 namespace {
 
-// The toddler shoe. Ends of a column: 0 sole (zigzag), 1 and 2 insole (layer to layer), 3 top. Wefts are first numbered
-// from the bottom up: 0, 1 sole, 2, 3 insole, 4, 5 top; in the middle 4, 5 left top and 6, 7 right top. Then each block is
-// renumbered to the order of insertion.
+// The toddler shoe. Ends of a column: 0 sole (zigzag), 1 and 2 insole (layer to layer), 3 top. Wefts are
+// first numbered from the bottom up: 0, 1 sole, 2, 3 insole, 4, 5 top; in the middle 4, 5 left top and 6, 7
+// right top. Then each block is renumbered to the order of insertion.
 
 constexpr std::size_t toddler_columns = 48;
 constexpr std::array<std::size_t, 4> zigzag{0, 1, 2, 1};
 
-End toddler_sole(std::size_t i, std::size_t j) { return at(zigzag[(i + j) % 4]); }
+End toddler_sole(std::size_t i, std::size_t j) {
+    return at(zigzag[(i + j) % 4]);
+}
 
 /// End 1 binds the sole's upper and the insole's lower weft, end 2 both wefts of the insole.
 End toddler_insole(std::size_t i, std::size_t j, std::size_t end) {
@@ -151,7 +160,8 @@ std::array<End, 3> toddler_thin(std::size_t i, std::size_t j) {
 }
 
 Stack toddler_full(std::size_t i, std::size_t j) {
-    return cell(6, {toddler_sole(i, j), toddler_insole(i, j, 1), toddler_insole(i, j, 2), toddler_top(j, 4, 5)});
+    return cell(6,
+                {toddler_sole(i, j), toddler_insole(i, j, 1), toddler_insole(i, j, 2), toddler_top(j, 4, 5)});
 }
 
 Stack toddler_edge(std::size_t i, std::size_t j) {
@@ -175,7 +185,8 @@ Stack toddler_middle(std::size_t i, std::size_t j, bool left, bool thin_edge) {
 }
 
 Stack toddler_hole(std::size_t i, std::size_t j) {
-    return cell(8, {toddler_sole(i, j), toddler_insole(i, j, 1), toddler_insole(i, j, 2), loose_at(8)}, 0xf0U);
+    return cell(8, {toddler_sole(i, j), toddler_insole(i, j, 1), toddler_insole(i, j, 2), loose_at(8)},
+                0xf0U);
 }
 
 Stack toddler_outside(std::size_t, std::size_t) {
@@ -222,12 +233,13 @@ StencilMap toddler_middle_map(std::size_t rows) {
 }  // namespace
 
 Design shoe_toddler() {
-    Design design = cloth("Toddler shoe",
-                          "Three layers of ends: a zigzag sole for grip, a thick layer-to-layer insole tied to it, and a "
-                          "thin top. Nine blocks A to I and three stencils; B, G and H are the thin edges that unfold to "
-                          "the sides of the shoe. The wefts are renumbered so that one shuttle closes the sides and leaves the "
-                          "ankle hole open.",
-                          cotton("top warp", "#e08a2c", 0.12, 30), cotton("weft", "#8f959b", 0.15, 50));
+    Design design = cloth(
+        "Toddler shoe",
+        "Three layers of ends: a zigzag sole for grip, a thick layer-to-layer insole tied to it, and a "
+        "thin top. Nine blocks A to I and three stencils; B, G and H are the thin edges that unfold to "
+        "the sides of the shoe. The wefts are renumbered so that one shuttle closes the sides and leaves the "
+        "ankle hole open.",
+        cotton("top warp", "#e08a2c", 0.12, 30), cotton("weft", "#8f959b", 0.15, 50));
     design.warp.yarns.push_back(cotton("insole warp", "#b0413f", 0.18, 70));
     design.warp.yarns.push_back(yarn("sole warp, coated polyester", "#2c3e70", 0.2, 110, 600, 0.08));
     design.warp.order.once = {2, 1, 1, 0};
