@@ -97,9 +97,8 @@ double Energy<Real>::add_fields(const std::vector<Real>& state, std::vector<Real
 }
 
 template <class Real>
-double Energy<Real>::safe_share(const std::vector<Real>& state, const std::vector<Real>& change, double most) {
-    const std::size_t samples = m_fabric.samples();
-    m_moved.resize(3 * samples);
+void Energy<Real>::move_samples(const std::vector<Real>& change) {
+    m_moved.resize(3 * m_fabric.samples());
     const std::vector<SegmentPlace>& segments = m_fabric.segment_places();
     m_executor.each(segments.size(), [&](std::size_t s) {
         const YarnConstants<Real>& yarn = m_fabric.constants()[segments[s].yarn];
@@ -110,21 +109,55 @@ double Energy<Real>::safe_share(const std::vector<Real>& state, const std::vecto
                 m_moved[3 * (segments[s].sample + k) + axis] = moved[static_cast<Eigen::Index>(axis)];
         }
     });
+}
+
+template <class Real>
+double Energy<Real>::safe_share_of(const FabricView<Real>& fabric, std::size_t a, double most) const {
+    const Vec<Real> mine = load(&m_moved[3 * a]);
+    const auto moved = static_cast<double>(mine.norm());
+    double share = std::min(most, m_fabric.least_reach() / 4 / std::max(1e-300, moved));
+    for (std::uint32_t e = fabric.first_neighbour[a]; e < fabric.first_neighbour[a + 1]; ++e) {
+        const std::uint32_t b = fabric.neighbours[e];
+        const Vec<Real> apart(fabric.samples.x[a] - fabric.samples.x[b], fabric.samples.y[a] - fabric.samples.y[b],
+                              fabric.samples.z[a] - fabric.samples.z[b]);
+        const auto change = static_cast<double>((mine - load(&m_moved[3 * std::size_t(m_neighbours.own(b))])).norm());
+        if (change > 0) share = std::min(share, 0.45 * static_cast<double>(apart.norm()) / change);
+    }
+    return share;
+}
+
+template <class Real>
+double Energy<Real>::safe_share(const std::vector<Real>& state, const std::vector<Real>& change, double most) {
+    move_samples(change);
     const FabricView<Real> fabric = view(state);
-    const double farthest = m_fabric.least_reach() / 4;
-    return m_executor.least(samples, [&](std::size_t a) {
-        const Vec<Real> mine = load(&m_moved[3 * a]);
-        double share = farthest / std::max<double>(1e-300, static_cast<double>(mine.norm()));
-        for (std::uint32_t e = fabric.first_neighbour[a]; e < fabric.first_neighbour[a + 1]; ++e) {
-            const std::uint32_t b = fabric.neighbours[e];
-            const Vec<Real> apart(fabric.samples.x[a] - fabric.samples.x[b], fabric.samples.y[a] - fabric.samples.y[b],
-                                  fabric.samples.z[a] - fabric.samples.z[b]);
-            const auto change_of_pair =
-                static_cast<double>((mine - load(&m_moved[3 * std::size_t(m_neighbours.own(b))])).norm());
-            if (change_of_pair > 0) share = std::min(share, 0.45 * static_cast<double>(apart.norm()) / change_of_pair);
-        }
-        return share;
-    }, most);
+    return m_executor.least(m_fabric.samples(), [&](std::size_t a) { return safe_share_of(fabric, a, most); }, most);
+}
+
+template <class Real>
+void Energy<Real>::shorten(const std::vector<Real>& state, std::vector<Real>& change) {
+    constexpr int rounds = 6;
+    const FabricView<Real> fabric = view(state);
+    std::vector<double> share(m_fabric.segments());
+    const std::vector<YarnPlace>& yarns = m_fabric.yarns();
+    for (int round = 0; round < rounds; ++round) {
+        move_samples(change);
+        m_executor.each(share.size(), [&](std::size_t s) {
+            const SegmentPlace& segment = fabric.segments[s];
+            share[s] = 1;
+            for (std::uint32_t k = 0; k < fabric.yarns[segment.yarn].samples; ++k)
+                share[s] = std::min(share[s], safe_share_of(fabric, segment.sample + k, 1));
+        });
+        m_executor.each(m_fabric.slots(), [&](std::size_t slot) {
+            const YarnPlace& yarn = yarns[m_fabric.yarn_of_slot()[slot]];
+            const std::size_t within = slot - yarn.first_slot;
+            double least = 1;
+            for (std::size_t c = 0; c < 4 && c <= within; ++c) {
+                if (within - c < yarn.segments) least = std::min(least, share[yarn.first_segment + within - c]);
+            }
+            for (std::size_t k = 0; k < 3; ++k) change[3 * slot + k] *= static_cast<Real>(least);
+        });
+        m_fabric.follow_change(change);
+    }
 }
 
 template class Energy<float>;

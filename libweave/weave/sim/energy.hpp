@@ -29,7 +29,12 @@ class Energy {
     /// near samples comes closer by half its distance or more, and no sample moves by a quarter of the least reach.
     double safe_share(const std::vector<Real>& state, const std::vector<Real>& change, double most);
 
+    /// Shortens a change where it is not safe: each control point goes as far as the samples near it allow.
+    void shorten(const std::vector<Real>& state, std::vector<Real>& change);
+
   private:
+    void move_samples(const std::vector<Real>& change);
+    [[nodiscard]] double safe_share_of(const FabricView<Real>& fabric, std::size_t sample, double most) const;
     void gather(std::vector<Real>& gradient) const;
     double add_fields(const std::vector<Real>& state, std::vector<Real>& gradient) const;
 

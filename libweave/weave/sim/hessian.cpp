@@ -45,8 +45,8 @@ Gauss<double> as_double(const Gauss<Real>& gauss) {
 /// What one thread needs while it works on a segment.
 template <class Real>
 struct Hessian<Real>::Scratch {
-    Matrix12 own;
-    std::vector<Matrix12> other;  ///< per near segment
+    SlotBlocks own;
+    std::vector<SlotBlocks> other;  ///< per near segment
     std::vector<std::uint8_t> touched;
     double slots[12];
 };
@@ -77,6 +77,16 @@ void Hessian<Real>::make_shares() {
             if (follow.weight[k] != 0 && moves[follow.from[k]] != 0)
                 shares[follow.slot].push_back({row_of_slot[follow.from[k]], static_cast<float>(follow.weight[k])});
         }
+    }
+    std::vector<std::vector<std::uint32_t>> segments(m_slot_of_row.size());
+    for (std::uint32_t s = 0; s < m_fabric.segments(); ++s) {
+        for (std::uint32_t c = 0; c < 4; ++c) {
+            for (const Share& share : shares[m_fabric.segment_places()[s].slot + c]) segments[share.row].push_back(s);
+        }
+    }
+    for (const std::vector<std::uint32_t>& of_row : segments) {
+        m_segments_of_row.insert(m_segments_of_row.end(), of_row.begin(), of_row.end());
+        m_first_segment.push_back(static_cast<std::uint32_t>(m_segments_of_row.size()));
     }
     m_first_share.assign(1, 0);
     for (const std::vector<Share>& of_slot : shares) {
@@ -123,30 +133,46 @@ void Hessian<Real>::list_near_segments(Energy<Real>& energy) {
     }
 }
 
+/// The rows that a control point meets, some of them more than once: those of its own segments, and of the segments
+/// near to these.
+template <class Real>
+void Hessian<Real>::list_columns(std::uint32_t row, std::vector<std::uint32_t>& columns) const {
+    const auto add_slots = [&](std::uint32_t segment) {
+        const std::uint32_t slot = m_fabric.segment_places()[segment].slot;
+        for (std::uint32_t j = m_first_share[slot]; j < m_first_share[slot + 4]; ++j) columns.push_back(m_shares[j].row);
+    };
+    std::vector<std::uint32_t> near;
+    for (std::uint32_t i = m_first_segment[row]; i < m_first_segment[row + 1]; ++i) {
+        const std::uint32_t segment = m_segments_of_row[i];
+        near.push_back(segment);
+        near.insert(near.end(), m_near.begin() + m_first_near[segment], m_near.begin() + m_first_near[segment + 1]);
+    }
+    std::sort(near.begin(), near.end());
+    near.erase(std::unique(near.begin(), near.end()), near.end());
+    for (const std::uint32_t segment : near) add_slots(segment);
+}
+
 template <class Real>
 void Hessian<Real>::make_shape(Energy<Real>& energy, BlockMatrix& matrix) {
     list_near_segments(energy);
-    std::vector<std::vector<std::uint32_t>> columns(rows());
-    const auto connect = [&](std::uint32_t segment, std::uint32_t other) {
-        const std::uint32_t a = m_fabric.segment_places()[segment].slot, b = m_fabric.segment_places()[other].slot;
-        for (std::uint32_t i = m_first_share[a]; i < m_first_share[a + 4]; ++i) {
-            for (std::uint32_t j = m_first_share[b]; j < m_first_share[b + 4]; ++j)
-                columns[m_shares[i].row].push_back(m_shares[j].row);
+    constexpr std::size_t rows_at_once = 256;
+    std::vector<std::vector<std::uint32_t>> parts((rows() + rows_at_once - 1) / rows_at_once);
+    std::vector<std::uint32_t> first(rows() + 1, 0);
+    energy.executor().each(parts.size(), [&](std::size_t part) {
+        std::vector<std::uint32_t>& columns = parts[part];
+        for (std::size_t row = part * rows_at_once; row < std::min(rows(), (part + 1) * rows_at_once); ++row) {
+            const std::size_t before = columns.size();
+            list_columns(static_cast<std::uint32_t>(row), columns);
+            const auto begin = columns.begin() + static_cast<std::ptrdiff_t>(before);
+            std::sort(begin, columns.end());
+            columns.erase(std::unique(begin, columns.end()), columns.end());
+            first[row + 1] = static_cast<std::uint32_t>(columns.size() - before);
         }
-    };
-    std::vector<std::uint32_t> first(1, 0), all;
-    for (std::uint32_t s = 0; s < m_fabric.segments(); ++s) {
-        connect(s, s);
-        for (std::uint32_t n = m_first_near[s]; n < m_first_near[s + 1]; ++n) connect(s, m_near[n]);
-    }
-    for (std::vector<std::uint32_t>& of_row : columns) {
-        std::sort(of_row.begin(), of_row.end());
-        of_row.erase(std::unique(of_row.begin(), of_row.end()), of_row.end());
-        all.insert(all.end(), of_row.begin(), of_row.end());
-        first.push_back(static_cast<std::uint32_t>(all.size()));
-        std::vector<std::uint32_t>().swap(of_row);
-    }
-    matrix.shape(std::move(first), std::move(all));
+    });
+    std::vector<std::uint32_t> columns;
+    for (const std::vector<std::uint32_t>& part : parts) columns.insert(columns.end(), part.begin(), part.end());
+    for (std::size_t row = 0; row < rows(); ++row) first[row + 1] += first[row];
+    matrix.shape(std::move(first), std::move(columns));
 }
 
 template <class Real>
@@ -175,7 +201,7 @@ void Hessian<Real>::add_segment(Energy<Real>& energy, const FabricView<Real>& fa
     const YarnConstants<double>& yarn = m_constants[segment.yarn];
     for (std::size_t k = 0; k < 12; ++k)
         scratch.slots[k] = static_cast<double>(fabric.place[3 * std::size_t(segment.slot) + k]);
-    scratch.own.setZero();
+    scratch.own.clear();
     const Speeds<double> speeds(m_gauss, scratch.slots);
     add_stretch_curvature(yarn, m_gauss, speeds, convex, scratch.own);
     add_bending_curvature(yarn, m_gauss, scratch.slots, speeds, convex, scratch.own);
@@ -185,10 +211,10 @@ void Hessian<Real>::add_segment(Energy<Real>& energy, const FabricView<Real>& fa
     scratch.touched.assign(near, 0);
     for (std::uint32_t k = 0; k < yarn.samples; ++k)
         add_sample(energy.neighbours(), fabric, index, k, convex, scratch);
-    scatter(segment.slot, segment.slot, scratch.own.data(), matrix);
+    scatter(segment.slot, segment.slot, scratch.own, matrix);
     for (std::uint32_t n = 0; n < near; ++n) {
         if (scratch.touched[n] != 0)
-            scatter(segment.slot, fabric.segments[m_near[first_near + n]].slot, scratch.other[n].data(), matrix);
+            scatter(segment.slot, fabric.segments[m_near[first_near + n]].slot, scratch.other[n], matrix);
     }
 }
 
@@ -224,49 +250,53 @@ void Hessian<Real>::add_sample(const Neighbours<Real>& neighbours, const FabricV
         const SegmentPlace& place = fabric.segments[other];
         const YarnConstants<double>& other_yarn = m_constants[place.yarn];
         const Basis<double>& theirs = m_bases[other_yarn.basis + (own - place.sample)];
-        Matrix12& sum = other_sum(index, other, scratch);
-        add_product(mine.value, theirs.value, -weight * other_weight * pair.by_place, sum);
+        SlotBlocks& sum = other_sum(index, other, scratch);
+        sum.add(mine.value, theirs.value, -weight * other_weight * pair.by_place);
         if (convex) continue;
         const Real* slots = fabric.place + 3 * std::size_t(place.slot);
         const Vec<double> other_tangent =
             theirs.slope[0] * load(slots).template cast<double>() + theirs.slope[1] * load(slots + 3).template cast<double>() +
             theirs.slope[2] * load(slots + 6).template cast<double>() + theirs.slope[3] * load(slots + 9).template cast<double>();
         const Vec<double> other_pull = other_yarn.root_k / other_yarn.samples / guarded(other_tangent.norm(), other_yarn) * other_tangent;
-        add_product(mine.value, theirs.slope, weight * pair.slope * other_pull.transpose(), sum);
-        add_product(mine.slope, theirs.value, -other_weight * pull * pair.slope.transpose(), sum);
-        add_product(mine.slope, theirs.slope, pair.value * pull * other_pull.transpose(), sum);
+        sum.add(mine.value, theirs.slope, weight * pair.slope * other_pull.transpose());
+        sum.add(mine.slope, theirs.value, -other_weight * pull * pair.slope.transpose());
+        sum.add(mine.slope, theirs.slope, pair.value * pull * other_pull.transpose());
     }
     if (spread == 0) return;
-    add_product(mine.value, mine.value, weight * by_place, scratch.own);
-    add_product(mine.slope, mine.slope, across(tangent / speed) * (share * spread / speed), scratch.own);
+    scratch.own.add(mine.value, mine.value, weight * by_place);
+    scratch.own.add(mine.slope, mine.slope, across(tangent / speed) * (share * spread / speed));
     if (convex) return;
     const Mat<double> mixed = slope * pull.transpose();
-    add_product(mine.value, mine.slope, mixed, scratch.own);
-    add_product(mine.slope, mine.value, mixed.transpose(), scratch.own);
+    scratch.own.add(mine.value, mine.slope, mixed);
+    scratch.own.add(mine.slope, mine.value, mixed.transpose());
 }
 
 template <class Real>
-Matrix12& Hessian<Real>::other_sum(std::uint32_t index, std::uint32_t other, Scratch& scratch) const {
+SlotBlocks& Hessian<Real>::other_sum(std::uint32_t index, std::uint32_t other, Scratch& scratch) const {
     const auto begin = m_near.begin() + m_first_near[index], end = m_near.begin() + m_first_near[index + 1];
     const auto at = static_cast<std::size_t>(std::lower_bound(begin, end, other) - begin);
-    if (scratch.touched[at] == 0) scratch.other[at].setZero();
+    if (scratch.touched[at] == 0) scratch.other[at].clear();
     scratch.touched[at] = 1;
     return scratch.other[at];
 }
 
+/// The columns of a segment's slots mostly follow one another, and so do their blocks: one search a row then serves all.
 template <class Real>
-void Hessian<Real>::scatter(std::uint32_t slot, std::uint32_t other_slot, const double* local,
+void Hessian<Real>::scatter(std::uint32_t slot, std::uint32_t other_slot, const SlotBlocks& local,
                             BlockMatrix& matrix) const {
     for (std::uint32_t c = 0; c < 4; ++c) {
         for (std::uint32_t i = m_first_share[slot + c]; i < m_first_share[slot + c + 1]; ++i) {
+            const std::uint32_t row = m_shares[i].row;
+            const std::size_t end = matrix.first(row + 1);
+            std::size_t at = end;
             for (std::uint32_t d = 0; d < 4; ++d) {
                 for (std::uint32_t j = m_first_share[other_slot + d]; j < m_first_share[other_slot + d + 1]; ++j) {
-                    float* block = matrix.value(matrix.find(m_shares[i].row, m_shares[j].row));
-                    const float weight = m_shares[i].weight * m_shares[j].weight;
-                    for (std::size_t column = 0; column < 3; ++column) {
-                        for (std::size_t row = 0; row < 3; ++row)
-                            block[3 * column + row] += weight * static_cast<float>(local[12 * (3 * d + column) + 3 * c + row]);
-                    }
+                    const std::uint32_t column = m_shares[j].row;
+                    if (++at >= end || matrix.column(at) != column) at = matrix.find(row, column);
+                    float* block = matrix.value(at);
+                    const double weight = double(m_shares[i].weight) * double(m_shares[j].weight);
+                    const double* from = local.block[4 * c + d];
+                    for (int k = 0; k < 9; ++k) block[k] += static_cast<float>(weight * from[k]);
                 }
             }
         }

@@ -46,13 +46,14 @@ class Hessian {
     void make_shares();
     void make_chunks();
     void make_shape(Energy<Real>& energy, BlockMatrix& matrix);
+    void list_columns(std::uint32_t row, std::vector<std::uint32_t>& columns) const;
     void list_near_segments(Energy<Real>& energy);
     void add_segment(Energy<Real>& energy, const FabricView<Real>& fabric, std::uint32_t index, bool convex,
                      BlockMatrix& matrix, Scratch& scratch) const;
     void add_sample(const Neighbours<Real>& neighbours, const FabricView<Real>& fabric, std::uint32_t index,
                     std::uint32_t k, bool convex, Scratch& scratch) const;
-    Matrix12& other_sum(std::uint32_t index, std::uint32_t other, Scratch& scratch) const;
-    void scatter(std::uint32_t slot, std::uint32_t other_slot, const double* local, BlockMatrix& matrix) const;
+    SlotBlocks& other_sum(std::uint32_t index, std::uint32_t other, Scratch& scratch) const;
+    void scatter(std::uint32_t slot, std::uint32_t other_slot, const SlotBlocks& local, BlockMatrix& matrix) const;
 
     const Fabric<Real>& m_fabric;
     Gauss<double> m_gauss;
@@ -62,6 +63,7 @@ class Hessian {
     std::vector<std::uint32_t> m_first_share;  ///< per slot, and one more
     std::vector<Share> m_shares;
     std::vector<std::vector<Chunk>> m_chunks;  ///< by colour: chunks of one colour share no row
+    std::vector<std::uint32_t> m_first_segment{0}, m_segments_of_row;  ///< per row: the segments that reach it
     std::vector<std::uint32_t> m_first_near, m_near;  ///< per segment: the segments that may touch it
     std::size_t m_shape_of_build = 0;
 };

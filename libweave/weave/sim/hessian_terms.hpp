@@ -12,50 +12,58 @@
 
 namespace weave::sim {
 
-using Matrix12 = Eigen::Matrix<double, 12, 12>;
+/// Second derivatives by four slots and four other slots: block (c, d) lies at 9 (4c + d), column by column.
+struct SlotBlocks {
+    double block[16][9];
 
-/// Adds B_c A_d H to block (c, d).
-inline void add_product(const double (&rows)[4], const double (&columns)[4], const Mat<double>& h, Matrix12& sum) {
-    for (int c = 0; c < 4; ++c) {
-        for (int d = 0; d < 4; ++d) sum.block<3, 3>(3 * c, 3 * d) += rows[c] * columns[d] * h;
+    void clear() { std::fill(&block[0][0], &block[0][0] + 16 * 9, 0.0); }
+
+    /// Adds B_c A_d H to block (c, d).
+    void add(const double (&rows)[4], const double (&columns)[4], const Mat<double>& h) {
+        const double* from = h.data();
+        for (int c = 0; c < 4; ++c) {
+            for (int d = 0; d < 4; ++d) {
+                const double weight = rows[c] * columns[d];
+                double* to = block[4 * c + d];
+                for (int k = 0; k < 9; ++k) to[k] += weight * from[k];
+            }
+        }
     }
-}
+};
 
 inline Mat<double> across(const Vec<double>& unit) {
     return Mat<double>::Identity() - unit * unit.transpose();
 }
 
 inline void add_stretch_curvature(const YarnConstants<double>& yarn, const Gauss<double>& gauss,
-                                  const Speeds<double>& speeds, bool convex, Matrix12& sum) {
+                                  const Speeds<double>& speeds, bool convex, SlotBlocks& sum) {
     const bool fed = yarn.supply == Supply::tension;
     const double length = guarded(speeds.length, yarn), square = speeds.square, ratio = square / (length * length);
-    Eigen::Matrix<double, 12, gauss_points> along;
+    Vec<double> units[gauss_points];
     for (std::size_t g = 0; g < gauss_points; ++g) {
         const double speed = guarded(speeds.speed[g], yarn), weight = gauss.weight[g];
         const Vec<double> unit = speeds.tangent[g] / speed;
         double pull = fed ? yarn.tension_N + yarn.evenness_N * (speed / length - (ratio + 1) / 2)
                           : yarn.stretch_N * (speed / yarn.rest_mm - 1);
         if (convex) pull = std::max(pull, 0.0);
-        add_product(gauss.basis[g].slope, gauss.basis[g].slope, across(unit) * (weight * pull / speed), sum);
-        for (int c = 0; c < 4; ++c)
-            along.template block<3, 1>(3 * c, static_cast<Eigen::Index>(g)) = gauss.basis[g].slope[c] * unit;
+        sum.add(gauss.basis[g].slope, gauss.basis[g].slope, across(unit) * (weight * pull / speed));
+        units[g] = unit;
     }
-    Eigen::Matrix<double, gauss_points, gauss_points> stiffness;
     for (std::size_t g = 0; g < gauss_points; ++g) {
         for (std::size_t h = 0; h < gauss_points; ++h) {
+            if (!fed && g != h) continue;
             const double both = gauss.weight[g] * gauss.weight[h], own = g == h ? gauss.weight[g] : 0;
             const double even = own / length - both * (speeds.speed[g] + speeds.speed[h]) / (length * length) +
                                 both * square / (length * length * length);
-            stiffness(static_cast<Eigen::Index>(g), static_cast<Eigen::Index>(h)) =
-                fed ? yarn.evenness_N * even : yarn.stretch_N * own / yarn.rest_mm;
+            const double stiffness = fed ? yarn.evenness_N * even : yarn.stretch_N * own / yarn.rest_mm;
+            sum.add(gauss.basis[g].slope, gauss.basis[h].slope, stiffness * units[g] * units[h].transpose());
         }
     }
-    sum += along * stiffness * along.transpose();
 }
 
 /// With T = y', C = y'', N = T × C: e = c |N|² |T|⁻⁵. Convex: twice c times JᵀJ of N |T|^(-5/2).
 inline void add_bending_curvature(const YarnConstants<double>& yarn, const Gauss<double>& gauss, const double* slots,
-                                  const Speeds<double>& speeds, bool convex, Matrix12& sum) {
+                                  const Speeds<double>& speeds, bool convex, SlotBlocks& sum) {
     const auto cross_with = [](const Vec<double>& v) {
         Mat<double> m;
         m << 0, -v.z(), v.y(), v.z(), 0, -v.x(), -v.y(), v.x(), 0;
@@ -83,10 +91,10 @@ inline void add_bending_curvature(const YarnConstants<double>& yarn, const Gauss
                  10 * scale / v2 * (by_t * t.transpose() + t * by_t.transpose()) -
                  5 * scale * n2 / v2 * Mat<double>::Identity() + 35 * scale * n2 / (v2 * v2) * t * t.transpose();
         }
-        add_product(basis.slope, basis.slope, tt, sum);
-        add_product(basis.slope, basis.bend, tc, sum);
-        add_product(basis.bend, basis.slope, tc.transpose(), sum);
-        add_product(basis.bend, basis.bend, cc, sum);
+        sum.add(basis.slope, basis.slope, tt);
+        sum.add(basis.slope, basis.bend, tc);
+        sum.add(basis.bend, basis.slope, tc.transpose());
+        sum.add(basis.bend, basis.bend, cc);
     }
 }
 

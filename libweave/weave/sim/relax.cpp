@@ -11,7 +11,7 @@ namespace weave::sim {
 namespace {
 
 /// Below this residual the matrix is exact.
-const double exact_below = getenv("EX") ? atof(getenv("EX")) : 1e-2;
+const double exact_below = getenv("EX") ? atof(getenv("EX")) : 1.0;
 
 double seconds_since(std::chrono::steady_clock::time_point start) {
     return std::chrono::duration<double>(std::chrono::steady_clock::now() - start).count();
@@ -99,17 +99,28 @@ class Newton {
         return m_result;
     }
 
-    /// Damped matrix, step by conjugate gradients, then as much of it as is safe and pays. A direction of negative
-    /// curvature tells how much damping the exact matrix lacks.
+    /// A step by the exact matrix where that is nearly convex, else by its convex part.
     bool step() {
-        const bool convex = m_result.residual > exact_below;
-        m_hessian.assemble(m_energy, m_state, convex ? Curvature::convex : Curvature::exact, m_matrix);
         m_hessian.to_rows(m_gradient, m_force);
         for (double& force : m_force) force = -force;
-        m_damped = 0;
         m_result.curves_down = false;
+        if (m_result.residual < exact_below && m_convex_steps == 0) {
+            if (step_with(Curvature::exact)) return true;
+            m_convex_steps = convex_run;
+        }
+        m_convex_steps -= m_convex_steps > 0 ? 1 : 0;
+        return step_with(Curvature::convex);
+    }
+
+    /// Damped matrix, step by conjugate gradients, then as much of it as is safe and pays. A direction of negative
+    /// curvature tells how much damping the exact matrix lacks.
+    bool step_with(Curvature curvature) {
+        m_hessian.assemble(m_energy, m_state, curvature, m_matrix);
+        double& damping = curvature == Curvature::exact ? m_exact_damping : m_damping;
+        m_damped = 0;
         for (int attempt = 0; attempt < 20; ++attempt) {
-            damp();
+            if (curvature == Curvature::exact && damping > most_exact_damping) break;
+            damp(damping);
             m_preconditioner.factor(m_matrix);
             const double tolerance = std::clamp(std::sqrt(m_result.residual), 1e-3, 0.1);
             const CgResult cg = conjugate_gradients(m_energy.executor(), m_matrix, m_preconditioner, m_force, tolerance,
@@ -117,18 +128,19 @@ class Newton {
             m_result.cg_iterations += cg.iterations;
             if (cg.negative) {
                 m_result.curves_down = true;
-                m_damping += std::max(1.5 * lack(cg.negative_direction), m_damping);
-                if (getenv("DBG")) printf("    negative after %zu: damping %.3g\n", cg.iterations, m_damping);
+                damping += std::max(1.5 * lack(cg.negative_direction), damping);
+                if (getenv("DBG")) printf("    negative after %zu: damping %.3g\n", cg.iterations, damping);
                 continue;
             }
-            if (accept_step()) return true;
-            m_damping = std::max(8 * m_damping, 1e-6);
+            if (accept_step(damping)) return true;
+            damping = std::max(8 * damping, 1e-6);
         }
+        if (curvature == Curvature::exact) damping = most_exact_damping / 8;
         return false;
     }
 
-    /// Adds m_damping times the mean of each pivot to the diagonal, less what has been added.
-    void damp() {
+    /// Adds `damping` times the mean of each pivot to the diagonal, less what has been added.
+    void damp(double damping) {
         if (m_damped == 0) {
             m_scale.resize(m_matrix.rows());
             for (std::size_t row = 0; row < m_matrix.rows(); ++row) {
@@ -138,10 +150,10 @@ class Newton {
         }
         for (std::size_t row = 0; row < m_matrix.rows(); ++row) {
             float* pivot = m_matrix.value(m_matrix.diagonal(row));
-            const float add = static_cast<float>(m_damping - m_damped) * m_scale[row];
+            const float add = static_cast<float>(damping - m_damped) * m_scale[row];
             for (int k = 0; k < 9; k += 4) pivot[k] += add;
         }
-        m_damped = m_damping;
+        m_damped = damping;
     }
 
     /// How far below nothing the matrix curves along a direction, in units of the damping.
@@ -155,8 +167,12 @@ class Newton {
         return size > 0 ? std::max(0.0, -curvature / size) : 0;
     }
 
-    bool accept_step() {
+    bool accept_step(double& damping) {
         m_hessian.to_slots(m_change_rows, m_change);
+        if (m_energy.safe_share(m_state, m_change, 1) < 0.5) {
+            m_energy.shorten(m_state, m_change);
+            m_hessian.to_rows(m_change, m_change_rows);
+        }
         m_slope = 0;
         for (std::size_t i = 0; i < m_change_rows.size(); ++i) m_slope -= m_force[i] * m_change_rows[i];
         if (!(m_slope < 0)) return false;
@@ -170,10 +186,10 @@ class Newton {
             const bool settles = std::abs(gain) <= noise && residual_of(m_trial) < m_result.residual;
             if (!falls && !settles) continue;
             const double expected = -share * m_slope * (1 - share / 2);
-            if (halving == 0 && gain > 0.5 * expected) m_damping = m_damping < 1e-8 ? 0 : m_damping / 4;
-            if (halving > 1) m_damping = std::max(2 * m_damping, 1e-6);
+            if (halving == 0 && gain > 0.5 * expected) damping = damping < 1e-8 ? 0 : damping / 4;
+            if (halving > 1 || gain < 0.1 * expected) damping = std::max(4 * damping, 1e-6);
             const bool goes_on = falls && halving == 0 && gain > 1.5 * expected;
-            if (getenv("DBG")) printf("    share %.3g most %.3g halv %d damp %.2g gain/exp %.3g cg %zu\n", share, most, halving, m_damping, gain / expected, m_result.cg_iterations);
+            if (getenv("DBG")) printf("    share %.3g most %.3g halv %d damp %.2g gain/exp %.3g cg %zu\n", share, most, halving, damping, gain / expected, m_result.cg_iterations);
             take(value);
             if (goes_on) stretch(share, most);
             return true;
@@ -213,7 +229,8 @@ class Newton {
         }
     }
 
-    static constexpr double longest_stretch = 64;
+    static constexpr double longest_stretch = 64, most_exact_damping = 1;
+    static constexpr int convex_run = 4;
     static constexpr std::size_t most_cg = 200;
 
     Energy<Real>& m_energy;
@@ -226,7 +243,8 @@ class Newton {
     double m_slope = 0;
     std::vector<double> m_force, m_change_rows, m_product;
     std::vector<float> m_scale;
-    double m_value = 0, m_damping = 1e-3, m_damped = 0;
+    double m_value = 0, m_damping = 1e-3, m_exact_damping = 0, m_damped = 0;
+    int m_convex_steps = 0;
     RelaxResult m_result;
     std::chrono::steady_clock::time_point m_start = std::chrono::steady_clock::now();
 };
