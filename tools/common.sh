@@ -29,3 +29,34 @@ build() { # PRESET
     step "Configuring build/$1" cmake --preset "$1"
     step "Building build/$1 (the first time takes minutes)" cmake --build --preset "$1" -j "$(nproc)"
 }
+
+# A folder that a command makes again and again lists its own files in this one.
+own_list=.made-by-weave
+
+# Ends with status 4 where FOLDER holds anything that its own list does not name: that is someone's, and stays.
+own_or_stop() { # FOLDER
+    [ -e "$1" ] || [ -L "$1" ] || return 0
+    local stranger
+    if [ -d "$1" ] && [ ! -L "$1" ]; then
+        stranger=$(cd "$1" && find . -mindepth 1 ! -type d | LC_ALL=C sort |
+            LC_ALL=C comm -23 - <({ echo "./$own_list"; cat "$own_list" 2>/dev/null; } | LC_ALL=C sort) | head -n 1)
+        [ -n "$stranger" ] || return 0
+        echo "== REFUSED: $1 holds ${stranger#./}, which was not made here; name another folder" >&2
+    else
+        echo "== REFUSED: $1 is not a folder; name another one" >&2
+    fi
+    exit 4
+}
+
+# Makes MADE the new FOLDER, in the place of the one that an earlier run left.
+put_into_place() { # MADE FOLDER
+    local aside
+    mkdir -p "$(dirname "$2")"
+    aside=$(mktemp -d "$(dirname "$2")/.weave-XXXXXX")
+    cp -r "$1" "$aside/new"
+    (cd "$aside/new" && find . -mindepth 1 ! -type d > "$aside/list" && mv "$aside/list" "$own_list")
+    (own_or_stop "$2") || { rm -rf "$aside"; exit 4; }
+    [ ! -e "$2" ] || mv "$2" "$aside/old"
+    mv "$aside/new" "$2"
+    rm -rf "$aside"
+}

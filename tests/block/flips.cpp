@@ -160,7 +160,7 @@ TEST_CASE("many flips at once come to the same as one after the other, refusals 
                 REQUIRE(made.refused[k].reason == refused[k].reason);
             }
         },
-        property_cases() / 5);
+        property_cases());
 }
 
 TEST_CASE("flips in one stack leave no stacks behind on their way") {

@@ -174,7 +174,7 @@ TEST_CASE("cells of all sizes are read alike, whether their pixels fit into a wo
             const CardImage card = block.card_image();
             REQUIRE(block_from_card(card, block.t(), block.p()).value().card_image() == card);
         },
-        500);
+        property_cases());
     Random random(7);
     const CardImage card = random_card(random, 3, 200);
     const Block single_picks = block_from_card(card, {1}, {200}).value();
@@ -232,7 +232,7 @@ TEST_CASE("every grouping that is offered fits the card, each once, with a reaso
                 REQUIRE_FALSE(grouping.reason.empty());
             }
         },
-        3000);
+        property_cases());
 }
 
 TEST_CASE("layers that were renumbered, or change places from region to region, are still found") {

@@ -91,7 +91,7 @@ TEST_CASE("the tiling formula as printed breaks the yarn index constraints") {
             REQUIRE(obeys(printed) == (block.rows() == 1 && block.columns() <= 2));
             broken += obeys(printed) ? 0 : 1;
         },
-        1000);
+        property_cases());
     REQUIRE(broken > 0);
 }
 

@@ -62,7 +62,7 @@ TEST_CASE(
             REQUIRE(all_bind(block->card_image()));
             if (block->rows() * block->columns() < 400) REQUIRE(obeys(plain(*block)));
         },
-        3000);
+        property_cases());
     for (const std::size_t count : made) REQUIRE(count > 0);
 }
 

@@ -114,7 +114,7 @@ TEST_CASE("a transposed card has picks and ends exchanged") {
             REQUIRE(same);
             REQUIRE(turned.transposed() == card);  // the padding stays 0
         },
-        2000);
+        property_cases());
 }
 
 TEST_CASE("a stack that is wrong names its yarns as they count through the block") {

@@ -1,9 +1,14 @@
 #include <weave/core/file.hpp>
+#include <weave/core/log.hpp>
 
 #include <catch2/catch.hpp>
 
-#include <fstream>
+#include <csignal>
+#include <semaphore.h>
+#include <sys/resource.h>
 #include <sys/stat.h>
+#include <sys/wait.h>
+#include <thread>
 #include <unistd.h>
 
 using namespace weave;
@@ -67,6 +72,67 @@ TEST_CASE("a symbolic link stays one, and its target gets the content") {
     REQUIRE(read_file(file).value() == "new");
 }
 
+TEST_CASE("a link to a file that is not there yet stays a link, and a loop of links is refused") {
+    const Folder folder;
+    fs::create_directory(folder.path / "below");
+    fs::create_symlink("below/real", folder.path / "link");
+    fs::create_symlink("link", folder.path / "link to link");
+    REQUIRE(write_file(folder.path / "link to link", "new"));
+    CHECK(fs::is_symlink(folder.path / "link to link"));
+    CHECK(fs::is_symlink(folder.path / "link"));
+    CHECK(read_file(folder.path / "below" / "real").value() == "new");
+    fs::create_symlink("loop", folder.path / "loop");
+    CHECK_THAT(write_file(folder.path / "loop", "x").error().text(),
+               Catch::Contains("loop of symbolic links"));
+    CHECK(fs::is_symlink(folder.path / "loop"));
+}
+
+TEST_CASE("a replaced file keeps its permissions and owner, and a write-protected one is left alone") {
+    const Folder folder;
+    const fs::path file = folder.path / "design.weave";
+    REQUIRE(write_file(file, "old"));
+    for (const mode_t mode : {0600U, 0640U, 0664U, 0755U}) {
+        REQUIRE(::chmod(file.c_str(), mode) == 0);
+        if (::geteuid() == 0) REQUIRE(::chown(file.c_str(), 12, 34) == 0);
+        REQUIRE(write_file(file, "new"));
+        struct stat facts {};
+        REQUIRE(::stat(file.c_str(), &facts) == 0);
+        CHECK((facts.st_mode & 07777) == mode);
+        if (::geteuid() == 0) CHECK((facts.st_uid == 12 && facts.st_gid == 34));
+    }
+    REQUIRE(::chmod(file.c_str(), 0444) == 0);
+    const Status refused = write_file(file, "over it");
+    REQUIRE_FALSE(refused);
+    CHECK(refused.error().code == ErrorCode::refused);
+    CHECK(refused.error().text() == file.string() + ": is write-protected");
+    CHECK(read_file(file).value() == "new");
+    CHECK(folder.entries() == 1);
+}
+
+TEST_CASE("a name as long as a name may be is written, file and folder") {
+    const Folder folder;
+    REQUIRE(write_file(folder.path / std::string(255, 'n'), "x"));
+    REQUIRE(write_folder(folder.path / std::string(255, 'f'), {{std::string(255, 'n'), "x"}}));
+    REQUIRE_FALSE(write_file(folder.path / std::string(256, 'n'), "x"));
+    REQUIRE(folder.entries() == 2);
+}
+
+TEST_CASE("the log is told of another name that keeps the old content") {
+    const Folder folder;
+    const fs::path file = folder.path / "a";
+    std::vector<std::string> heard;
+    set_log_sink([&](LogLevel, std::string_view message) { heard.emplace_back(message); });
+    REQUIRE(write_file(file, "old"));
+    REQUIRE(write_file(file, "older"));
+    CHECK(heard.empty());
+    fs::create_hard_link(file, folder.path / "b");
+    REQUIRE(write_file(file, "new"));
+    set_log_sink({});
+    REQUIRE(heard.size() == 1);
+    CHECK_THAT(heard[0], Catch::StartsWith(file.string() + ": ") && Catch::Contains("hard link"));
+    CHECK(read_file(folder.path / "b").value() == "older");
+}
+
 TEST_CASE("what cannot be read is refused with its name") {
     const Folder folder;
     const fs::path file = folder.path / "large";
@@ -98,4 +164,94 @@ TEST_CASE("a folder appears whole or not at all") {
     REQUIRE_FALSE(write_folder(folder.path / "file", {{"a", "1"}}));
     REQUIRE_FALSE(write_folder(folder.path / "file" / "below", {{"a", "1"}}));
     REQUIRE(folder.entries() == 3);
+}
+
+TEST_CASE("folders that were made for a folder that could not be written are gone again") {
+    const Folder folder;
+    const fs::path out = folder.path / "a" / "b" / "out";
+    REQUIRE_FALSE(write_folder(out, {{"one", "1"}, {"one", "2"}}));
+    CHECK(folder.entries() == 0);
+    fs::create_directory(folder.path / "a");
+    REQUIRE_FALSE(write_folder(out, {{"one", "1"}, {"one", "2"}}));
+    CHECK(fs::is_empty(folder.path / "a"));  // which was there before
+    CHECK(folder.entries() == 1);
+}
+
+TEST_CASE("a link to an empty folder stays a link; the current folder is refused") {
+    const Folder folder;
+    fs::create_directory(folder.path / "empty");
+    fs::create_symlink("empty", folder.path / "link");
+    REQUIRE(write_folder(folder.path / "link", {{"a", "1"}}));
+    CHECK(fs::is_symlink(folder.path / "link"));
+    CHECK(read_file(folder.path / "empty" / "a").value() == "1");
+    fs::create_symlink("to come", folder.path / "early");
+    REQUIRE(write_folder(folder.path / "early/", {{"a", "1"}}));
+    CHECK(fs::is_symlink(folder.path / "early"));
+    CHECK(read_file(folder.path / "to come" / "a").value() == "1");
+
+    const fs::path here = folder.path / "here", before = fs::current_path();
+    fs::create_directory(here);
+    fs::current_path(here);
+    for (const char* name : {".", "./", "../here", "../here/."}) {
+        INFO(name);
+        const Status refused = write_folder(name, {{"a", "1"}});
+        REQUIRE_FALSE(refused);
+        CHECK(refused.error().code == ErrorCode::refused);
+        CHECK_THAT(refused.error().text(), Catch::Contains("in which you are"));
+    }
+    fs::current_path(before);
+    CHECK(fs::is_empty(here));
+    CHECK(folder.entries() == 5);
+}
+
+namespace {
+
+sem_t caught_mid_write;
+
+/// In a process of its own: `write` meets the limit of what a file may hold, and there, in the middle,
+/// everything that is unfinished is dropped and the process ends with 7.
+void end_mid_write(void (*write)(const fs::path&), const fs::path& where) {
+    REQUIRE(::sem_init(&caught_mid_write, 0, 0) == 0);
+    const pid_t child = ::fork();
+    REQUIRE(child >= 0);
+    if (child == 0) {
+        std::thread([] {
+            ::sem_wait(&caught_mid_write);
+            drop_unfinished_writes();
+            ::_exit(7);
+        }).detach();
+        std::signal(SIGXFSZ, [](int) {
+            ::sem_post(&caught_mid_write);
+            while (true) ::pause();
+        });
+        const rlimit limit{1000, 1000};
+        ::setrlimit(RLIMIT_FSIZE, &limit);
+        write(where);
+        ::_exit(1);
+    }
+    int status = 0;
+    REQUIRE(::waitpid(child, &status, 0) == child);
+    REQUIRE(WIFEXITED(status));
+    REQUIRE(WEXITSTATUS(status) == 7);
+}
+
+}  // namespace
+
+TEST_CASE("a program that is ended while it writes leaves neither a part nor a folder, and the old file") {
+    const Folder folder;
+    REQUIRE(write_file(folder.path / "file", "old"));
+    end_mid_write(
+        [](const fs::path& at) {
+            static_cast<void>(write_file(at / "file", std::string(5000, 'x')).error());
+        },
+        folder.path);
+    CHECK(read_file(folder.path / "file").value() == "old");
+    CHECK(folder.entries() == 1);
+    end_mid_write(
+        [](const fs::path& at) {
+            static_cast<void>(
+                write_folder(at / "a" / "b", {{"one", "1"}, {"two", std::string(5000, 'x')}}).error());
+        },
+        folder.path);
+    CHECK(folder.entries() == 1);
 }

@@ -30,5 +30,5 @@ TEST_CASE("SHA-256 is the same in whatever pieces the bytes come") {
             }
             REQUIRE(hash.hex() == sha256_hex(bytes));
         },
-        2000);
+        weave::testing::property_cases());
 }

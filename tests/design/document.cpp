@@ -119,7 +119,7 @@ TEST_CASE("only the format's own documents of known versions are read") {
     refuses({"/version", "1.0", "version", "whole number from 1"});
     refuses({"/version", "", "version", "whole number from 1"});
     refuses({"/format", "\"wif\"", "", "is not a .weave document"});
-    refuses({"/format", "", "", "is not a .weave document"});
+    refuses({"/format", "", "", "is not a .weave document: it has no \"format\": \"weave\""});
     refuses({"/scene/version", "2", "scene.version", "newer"});
     for (const char* other : {"[]", "3", "null", "\"weave\""})
         CHECK_THAT(read_document(other).error().message, Catch::Contains("is not a .weave document"));

@@ -115,7 +115,7 @@ TEST_CASE("edits undone in reverse give back the design, byte for byte") {
             REQUIRE(design == end);
             REQUIRE(write_document(design) == write_document(end));
         },
-        property_cases() / 10);
+        property_cases());
     CHECK(made > 0);
     CHECK(refused > 0);
 }
@@ -144,7 +144,7 @@ TEST_CASE("an edit that went through JSON has the same effect, and so has its in
             REQUIRE(design == before);
             REQUIRE(write_document(design) == write_document(before));
         },
-        property_cases() / 10);
+        property_cases());
 }
 
 TEST_CASE("blocks: what cannot be put, removed, renamed or made the cloth") {

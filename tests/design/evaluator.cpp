@@ -357,7 +357,7 @@ TEST_CASE("remembering never changes the cloth, and computes no more than what d
                 REQUIRE(cloth_of(evaluator, design) == *evaluate(design).value().block);
             }
         },
-        property_cases() / 5);
+        property_cases());
 }
 
 TEST_CASE("blocks that do not fit are named in the error, in attachments and stencils") {

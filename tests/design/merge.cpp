@@ -124,5 +124,5 @@ TEST_CASE(
             REQUIRE(bring_in(into, from) == root);
             REQUIRE(into == once);
         },
-        property_cases() / 5);
+        property_cases());
 }

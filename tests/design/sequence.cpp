@@ -92,7 +92,7 @@ TEST_CASE("a feeder order gives each pick no feeder, one, or two") {
             }
             REQUIRE(weft_of(to_json(weft)["feeder_order"]).value().feeder_order == weft.feeder_order);
         },
-        property_cases() / 10);
+        property_cases());
 }
 
 TEST_CASE("text that is no feeder order is refused with the word at fault") {

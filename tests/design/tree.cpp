@@ -30,7 +30,7 @@ TEST_CASE("bottom up each block comes once, after all that it is made from, the 
                 REQUIRE((used || name == design.root));
             }
         },
-        property_cases() / 5);
+        property_cases());
 }
 
 TEST_CASE("bottom up of a tree as deep and as shared as may be") {
@@ -76,7 +76,7 @@ TEST_CASE("nodes are equal when source and flips are, whatever holds them") {
             flipped.flips.push_back({0, 0, true});
             REQUIRE_FALSE(*a == flipped);
         },
-        property_cases() / 10);
+        property_cases());
     const auto stack_leaf = plain(), tile = node(TileOperation{"a", 1, 1, 1});
     CHECK_FALSE(*stack_leaf == *tile);
     CHECK_FALSE(*tile == *node(TileOperation{"a", 1, 2, 1}));

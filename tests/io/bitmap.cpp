@@ -1,6 +1,7 @@
 #include <weave/io/bitmap.hpp>
 
 #include <catch2/catch.hpp>
+#include <png.h>
 
 #include <support/random.hpp>
 
@@ -62,6 +63,38 @@ std::string bmp(int width, int height, int bits, const std::vector<Colour>& pale
     put(static_cast<long>(palette.size()), 4), put(0, 4);
     for (const Colour c : palette) put(c.blue | c.green << 8 | c.red << 16, 4);
     return out + rows;
+}
+
+struct TiffTag {
+    unsigned tag, value, count = 1;
+};
+
+/// A bilevel little-endian TIFF by hand, 1 = black; `offsets` is the tag that says where its strip or tiles
+/// lie.
+std::string tiff(unsigned width, unsigned height, std::vector<TiffTag> tags, unsigned offsets,
+                 const std::string& data) {
+    for (const TiffTag& tag :
+         std::vector<TiffTag>{{256, width}, {257, height}, {258, 1}, {262, 0}, {277, 1}, {offsets, 8}})
+        tags.push_back(tag);
+    std::sort(tags.begin(), tags.end(), [](const TiffTag& a, const TiffTag& b) { return a.tag < b.tag; });
+    std::string out = "II*";
+    const auto put = [&](std::size_t value, int bytes) {
+        for (int k = 0; k < bytes; ++k) out.push_back(static_cast<char>(value >> 8 * k & 0xff));
+    };
+    const unsigned pieces = static_cast<unsigned>(data.size() / 256), many = pieces > 1 ? pieces : 1;
+    const std::size_t lists = 8 + data.size(), directory = lists + (many > 1 ? 8 * many : 0);
+    put(0, 1), put(directory, 4);
+    out += data;
+    for (unsigned k = 0; many > 1 && k < many; ++k) put(8 + 256 * k, 4);
+    for (unsigned k = 0; many > 1 && k < many; ++k) put(256, 4);
+    put(tags.size(), 2);
+    for (const TiffTag& tag : tags) {
+        const bool list = many > 1 && (tag.tag == offsets || tag.count > 1);
+        put(tag.tag, 2), put(4, 2), put(list ? many : 1, 4);
+        put(!list ? tag.value : tag.tag == offsets ? lists : lists + 4 * many, 4);
+    }
+    put(0, 4);
+    return out;
 }
 
 }  // namespace
@@ -176,7 +209,95 @@ TEST_CASE("colour pictures come back as they were, row 0 at the bottom") {
             REQUIRE(back->columns == image.columns);
             REQUIRE(back->pixels == image.pixels);
         },
-        1000);
+        weave::testing::property_cases());
+}
+
+TEST_CASE("a card that does not read back as it was is found, bit by bit") {
+    for (const BitmapFormat format : formats) {
+        const BitmapReading reading{false, true, true};
+        const std::string bytes = *write_proven_bitmap(letter_l(), format, reading);
+        CHECK(bytes == *write_bitmap(letter_l(), format, reading));
+        CHECK(check_reads_back(bytes, letter_l(), reading));
+        for (std::size_t pick = 0; pick < 3; ++pick) {
+            for (std::size_t end = 0; end < 2; ++end) {
+                CardImage other = letter_l();
+                other.set(pick, end, !other.weft_over(pick, end));
+                const Status differs = check_reads_back(bytes, other, reading);
+                REQUIRE_FALSE(differs);
+                CHECK(differs.error().code == ErrorCode::system);
+                CHECK_THAT(differs.error().text(), Catch::Contains("does not read back"));
+            }
+        }
+        CHECK_FALSE(check_reads_back(bytes, letter_l(), {true, true, true}));
+        CHECK_FALSE(check_reads_back(bytes.substr(0, bytes.size() / 2), letter_l(), reading));
+    }
+}
+
+TEST_CASE("a TIFF that starts at another corner is turned the right way up") {
+    // As stored, from its first byte: the L's foot, then its stem; 1 = black.
+    const std::string stored("\xc0\x80\x80", 3);
+    const auto card = [](const std::string& text) {  // rows from the top, X = lifted
+        CardImage image(3, 2);
+        for (std::size_t row = 0; row < 3; ++row)
+            for (std::size_t end = 0; end < 2; ++end) image.set(2 - row, end, text[row * 3 + end] != 'X');
+        return image;
+    };
+    const auto read = [&](unsigned orientation) {
+        return read_bitmap(tiff(2, 3, {{259, 1}, {274, orientation}, {278, 3}, {279, 3}}, 273, stored));
+    };
+    CHECK(read(1).value().card == card("XX X- X-"));
+    CHECK(read(2).value().card == card("XX -X -X"));  // the first column is the right one
+    CHECK(read(3).value().card == card("-X -X XX"));  // and the first row the bottom one
+    CHECK(read(4).value().card == card("X- X- XX"));
+    for (const unsigned orientation : {5U, 6U, 7U, 8U})
+        CHECK_THAT(read(orientation).error().text(), Catch::Contains("on its side"));
+}
+
+TEST_CASE("a TIFF in tiles of one bit that are not compressed is read") {
+    // 70 by 40 pixels in tiles of 64 by 32: two across, two down, 256 bytes each. Black are the pixels (0,
+    // 0), (65, 0), (63, 33) and (69, 39), counted from the top left corner.
+    std::string tiles(1024, '\0');
+    const auto blacken = [&](std::size_t x, std::size_t y) {
+        const std::size_t tile = y / 32 * 2 + x / 64, byte = tile * 256 + y % 32 * 8 + x % 64 / 8;
+        tiles[byte] = static_cast<char>(tiles[byte] | 0x80 >> x % 8);
+    };
+    CardImage expected(40, 70);
+    for (std::size_t pick = 0; pick < 40; ++pick)
+        for (std::size_t end = 0; end < 70; ++end) expected.set(pick, end, true);
+    for (const auto& [x, y] :
+         std::vector<std::pair<std::size_t, std::size_t>>{{0, 0}, {65, 0}, {63, 33}, {69, 39}}) {
+        blacken(x, y);
+        expected.set(39 - y, x, false);
+    }
+    const Result<CardFromBitmap> read =
+        read_bitmap(tiff(70, 40, {{259, 1}, {322, 64}, {323, 32}, {325, 256, 4}}, 324, tiles));
+    if (!read) FAIL(read.error().text());
+    CHECK(read->card == expected);
+}
+
+TEST_CASE("a PNG that is transparent anywhere is refused, as no one can say what colour it has") {
+    for (const int clear : {-1, 0, 4}) {
+        std::vector<std::uint8_t> rgba;
+        for (int k = 0; k < 6; ++k)
+            for (const int part : {0, 0, 0, k == clear ? 254 : 255})
+                rgba.push_back(static_cast<std::uint8_t>(part));
+        png_image image{};
+        image.version = PNG_IMAGE_VERSION;
+        image.width = 3, image.height = 2, image.format = PNG_FORMAT_RGBA;
+        std::string bytes(4096, '\0');
+        png_alloc_size_t size = bytes.size();
+        REQUIRE(png_image_write_to_memory(&image, bytes.data(), &size, 0, rgba.data(), 0, nullptr) != 0);
+        bytes.resize(size);
+        const Result<CardFromBitmap> read = read_bitmap(bytes);
+        const Result<ColourImage> colours = read_colour_image(bytes);
+        CHECK(bool(read) == (clear < 0));
+        CHECK(bool(colours) == (clear < 0));
+        if (clear < 0) continue;
+        const std::string where = clear == 0 ? "column 1 from the left and row 1 from the top is transparent"
+                                             : "column 2 from the left and row 2 from the top is transparent";
+        CHECK_THAT(read.error().text(), Catch::Contains(where));
+        CHECK_THAT(colours.error().text(), Catch::Contains(where));
+    }
 }
 
 TEST_CASE("damaged, foreign and oversized pictures are refused, whatever is in them") {

@@ -129,6 +129,17 @@ TEST_CASE("WIF: a file that counts from zero and says more than it holds") {
     CHECK(warned("lists [WARP] again"));
 }
 
+TEST_CASE("WIF: a file is known by its [WIF] section, not by its name") {
+    CHECK(is_wif(plain_cloth));
+    CHECK(is_wif("\xef\xbb\xbf[wif]\r\n"));
+    CHECK(is_wif("; by hand\n\n[CONTENTS]\nWIF=true\n  [ WIF ]  \n") == false);
+    CHECK(is_wif("; by hand\n\n[CONTENTS]\r  [Wif]  \r"));
+    CHECK_FALSE(is_wif(""));
+    CHECK_FALSE(is_wif("WIF"));
+    CHECK_FALSE(is_wif("\x89PNG\r\n\x1a\n[wif] in it"));
+    CHECK_FALSE(is_wif(std::string(1 << 16, '\n') + "[WIF]"));
+}
+
 TEST_CASE("WIF: forms that the standard allows bring no warning") {
     std::string crlf;
     for (const char c : plain_cloth) crlf += c == '\n' ? std::string("\r\n") : std::string(1, c);
@@ -149,6 +160,19 @@ TEST_CASE("WIF: shaft 0, several shafts and unlisted threads") {
     CHECK(rows(read(with("2=2\n3=3", "3=3"))) == "#--/--#");
     CHECK(rows(read(with("1=1\n2=2,3", "2=2,3"))) == "---/-##");
     CHECK(rows(read(with("1=1\n2=2,3", "1=\n2=0"))) == "---/---");
+}
+
+TEST_CASE("WIF: a last pick without a line lifts nothing; a declaration that is far too high is overstated") {
+    const std::string four = with("2=2,3\n", "2=2,3\n3=1\n", with("Threads=2", "Threads=4"));
+    const DesignFromWif kept = read(four);
+    check_warning(kept, 19, "says 4 picks, but only 3 are listed; pick 4 is read as lifting nothing");
+    CHECK(rows(kept) == "#--/-##/#--/---");
+    const DesignFromWif dropped = read(with("Threads=4", "Threads=5", four));
+    check_warning(dropped, 19, "picks 4 to 5 are dropped, as more than a quarter is missing");
+    CHECK(rows(dropped) == "#--/-##/#--");
+    const DesignFromWif ends = read(with("3=3\n", "3=3\n4=1\n5=2\n6=3\n", with("Threads=3", "Threads=8")));
+    check_warning(ends, 17, "says 8 ends, but only 6 are listed; ends 7 to 8 are read as lifting nothing");
+    CHECK(rows(ends) == "#--#----/-##-##--");
 }
 
 TEST_CASE("WIF: a falling shed turns the cloth over, ends on no shaft stay up") {

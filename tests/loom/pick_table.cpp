@@ -67,3 +67,23 @@ TEST_CASE("further repeats start the plans anew, but the shuttles go on from whe
     design.weft.directions = {Direction::left_to_right, Direction::right_to_left};
     CHECK(pick_table(design, block, 2)[3].direction == Direction::left_to_right);
 }
+
+TEST_CASE("no name in the pick table is a formula to a spreadsheet") {
+    for (const std::string name :
+         {"=cmd|' /C calc'!A0", "@SUM(1+1)", "+1", "-1", "=HYPERLINK(\"x\",\"y\")", "\t=1", "\r=1"}) {
+        INFO(name);
+        Design design;
+        design.weft.yarns[0].name = name;
+        design.weft.feeders = {{name, 0}, {"plain", 0}};
+        design.weft.feeder_order = {{0, 1}, {1, 0}};
+        const std::string csv = pick_table_csv(design, pick_table(design, block_of({2})));
+        for (const char* before : {",", "\""}) {
+            CHECK(csv.find(before + name.substr(0, 2)) == std::string::npos);
+        }
+        CHECK(csv.find("'" + name.substr(0, 1)) != std::string::npos);
+        CHECK(csv.find("plain + ") != std::string::npos);  // only the start of a cell matters
+    }
+    Design design;
+    design.weft.feeders = {{"a-b", 0}};
+    CHECK(pick_table_csv(design, pick_table(design, block_of({2}))).find(",a-b,") != std::string::npos);
+}

@@ -175,7 +175,7 @@ TEST_CASE("float lengths agree with counting from every place") {
                 }
             }
         },
-        300);
+        property_cases());
 }
 
 TEST_CASE("the float picture colours each place by its float, wefts and warps apart") {
@@ -197,31 +197,6 @@ TEST_CASE("the float picture colours each place by its float, wefts and warps ap
     }
     CHECK(wrong == 0);
     for (std::int32_t length = 1; length < 20; ++length) CHECK(float_colour(length) != float_colour(-length));
-}
-
-TEST_CASE("layers pair the wefts and warps of a stack from the top") {
-    const auto stack = [](const char* text) { return parse_stack(text).value(); };
-    CHECK(layer_pixel(stack("T0 P0 P1 T1"), 0) == LayerPixel::weft_over);
-    CHECK(layer_pixel(stack("T0 P0 P1 T1"), 1) == LayerPixel::lifted);
-    CHECK(layer_pixel(stack("T0 P0"), 1) == LayerPixel::none);
-    // One warp through three wefts meets each of them.
-    CHECK(layer_pixel(stack("T0 P0 T1 T2"), 0) == LayerPixel::weft_over);
-    CHECK(layer_pixel(stack("T0 P0 T1 T2"), 1) == LayerPixel::weft_over);
-    CHECK(layer_pixel(stack("T0 P0 T1 T2"), 2) == LayerPixel::lifted);
-    const Block block = layered();
-    const Pixels pixels = read_pixels(drawn({}, block, View::layers, PictureFormat::png));
-    const auto grids = layer_grids(block);
-    REQUIRE(grids.size() == 3);
-    for (std::size_t layer = 0; layer < 3; ++layer) {
-        for (std::size_t row = 0; row < 2; ++row) {
-            for (std::size_t column = 0; column < 3; ++column) {
-                const LayerPixel pixel = layer_pixel(block.stack(row, column), layer);
-                const Colour seen = pixels.at(grids[layer].centre(row, column));
-                CHECK((seen == Colour{0, 0, 0}) == (pixel == LayerPixel::lifted));
-                CHECK((seen == Colour{255, 255, 255}) == (pixel == LayerPixel::weft_over));
-            }
-        }
-    }
 }
 
 TEST_CASE("slices put dots and paths where the stacks say") {

@@ -2,10 +2,13 @@
 
 #include <weave/picture/canvas.hpp>
 #include <weave/picture/picture.hpp>
+#include <weave/picture/views.hpp>
+#include <weave/samples/samples.hpp>
 
 #include <catch2/catch.hpp>
 #include <png.h>
 
+#include <algorithm>
 #include <cmath>
 #include <cstdint>
 #include <memory>
@@ -61,6 +64,13 @@ inline bool is_well_formed(const std::string& xml) {
     return open.empty() && roots == 1;
 }
 
+/// The sample of this name; it must be there.
+inline Design sample_design(const std::string& name) {
+    const Sample* sample = find_sample(name);
+    REQUIRE(sample != nullptr);
+    return sample->make();
+}
+
 inline Evaluation cloth_of(Block block) {
     return {std::make_shared<const Block>(std::move(block)), {}};
 }
@@ -84,6 +94,29 @@ inline Block block_of(std::vector<std::uint32_t> t, std::vector<std::uint32_t> p
                std::move(t), std::move(p),
                [&](std::size_t i, std::size_t j) { return parse_stack(stacks[i * columns + j]).value(); })
         .value();
+}
+
+/// The words, arrows and lines of a picture, in the order in which they are drawn.
+inline std::vector<Mark> marks_of(const Design& design, const Block& block, const PictureRequest& request) {
+    std::vector<Mark> marks;
+    const auto file = draw_view({design, block, request, PictureFormat::svg, &marks});
+    if (!file) FAIL(file.error().text());
+    return marks;
+}
+
+/// Every place where a picture says just this.
+inline std::vector<Point> places_of(const std::vector<Mark>& marks, const std::string& text) {
+    std::vector<Point> places;
+    for (const Mark& mark : marks) {
+        if (mark.kind == Mark::Kind::text && mark.text == text) places.push_back(mark.points[0]);
+    }
+    return places;
+}
+
+inline bool says(const std::vector<Mark>& marks, const std::string& piece) {
+    return std::ranges::any_of(marks, [&](const Mark& mark) {
+        return mark.kind == Mark::Kind::text && mark.text.find(piece) != std::string::npos;
+    });
 }
 
 /// Two layers, a stack with a loose weft on top, unequal counts.

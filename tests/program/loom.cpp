@@ -158,14 +158,56 @@ TEST_CASE("export writes card, pick table and manifest, and what the manifest sa
             INFO(key);
             CHECK(said.at(key) == info.at(key));
         }
-        for (const char* key : {"lifted_end", "pick_1", "end_1", "bit_order", "seen_from"})
-            CHECK(said.at("card").at(key).is_string());
+        const bool tiff = name == "tc2";
+        CHECK(said.at("card") == Json{{"lifted_end", "black"},
+                                      {"weft_over_warp", "white"},
+                                      {"pick_1", "bottom row"},
+                                      {"end_1", "left column"},
+                                      {"bit_order", "most significant bit first"},
+                                      {"stored_bit_of_black", tiff ? 1 : 0},
+                                      {"seen_from", "face"}});
+        CHECK(said.at("format") == "weave-export");
+        CHECK(said.at("version") == 1);
+        CHECK(said.at("read_back") == "equal");
+        CHECK(said.at("title") == info.at("title"));
+        CHECK(said.at("scene_sha256") == info.at("scene_sha256"));
+        const std::string profile = *weave::read_file(loom(name));
+        CHECK(said.at("loom").at("name") == weave::parse_json(profile)->at("name"));
+        CHECK(said.at("loom").at("maker") == weave::parse_json(profile)->at("maker"));
+        CHECK(said.at("files")[0].at("format") == (tiff ? "tiff" : "png"));
+        CHECK(said.at("files")[1].at("format") == "pick-table-csv");
+        for (const Json& file : said.at("files"))
+            CHECK(file.at("bytes") == shop.get(name + "/" + file.at("path").get<std::string>()).size());
         for (const Json& file : said.at("files"))
             CHECK(file.at("sha256") ==
                   weave::sha256_hex(shop.get(name + "/" + file.at("path").get<std::string>())));
         CHECK(weave::read_bitmap(shop.get(card))->card.sha256() == info.at("card_sha256"));
     }
     CHECK(shop.names().size() == 1 + 3 * 4);  // the design, and three folders of three files; nothing else
+}
+
+TEST_CASE("the manifest says how the card stands, whichever way the loom wants it") {
+    const Workshop shop;
+    shop.must({"preset", "twill", "up=3", "down=1", "-o", "t.weave"});
+    const std::string hash = shop.json({"info", "t.weave"}).at("card_sha256");
+    for (const bool bottom : {false, true})
+        for (const bool left : {false, true})
+            for (const std::string output : {"tiff", "bmp"}) {
+                Json profile = *weave::parse_json(*weave::read_file(loom("tc2")));
+                profile["file"]["pick_1_at_bottom"] = bottom;
+                profile["file"]["end_1_at_left"] = left;
+                profile["file"]["output"] = output;
+                shop.put("p.json", profile.dump());
+                std::filesystem::remove_all(shop.path("out"));
+                shop.must({"export", "t.weave", "--loom", "p.json", "-o", "out"});
+                const Json said = *weave::parse_json(shop.get("out/t-SAMPLE-NOT-RELEASED-manifest.json"));
+                CHECK(said.at("card").at("pick_1") == (bottom ? "bottom row" : "top row"));
+                CHECK(said.at("card").at("end_1") == (left ? "left column" : "right column"));
+                CHECK(said.at("card").at("stored_bit_of_black") == (output == "tiff" ? 1 : 0));
+                const std::string picture = shop.get("out/t-SAMPLE-NOT-RELEASED-card." +
+                                                     std::string(output == "tiff" ? "tif" : "bmp"));
+                CHECK(weave::read_bitmap(picture, {bottom, left, true})->card.sha256() == hash);
+            }
 }
 
 TEST_CASE("export refuses what does not validate, says why, and makes no folder") {

@@ -40,6 +40,33 @@ TEST_CASE("every view is drawn, as PNG and as SVG, trimmed or not") {
     CHECK(different.size() == 16);  // no view is another one's picture
 }
 
+TEST_CASE("slices and the block begin at the pick and end that are asked for") {
+    const Workshop shop;
+    shop.must({"samples", "shoe-adult", "-o", "d.weave"});
+    const auto picture = [&](std::vector<std::string> words) {
+        words.insert(words.begin(), {"render", "d.weave", "--view"});
+        words.insert(words.end(), {"-o", "p.svg"});
+        shop.must(words);
+        return shop.get("p.svg");
+    };
+    const std::string first = picture({"weft:3000"});
+    CHECK(picture({"weft:3000", "--from-end", "1"}) == first);
+    CHECK(picture({"weft:3000", "--from-end", "1081"}) != first);
+    CHECK(picture({"warp:1200", "--from-pick", "3000"}) != picture({"warp:1200"}));
+    std::set<std::string> blocks{picture({"block"}), picture({"block", "--from-pick", "3000"}),
+                                 picture({"block", "--from-end", "1081"}),
+                                 picture({"block", "--from-pick", "3000", "--from-end", "1081"})};
+    CHECK(blocks.size() == 4);
+    shop.refused({"render", "d.weave", "--view", "weft:1", "--from-pick", "2", "-o", "n.png"}, 2,
+                 {"warp slices and the block"});
+    shop.refused({"render", "d.weave", "--view", "face", "--from-end", "2", "-o", "n.png"}, 2,
+                 {"weft slices and the block"});
+    shop.refused({"render", "d.weave", "--view", "block", "--from-end", "2401", "-o", "n.png"}, 2,
+                 {"2401", "1 to 2400"});
+    shop.refused({"render", "d.weave", "--view", "block", "--from-pick", "middle", "-o", "n.png"}, 2,
+                 {"--from-pick"});
+}
+
 TEST_CASE("the card is the same in PNG, TIFF and BMP, whatever the case of the extension") {
     const Workshop shop;
     shop.must({"samples", "twill-g", "-o", "d.weave"});

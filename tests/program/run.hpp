@@ -5,6 +5,7 @@
 
 #include <catch2/catch.hpp>
 
+#include <algorithm>
 #include <cstdlib>
 #include <fcntl.h>
 #include <filesystem>
@@ -83,6 +84,43 @@ class Workshop {
     /// Runs `weave` with these words. `largest_file`: bytes that the program may write to one file, as on a
     /// full disk; 0: no limit.
     [[nodiscard]] Ended run(const std::vector<std::string>& words, rlim_t largest_file = 0) const {
+        return start(words, largest_file).finish();
+    }
+
+    /// A run under way.
+    struct Running {
+        pid_t child;
+        int out, err;
+        Ended ended = {};
+
+        /// Reads to the end and waits for it.
+        Ended finish() {
+            listen(out, err, ended);
+            int status = 0;
+            while (::waitpid(child, &status, 0) < 0 && errno == EINTR) {
+            }
+            ended.exit = WIFEXITED(status) ? WEXITSTATUS(status) : 1000 + WTERMSIG(status);
+            return ended;
+        }
+        [[nodiscard]] bool is_over() const {
+            siginfo_t facts{};
+            return ::waitid(P_PID, static_cast<id_t>(child), &facts, WEXITED | WNOHANG | WNOWAIT) != 0 ||
+                   facts.si_pid == child;
+        }
+        /// Waits until it has told people this, or has closed its standard error; whether it has.
+        bool says(const std::string& words) {
+            char buffer[4096];
+            while (ended.err.find(words) == std::string::npos) {
+                const ssize_t got = ::read(err, buffer, sizeof buffer);
+                if (got <= 0) return false;
+                ended.err.append(buffer, static_cast<std::size_t>(got));
+            }
+            return true;
+        }
+    };
+
+    /// Starts `weave` with these words, as run() does.
+    [[nodiscard]] Running start(const std::vector<std::string>& words, rlim_t largest_file = 0) const {
         int out[2], err[2];
         if (::pipe2(out, O_CLOEXEC) != 0 || ::pipe2(err, O_CLOEXEC) != 0) throw std::runtime_error("no pipe");
         std::vector<std::string> all{"weave"};
@@ -107,13 +145,7 @@ class Workshop {
         }
         ::close(out[1]);
         ::close(err[1]);
-        Ended ended;
-        listen(out[0], err[0], ended);
-        int status = 0;
-        while (::waitpid(child, &status, 0) < 0 && errno == EINTR) {
-        }
-        ended.exit = WIFEXITED(status) ? WEXITSTATUS(status) : 1000 + WTERMSIG(status);
-        return ended;
+        return {child, out[0], err[0]};
     }
 
     /// Runs and demands success without a complaint.
@@ -122,6 +154,7 @@ class Workshop {
         INFO("weave " << joined(words));
         INFO(ended.err);
         REQUIRE(ended.exit == 0);
+        CHECK(ended.complaints().empty());
         return ended;
     }
 
@@ -139,8 +172,8 @@ class Workshop {
         return *value;
     }
 
-    /// Runs and demands a refusal: this exit status, nothing on standard output, one line of complaint that
-    /// holds each of these pieces. Returns the line.
+    /// Runs and demands a refusal: this exit status, nothing on standard output (with --json: an object with
+    /// the error), one line of complaint that holds each of these pieces. Returns the line.
     std::string refused(const std::vector<std::string>& words, int exit,
                         const std::vector<std::string>& pieces, rlim_t largest_file = 0) const {
         const std::set<std::string> before = names();
@@ -148,7 +181,14 @@ class Workshop {
         INFO("weave " << joined(words));
         INFO(ended.err);
         CHECK(ended.exit == exit);
-        CHECK(ended.out.empty());
+        if (std::find(words.begin(), words.end(), "--json") == words.end()) {
+            CHECK(ended.out.empty());
+        } else {
+            const weave::Result<weave::Json> answer = weave::parse_json(ended.out);
+            REQUIRE(answer);
+            CHECK(answer->at("error").at("exit") == exit);
+            CHECK(answer->at("error").at("message").get<std::string>().size() > 3);
+        }
         const std::vector<std::string> lines = ended.complaints();
         REQUIRE(lines.size() >= 1);
         CHECK(lines.size() <= (exit == 2 ? 2U : 1U));  // usage may add where to find help

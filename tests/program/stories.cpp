@@ -150,13 +150,22 @@ TEST_CASE("attach joins on each of the six faces, B beside, before, above or bel
         CHECK(answer.at("columns") == (axis == 'y' ? 8 : 4));
         CHECK(answer.at("height") == (axis == 'z' ? 4 : 2));
         const CardImage c = card_of(shop, "c.weave");
+        const bool after = face[0] == '+';
         if (axis ==
-            'z') {  // where an end of the upper cloth crosses a pick of the lower one, the end lies over
-            CHECK(c.picks() == 8);
-            CHECK(c.ends() == 8);
+            'z') {  // in each stack the lower cloth's yarns come first; all of them lie below the upper's
+            REQUIRE(c.picks() == 8);
+            REQUIRE(c.ends() == 8);
+            const CardImage &lower = after ? a : b, &upper = after ? b : a;
+            for (std::size_t i = 0; i < 8; ++i)
+                for (std::size_t j = 0; j < 8; ++j) {
+                    const bool high_pick = i % 2 == 1, high_end = j % 2 == 1;
+                    const bool over = high_pick == high_end
+                                          ? (high_pick ? upper : lower).weft_over(i / 2, j / 2)
+                                          : high_pick;
+                    CHECK(c.weft_over(i, j) == over);
+                }
             continue;
         }
-        const bool after = face[0] == '+';
         for (std::size_t i = 0; i < 4; ++i)
             for (std::size_t j = 0; j < 4; ++j) {
                 const std::size_t down = axis == 'x' ? 4 : 0, right = axis == 'y' ? 4 : 0;
@@ -232,6 +241,8 @@ TEST_CASE("a WIF file becomes a design") {
     CHECK(answer.at("picks") == 4);
     CHECK(answer.at("ends") == 4);
     CHECK(answer.at("warnings").is_array());
+    shop.put("twill.txt", shop.get("twill.wif"));  // it is known by what is in it
+    CHECK(shop.json({"import", "twill.txt", "-o", "t.weave"}).at("picks") == 4);
     const CardImage card = card_of(shop, "w.weave");
     for (std::size_t i = 0; i < 4; ++i)
         for (std::size_t j = 0; j < 4; ++j) CHECK(card.weft_over(i, j) == !(j == i || j == (i + 1) % 4));
@@ -269,6 +280,18 @@ TEST_CASE("a flip with other yarns in the way is refused with 1, names them, and
                 call, 1,
                 {"m.weave", "pick " + std::to_string(pick), "end " + std::to_string(end), "in the way"});
             CHECK(!shop.has("new.weave"));
+            std::vector<std::string> ask = call;
+            const Json told = shop.json(ask, 1);
+            CHECK(told.at("error").at("kind") == "invalid");
+            std::size_t named = 0;
+            for (const char* yarn : {"pick", "end"})
+                for (const Json& number : told.at(yarn + std::string("s"))) {
+                    CHECK(line.substr(line.find("in the way")).find(yarn + (" " + number.dump())) !=
+                          std::string::npos);
+                    ++named;
+                }
+            CHECK(named > 0);
+            CHECK(named == 1U + static_cast<std::size_t>(std::count(line.begin(), line.end(), ',')));
         }
     CHECK(refusals > 0);
     CHECK(refusals < card.picks() * card.ends());

@@ -5,6 +5,9 @@
 
 #include <weave/io/bitmap.hpp>
 
+#include <csignal>
+#include <sys/stat.h>
+
 using program_tests::loom;
 using program_tests::Workshop;
 using weave::Json;
@@ -98,10 +101,13 @@ TEST_CASE("bad input ends with 3 and one line that names the file and the place 
     for (const auto& [words, pieces] : calls) shop.refused(words, 3, pieces);
 }
 
-TEST_CASE("a broken input that asks for JSON leaves standard output empty too") {
+TEST_CASE("a program that reads along is told of a failure in JSON, and nothing else") {
     const Workshop shop;
     furnish(shop);
     shop.refused({"info", "cut.weave", "--json"}, 3, {"cut.weave"});
+    const Json error = shop.json({"info", "newer.weave"}, 3).at("error");
+    CHECK(error.at("kind") == "bad input");
+    CHECK(error.at("where").get<std::string>() == "newer.weave: version");
     shop.refused({"check", "t.weave", "--loom", "odd.json", "--json"}, 3, {"odd.json"});
 }
 
@@ -147,7 +153,10 @@ TEST_CASE("an output replaces the old file as a whole, even the very file that i
     std::filesystem::create_hard_link(shop.path("t.weave"), shop.path("held.weave"));
     const std::string before = shop.get("t.weave");
     const std::set<std::string> names = shop.names();
-    shop.must({"tile", "t.weave", "--x", "2", "-o", "t.weave"});
+    const program_tests::Ended tiled = shop.run({"tile", "t.weave", "--x", "2", "-o", "t.weave"});
+    CHECK(tiled.exit == 0);
+    CHECK(tiled.complaints() ==
+          Words{"weave: t.weave: another name of this file (hard link) keeps the old content"});
     CHECK(shop.get("held.weave") == before);  // a new file took the name; the old one was never written into
     CHECK(shop.json({"info", "t.weave"}).at("picks") == 8);
     CHECK(shop.names() == names);
@@ -166,4 +175,76 @@ TEST_CASE("control characters from a file's name do not reach the terminal") {
     const Workshop shop;
     const std::string line = shop.refused({"info", "a\x1b[2Jb.weave"}, 3, {"a\\x1b[2Jb.weave"});
     CHECK(line.find('\x1b') == std::string::npos);
+}
+
+TEST_CASE("no title, loom or file name forges a line or reaches the terminal's controls") {
+    const Workshop shop;
+    const std::string evil = "\x1b[31mEVIL\nOn TC2: 0 errors\xc2\x9b\xe2\x80\xae",
+                      shown = "\\x1b[31mEVIL\\x0aOn TC2";
+    shop.must({"preset", "twill", "-o", "t.weave"});
+    Json document = *weave::parse_json(shop.get("t.weave"));
+    document["title"] = evil;
+    shop.put("evil.weave", document.dump());
+    Json profile = *weave::parse_json(*weave::read_file(loom("tc2")));
+    profile["name"] = evil;
+    shop.put("evil.json", profile.dump());
+    const std::vector<Words> calls{
+        {"info", "evil.weave"},
+        {"check", "t.weave", "--loom", "evil.json"},
+        {"preset", "plain", "-o", evil + ".weave"},
+        {"card", "t.weave", "-o", evil + ".png"},
+        {"card", "t.weave", "-o", evil + ".wif"},
+        {"render", "t.weave", "--view", "face", "-o", evil + ".png"},
+        {"export", "t.weave", "--loom", loom("tc2"), "-o", evil},
+    };
+    for (Words call : calls) {
+        const program_tests::Ended ended = shop.must(call);
+        INFO(ended.out);
+        CHECK(ended.out.find(shown) != std::string::npos);
+        CHECK(ended.out.find("\nOn TC2: 0 errors") == std::string::npos);
+        call.emplace_back("--json");
+        std::filesystem::remove_all(shop.path(evil));
+        const std::string json = shop.run(call).out;
+        for (const char* mark : {"\x1b", "\xc2\x9b", "\xe2\x80\xae"}) {
+            CHECK(ended.out.find(mark) == std::string::npos);
+            CHECK(json.find(mark) == std::string::npos);
+        }
+    }
+}
+
+TEST_CASE("what takes long is told, on one line, until it is done") {
+    const Workshop shop;
+    shop.must({"preset", "twill", "-o", "t.weave"});
+    const std::string slow = "slow\x1b[2J.png";  // a pipe: written to only once somebody reads
+    REQUIRE(::mkfifo(shop.path(slow).c_str(), 0600) == 0);
+    Workshop::Running running = shop.start({"card", "t.weave", "-o", slow});
+    CHECK(running.says("writing slow\\x1b[2J.png ... 1 s\n"));
+    const int reader = ::open(shop.path(slow).c_str(), O_RDONLY | O_CLOEXEC);
+    char buffer[4096];
+    while (::read(reader, buffer, sizeof buffer) > 0) {
+    }
+    ::close(reader);
+    CHECK(running.finish().exit == 0);
+}
+
+TEST_CASE("a signal in the middle of a write ends the program by that signal, with nothing left behind") {
+    const Workshop shop;
+    shop.must({"preset", "plain", "-o", "p.weave"});
+    shop.must({"tile", "p.weave", "--x", "1500", "--y", "1500", "-o", "large.weave"});
+    const std::set<std::string> before = shop.names();
+    for (const int signal : {SIGINT, SIGTERM, SIGHUP}) {
+        bool caught = false;
+        for (int attempt = 0; attempt < 50 && !caught; ++attempt) {  // it may be done before we look
+            Workshop::Running running = shop.start({"card", "large.weave", "-o", "out.bmp"});
+            while (!running.is_over() && shop.names() == before) {
+            }
+            ::kill(running.child, SIGSTOP);
+            ::kill(running.child, signal);
+            ::kill(running.child, SIGCONT);
+            caught = running.finish().exit == 1000 + signal;
+            std::filesystem::remove(shop.path("out.bmp"));  // whole, or not there
+            CHECK(shop.names() == before);
+        }
+        CHECK(caught);
+    }
 }

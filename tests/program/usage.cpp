@@ -21,7 +21,7 @@ const std::map<std::string, std::vector<std::string>> commands{
     {"info", {"FILE"}},
     {"card", {"FILE", "--out", ".png", ".tif", ".bmp", "--pick-1", "--end-1", "--lifted"}},
     {"check", {"FILE", "--loom"}},
-    {"render", {"FILE", "--out", "--view", "--trim", "floats", "weft:N", "warp:N", "block"}},
+    {"render", {"FILE", "--out", "--view", "--trim", "--from-pick", "--from-end", "floats", "weft:N", "warp:N", "block"}},
     {"flip", {"FILE", "--pick", "--end", "--out"}},
     {"export", {"FILE", "--loom", "--out"}},
 };
@@ -102,7 +102,7 @@ TEST_CASE("a call that makes no sense ends with 2 and says what is wrong with it
         {{"import", "t.png", "--grouping", "2", "-o", "new.weave"}, {"--grouping", "--infer"}},
         {{"import", "t.png", "--infer", "--grouping", "999", "-o", "new.weave"}, {"grouping"}},
         {{"import", "t.png", "--lifted", "grey", "-o", "new.weave"}, {"--lifted", "grey", "black"}},
-        {{"card", "t.weave", "-o", "card.gif"}, {"card.gif", ".png", ".tif", ".bmp"}},
+        {{"card", "t.weave", "-o", "card.gif"}, {"card.gif", ".png", ".tif", ".bmp", ".wif"}},
         {{"render", "t.weave", "--view", "card", "-o", "card.bmp"}, {"card.bmp", ".png", ".svg"}},
         {{"render", "t.weave", "--view", "inside", "-o", "new.png"}, {"inside", "face", "weft:N"}},
         {{"render", "t.weave", "--view", "weft:5", "-o", "new.png"}, {"5", "1 to 4"}},
@@ -111,5 +111,16 @@ TEST_CASE("a call that makes no sense ends with 2 and says what is wrong with it
         {{"check", "t.weave"}, {"--loom"}},
         {{"export", "t.weave", "-o", "new"}, {"--loom"}},
     };
-    for (const auto& [words, pieces] : calls) shop.refused(words, 2, pieces);
+    shop.must({"card", "t.weave", "-o", "t.wif"});
+    for (const std::string option : {"--pick-1", "--end-1", "--lifted"}) {  // which WIF knows nothing of
+        const std::string value = option == "--pick-1" ? "top" : option == "--end-1" ? "right" : "white";
+        shop.refused({"card", "t.weave", "-o", "new.wif", option, value}, 2, {option, "WIF"});
+        shop.refused({"import", "t.wif", "-o", "new.weave", option, value}, 2, {option, "WIF"});
+    }
+    for (const auto& [words, pieces] : calls) {
+        shop.refused(words, 2, pieces);
+        Words with_json = words;
+        with_json.emplace_back("--json");
+        if (!words.empty() && words[0].size() > 4 && words[0][0] != '-') shop.refused(with_json, 2, {});
+    }
 }

@@ -1,10 +1,14 @@
 #pragma once
 
-#include <cstdint>
 #include <algorithm>
+#include <charconv>
+#include <cstdint>
 #include <cstdio>
 #include <cstdlib>
+#include <cstring>
+#include <optional>
 #include <random>
+#include <stdexcept>
 #include <string>
 #include <vector>
 
@@ -14,18 +18,29 @@
 
 namespace weave::testing {
 
+/// The number that an environment variable gives; an exception where it is anything but a number from `low` on, so
+/// that a slip of the pen is no empty test that passes.
+inline std::optional<std::size_t> number_from(const char* variable, std::size_t low) {
+    const char* wish = std::getenv(variable);
+    if (wish == nullptr) return {};
+    std::size_t number = 0;
+    const char* const end = wish + std::strlen(wish);
+    const auto [stop, code] = std::from_chars(wish, end, number);
+    if (code != std::errc{} || stop != end || number < low)
+        throw std::runtime_error(std::string(variable) + "='" + wish + "' is not a number from " +
+                                 std::to_string(low) + " on");
+    return number;
+}
+
 /// Cases of a property test: 10,000, or what WEAVE_PROPERTY_CASES says (coverage and sanitizer builds lower it).
+/// What is no number of cases fails the test, or it would pass untried.
 inline std::size_t property_cases() {
-    const char* wish = std::getenv("WEAVE_PROPERTY_CASES");
-    return wish != nullptr ? static_cast<std::size_t>(std::atoll(wish)) : 10000;
+    return number_from("WEAVE_PROPERTY_CASES", 1).value_or(10000);
 }
 
 /// The seed of this run: WEAVE_SEED, or a fresh one. Every property test prints it.
 inline std::uint64_t run_seed() {
-    static const std::uint64_t seed = [] {
-        const char* wish = std::getenv("WEAVE_SEED");
-        return wish != nullptr ? std::strtoull(wish, nullptr, 10) : std::random_device{}();
-    }();
+    static const std::uint64_t seed = number_from("WEAVE_SEED", 0).value_or(std::random_device{}());
     return seed;
 }
 
@@ -50,6 +65,7 @@ class Random {
 /// Runs `property(random)` for property_cases() cases; a failure names the seed and case that repeat it.
 template <class Property>
 void for_all(Property property, std::size_t cases = property_cases()) {
+    cases = std::max<std::size_t>(cases, 1);  // of a share of few, at least one
     std::printf("seed %llu, %zu cases\n", static_cast<unsigned long long>(run_seed()), cases);
     for (std::size_t k = 0; k < cases; ++k) {
         INFO("WEAVE_SEED=" << run_seed() << ", case " << k);

@@ -2,6 +2,7 @@
 #include "progress.hpp"
 
 #include <weave/block/flip.hpp>
+#include <weave/core/text.hpp>
 #include <weave/design/document.hpp>
 
 #include <iostream>
@@ -26,20 +27,23 @@ int exit_of(ErrorCode code) {
     return fault;
 }
 
-/// Names from files may hold line breaks and other control characters; a terminal must not obey them.
-std::string on_one_line(const std::string& text) {
-    constexpr char digits[] = "0123456789abcdef";
-    std::string line;
-    for (const char c : text) {
-        const auto byte = static_cast<unsigned char>(c);
-        if (byte >= 0x20 && byte != 0x7f) {
-            line.push_back(c);
-        } else {
-            line += {'\\', 'x', digits[byte >> 4], digits[byte & 15]};
-        }
+const char* kind_of(ErrorCode code) {
+    switch (code) {
+        case ErrorCode::usage:
+            return "usage";
+        case ErrorCode::bad_input:
+            return "bad input";
+        case ErrorCode::invalid:
+            return "invalid";
+        case ErrorCode::refused:
+            return "refused";
+        case ErrorCode::system:
+            return "system";
     }
-    return line;
+    return "";
 }
+
+constexpr const char* reading_options[] = {"--pick-1", "--end-1", "--lifted"};
 
 std::string lost_flip_line(const LostFlip& lost) {
     return "a flip of block '" + lost.block + "' no longer applies: " + lost.reason;
@@ -50,15 +54,24 @@ std::string lost_flip_line(const LostFlip& lost) {
 void Program::fail(const Error& error) {
     exit_code = exit_of(error.code);
     note(error.text());
+    if (json && !m_answered) answer({{"error", error_json(error)}}, "");
+}
+
+Json error_json(const Error& error) {
+    return {{"kind", kind_of(error.code)},
+            {"where", error.where},
+            {"message", error.message},
+            {"exit", exit_of(error.code)}};
 }
 
 void Program::note(const std::string& line) const {
     std::cerr << "weave: " << on_one_line(line) << '\n';
 }
 
-void Program::answer(const Json& json_answer, const std::string& words) const {
-    if (json) {
-        std::cout << json_answer.dump(1, ' ', false, Json::error_handler_t::replace) << '\n';
+void Program::answer(const Json& json_answer, const std::string& words) {
+    m_answered = true;
+    if (json) {  // in ASCII: a terminal obeys some characters beyond it
+        std::cout << json_answer.dump(1, ' ', true, Json::error_handler_t::replace) << '\n';
     } else {
         std::cout << words;
     }
@@ -76,13 +89,20 @@ void on_run(CLI::App* command, Program& program, std::function<Status()> run) {
     });
 }
 
-Result<Cloth> load_cloth(const Program& program, const std::string& file) {
+Result<Cloth> load_cloth(Program& program, const std::string& file) {
     const Progress progress("reading " + file);
     WEAVE_TRY(Design design, load_design(file));
     Result<Evaluation> evaluation = evaluate(design);
     if (!evaluation) return std::move(evaluation).error().in(file);
     for (const LostFlip& lost : evaluation->lost_flips) program.note(file + ": " + lost_flip_line(lost));
     return Cloth{std::move(design), std::move(evaluation).value()};
+}
+
+std::string given_reading_option(const CLI::App* command) {
+    for (const char* name : reading_options) {
+        if (command->count(name) > 0) return name;
+    }
+    return "";
 }
 
 void add_reading_options(CLI::App* command, const std::shared_ptr<BitmapReading>& reading) {
@@ -96,13 +116,15 @@ void add_reading_options(CLI::App* command, const std::shared_ptr<BitmapReading>
             ->check(CLI::IsMember({usual, other}))
             ->default_str(usual);
     };
-    either("--pick-1", "where the picture has pick 1", "bottom", "top", &BitmapReading::pick_1_at_bottom);
-    either("--end-1", "where the picture has end 1", "left", "right", &BitmapReading::end_1_at_left);
-    either("--lifted", "the colour of a lifted end", "black", "white", &BitmapReading::black_is_lifted);
+    either(reading_options[0], "where the picture has pick 1", "bottom", "top",
+           &BitmapReading::pick_1_at_bottom);
+    either(reading_options[1], "where the picture has end 1", "left", "right", &BitmapReading::end_1_at_left);
+    either(reading_options[2], "the colour of a lifted end", "black", "white",
+           &BitmapReading::black_is_lifted);
 }
 
-Status save_cloth(const Program& program, const Design& design, const std::string& file,
-                  const std::string& sources, const std::vector<std::string>& warnings) {
+Status save_cloth(Program& program, const Design& design, const std::string& file, const std::string& sources,
+                  const std::vector<std::string>& warnings) {
     const Progress progress("weaving " + file);
     Result<Evaluation> woven = evaluate(design);
     if (!woven) {
@@ -123,7 +145,7 @@ Status save_cloth(const Program& program, const Design& design, const std::strin
                     {"columns", block.columns()},
                     {"height", block.height()},
                     {"warnings", notes}},
-                   file + ": " + std::to_string(block.picks()) + " picks and " +
+                   on_one_line(file) + ": " + std::to_string(block.picks()) + " picks and " +
                        std::to_string(block.ends()) + " ends in " + std::to_string(block.rows()) +
                        " rows and " + std::to_string(block.columns()) + " columns, " +
                        std::to_string(block.height()) + " high\n");

@@ -22,15 +22,22 @@ enum Exit : int { done = 0, findings = 1, usage = 2, bad_file = 3, refused = 4, 
 struct Program {
     bool json = false;
     int exit_code = done;
-    std::string doing;  ///< what runs now, told on standard error once it takes over a second
 
-    /// Prints the error and remembers its exit code.
+    /// Tells the error and remembers its exit code. A program that reads along gets it as the answer,
+    /// `{"error": …}`, unless it has had a fuller one.
     void fail(const Error& error);
     /// A line for people on standard error.
     void note(const std::string& line) const;
-    /// The answer: as JSON if a program reads along, else in words, on standard output.
-    void answer(const Json& json_answer, const std::string& words) const;
+    /// The answer: as JSON if a program reads along, else in words, on standard output. Names from outside
+    /// must come through on_one_line() in `words`, whose line breaks are kept.
+    void answer(const Json& json_answer, const std::string& words);
+
+  private:
+    bool m_answered = false;
 };
+
+/// What a program is told of an error: kind, place, message, exit status.
+Json error_json(const Error& error);
 
 /// Adds a command; `run` is called with the program when it is chosen. Every command takes --json.
 CLI::App* add_command(CLI::App& app, Program& program, const std::string& name, const std::string& help);
@@ -49,12 +56,15 @@ struct Cloth {
     Design design;
     Evaluation evaluation;
 };
-Result<Cloth> load_cloth(const Program& program, const std::string& file);
+Result<Cloth> load_cloth(Program& program, const std::string& file);
 
 /// Checks that a new design evaluates, saves it, and tells what came out. `sources` names what it was made
 /// from: that is where a person looks when it does not fit together.
-Status save_cloth(const Program& program, const Design& design, const std::string& file,
-                  const std::string& sources, const std::vector<std::string>& warnings = {});
+Status save_cloth(Program& program, const Design& design, const std::string& file, const std::string& sources,
+                  const std::vector<std::string>& warnings = {});
+
+/// The first of the options below that was given, such as `--lifted`; empty if none was.
+std::string given_reading_option(const CLI::App* command);
 
 /// Options that say how a bilevel picture stands for a card; `reading` must outlive the command.
 void add_reading_options(CLI::App* command, const std::shared_ptr<BitmapReading>& reading);

@@ -25,6 +25,7 @@ struct ImportRequest {
     bool infer = false;
     std::size_t grouping = 1;
     BitmapReading reading;
+    std::string given_option;  ///< one of those of `reading` that was given, or empty
 };
 
 std::string in_short(const Counts& counts) {
@@ -32,17 +33,6 @@ std::string in_short(const Counts& counts) {
     for (std::size_t k = 0; k < std::min<std::size_t>(counts.size(), 8); ++k)
         text += (k > 0 ? "," : "") + std::to_string(counts[k]);
     return text + (counts.size() > 8 ? ",…" : "");
-}
-
-/// The counts without their repetitions: 2,2,2,2 is 2.
-Counts shortest(const Counts& counts) {
-    for (std::size_t period = 1; period < counts.size(); ++period) {
-        if (counts.size() % period != 0) continue;
-        if (std::equal(counts.begin() + static_cast<std::ptrdiff_t>(period), counts.end(), counts.begin())) {
-            return {counts.begin(), counts.begin() + static_cast<std::ptrdiff_t>(period)};
-        }
-    }
-    return counts;
 }
 
 Result<DesignFromWif> design_from_bitmap(const ImportRequest& request, const std::string& bytes) {
@@ -63,21 +53,22 @@ Status group(const ImportRequest& request, Design& design, Json& groupings) {
         const std::vector<Grouping> possible =
             possible_groupings(*leaf.card, std::max<std::size_t>(8, request.grouping));
         for (const Grouping& one : possible)
-            groupings.push_back({{"t", shortest(one.t)}, {"p", shortest(one.p)}, {"reason", one.reason}});
+            groupings.push_back(
+                {{"t", shortest_repeat(one.t)}, {"p", shortest_repeat(one.p)}, {"reason", one.reason}});
         if (request.grouping > possible.size()) {
             return Error{ErrorCode::usage, "there are only " + counted(possible.size(), "possible grouping"),
                          ""};
         }
-        leaf.t = shortest(possible[request.grouping - 1].t);
-        leaf.p = shortest(possible[request.grouping - 1].p);
+        leaf.t = shortest_repeat(possible[request.grouping - 1].t);
+        leaf.p = shortest_repeat(possible[request.grouping - 1].p);
     }
     design.blocks[design.root] = std::make_shared<const Node>(Node{std::move(leaf), {}});
     return {};
 }
 
 std::string in_words(const ImportRequest& request, const Block& block, const Json& groupings) {
-    std::string words =
-        request.out + ": " + counted(block.picks(), "pick") + " and " + counted(block.ends(), "end") + "\n";
+    std::string words = on_one_line(request.out) + ": " + counted(block.picks(), "pick") + " and " +
+                        counted(block.ends(), "end") + "\n";
     for (std::size_t k = 0; k < groupings.size(); ++k) {
         words += std::string(k + 1 == request.grouping ? "* " : "  ") + std::to_string(k + 1) +
                  ": t = " + in_short(groupings[k]["t"].get<Counts>()) +
@@ -88,11 +79,16 @@ std::string in_words(const ImportRequest& request, const Block& block, const Jso
     return words;
 }
 
-Status import_design(const Program& program, const ImportRequest& request) {
+Status import_design(Program& program, const ImportRequest& request) {
     const Progress progress("reading " + request.in);
     WEAVE_TRY(const std::string bytes, read_file(request.in));
-    Result<DesignFromWif> read =
-        lower_extension(request.in) == ".wif" ? read_wif(bytes) : design_from_bitmap(request, bytes);
+    const bool wif = lower_extension(request.in) == ".wif" || is_wif(bytes);
+    if (wif && !request.given_option.empty()) {
+        return Error{ErrorCode::usage,
+                     request.given_option + " is for pictures; WIF says itself how it is to be read",
+                     request.in};
+    }
+    Result<DesignFromWif> read = wif ? read_wif(bytes) : design_from_bitmap(request, bytes);
     if (!read) return std::move(read).error().in(request.in);
     Design& design = read->design;
     if (design.title.empty()) design.title = std::filesystem::path(request.in).stem().string();
@@ -141,7 +137,10 @@ void add_import_command(CLI::App& app, Program& program) {
         ->type_name("N");
     infer->excludes(t)->excludes(p);
     add_reading_options(command, {request, &request->reading});
-    on_run(command, program, [=, &program] { return import_design(program, *request); });
+    on_run(command, program, [=, &program] {
+        request->given_option = given_reading_option(command);
+        return import_design(program, *request);
+    });
 }
 
 }  // namespace weave::program

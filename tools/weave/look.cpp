@@ -12,6 +12,7 @@
 
 #include <algorithm>
 #include <memory>
+#include <optional>
 
 namespace weave::program {
 
@@ -46,7 +47,7 @@ std::string tree_in_words(const Design& design) {
     return text;
 }
 
-Status tell_info(const Program& program, const std::string& file) {
+Status tell_info(Program& program, const std::string& file) {
     WEAVE_TRY(const Cloth cloth, load_cloth(program, file));
     const Block& block = *cloth.evaluation.block;
     const std::string card = block.card_image().sha256(), design = design_sha256(cloth.design);
@@ -63,13 +64,13 @@ Status tell_info(const Program& program, const std::string& file) {
                     {"scene_sha256", scene_sha256(cloth.design)},
                     {"lost_flips", cloth.evaluation.lost_flips.size()},
                     {"tree", tree_of(cloth.design)}};
-    program.answer(json, (cloth.design.title.empty() ? file : cloth.design.title) + "\n" + "picks    " +
-                             std::to_string(block.picks()) + " in " + counted(block.rows(), "row") + "\n" +
-                             "ends     " + std::to_string(block.ends()) + " in " +
-                             counted(block.columns(), "column") + "\n" + "height   " +
-                             std::to_string(block.height()) + "\n" + "card     " + card + "\n" + "design   " +
-                             design + "\n" + "blocks   " + std::to_string(cloth.design.blocks.size()) +
-                             " (* is the cloth)\n" + tree_in_words(cloth.design));
+    program.answer(
+        json, on_one_line(cloth.design.title.empty() ? file : cloth.design.title) + "\n" + "picks    " +
+                  std::to_string(block.picks()) + " in " + counted(block.rows(), "row") + "\n" + "ends     " +
+                  std::to_string(block.ends()) + " in " + counted(block.columns(), "column") + "\n" +
+                  "height   " + std::to_string(block.height()) + "\n" + "card     " + card + "\n" +
+                  "design   " + design + "\n" + "blocks   " + std::to_string(cloth.design.blocks.size()) +
+                  " (* is the cloth)\n" + tree_in_words(cloth.design));
     return {};
 }
 
@@ -80,42 +81,36 @@ void add_info(CLI::App& app, Program& program) {
     on_run(command, program, [=, &program] { return tell_info(program, *file); });
 }
 
-Error not_read_back(const std::string& out) {
-    return system_fault("the card image does not read back as it was", out);
-}
-
-/// The card as a picture, read back and compared before anyone gets it.
-Result<std::string> card_as_bitmap(const CardImage& card, const std::string& out,
-                                   const BitmapReading& reading) {
-    WEAVE_TRY(const BitmapFormat format, bitmap_format_of(out));
-    WEAVE_TRY(std::string bytes, write_bitmap(card, format, reading));
-    WEAVE_TRY(const CardFromBitmap back, read_bitmap(bytes, reading));
-    if (back.card != card) return not_read_back(out);
-    return bytes;
-}
-
 /// The design as WIF, read back and its card compared. WIF fixes the orientation itself.
 Result<std::string> card_as_wif(const Cloth& cloth, const CardImage& card, const std::string& out) {
     WEAVE_TRY(std::string bytes, write_wif(cloth.design, *cloth.evaluation.block, card));
     WEAVE_TRY(const DesignFromWif back, read_wif(bytes));
     WEAVE_TRY(const Evaluation again, evaluate(back.design));
-    if (again.block->card_image() != card) return not_read_back(out);
+    if (again.block->card_image() != card)
+        return system_fault("the WIF file does not read back as the card that it was; nothing is written",
+                            out);
     return bytes;
 }
 
-Status write_card(const Program& program, const std::string& file, const std::string& out,
-                  const BitmapReading& reading) {
+Status write_card(Program& program, const std::string& file, const std::string& out,
+                  const BitmapReading& reading, const std::string& given_option) {
     const bool wif = lower_extension(out) == ".wif";
-    if (!wif) WEAVE_CHECK_OK(bitmap_format_of(out));
+    const Result<BitmapFormat> format = bitmap_format_of(out);
+    if (!wif && !format)
+        return Error{ErrorCode::usage, "a card's name ends in .png, .tif, .tiff, .bmp or .wif", out};
+    if (wif && !given_option.empty())
+        return Error{ErrorCode::usage,
+                     given_option + " is for pictures; WIF says itself how it is to be read", out};
     WEAVE_TRY(const Cloth cloth, load_cloth(program, file));
     const Progress progress("writing " + out);
     const CardImage card = cloth.evaluation.block->card_image();
     WEAVE_TRY(const std::string bytes,
-              wif ? card_as_wif(cloth, card, out) : card_as_bitmap(card, out, reading));
+              wif ? card_as_wif(cloth, card, out) : write_proven_bitmap(card, *format, reading));
     WEAVE_CHECK_OK(write_file(out, bytes));
     program.answer(
         {{"file", out}, {"picks", card.picks()}, {"ends", card.ends()}, {"card_sha256", card.sha256()}},
-        out + ": " + counted(card.picks(), "pick") + " and " + counted(card.ends(), "end") + "\n");
+        on_one_line(out) + ": " + counted(card.picks(), "pick") + " and " + counted(card.ends(), "end") +
+            "\n");
     return {};
 }
 
@@ -131,7 +126,9 @@ void add_card(CLI::App& app, Program& program) {
         ->type_name("FILE")
         ->required();
     add_reading_options(command, reading);
-    on_run(command, program, [=, &program] { return write_card(program, *file, *out, *reading); });
+    on_run(command, program, [=, &program] {
+        return write_card(program, *file, *out, *reading, given_reading_option(command));
+    });
 }
 
 Result<PictureFormat> picture_format_of(const std::string& file) {
@@ -141,37 +138,48 @@ Result<PictureFormat> picture_format_of(const std::string& file) {
     return Error{ErrorCode::usage, "a picture's name ends in .png or .svg", file};
 }
 
-Status render(const Program& program, const std::string& file, const std::string& view, bool trim,
-              const std::string& out) {
+struct Rendering {
+    std::string file, view, out;
+    bool trim = false;
+    std::optional<std::size_t> from_pick, from_end;
+};
+
+Status render(Program& program, const Rendering& wish) {
+    const auto& [file, view, out, trim, from_pick, from_end] = wish;
     WEAVE_TRY(const PictureFormat format, picture_format_of(out));
     WEAVE_TRY(const Cloth cloth, load_cloth(program, file));
     const Progress progress("drawing " + out);
     WEAVE_TRY(PictureRequest request, parse_view(view, *cloth.evaluation.block));
+    WEAVE_CHECK_OK(begin_at(request, *cloth.evaluation.block, from_pick, from_end));
     request.trim = trim;
     WEAVE_TRY(const std::string bytes, draw(cloth.design, cloth.evaluation, request, format));
     WEAVE_CHECK_OK(write_file(out, bytes));
-    program.answer({{"file", out}, {"view", view}, {"bytes", bytes.size()}}, out + ": " + view + "\n");
+    program.answer({{"file", out}, {"view", view}, {"bytes", bytes.size()}},
+                   on_one_line(out) + ": " + on_one_line(view) + "\n");
     return {};
 }
 
 void add_render(CLI::App& app, Program& program) {
     CLI::App* command = add_command(app, program, "render",
                                     "Draw a design: card, face, back, floats, layers, slices, or the block");
-    const auto file = std::make_shared<std::string>();
-    const auto view = std::make_shared<std::string>();
-    const auto trim = std::make_shared<bool>(false);
-    const auto out = std::make_shared<std::string>();
-    command->add_option("FILE", *file, "the .weave file")->required();
+    const auto wish = std::make_shared<Rendering>();
+    command->add_option("FILE", wish->file, "the .weave file")->required();
     command
-        ->add_option("--view", *view,
+        ->add_option("--view", wish->view,
                      "card, face, back, floats, layers, weft:N, warp:N (pick or end N, from 1) or block")
         ->type_name("VIEW")
         ->required();
-    command->add_flag("--trim", *trim, "leave out yarns that are loose on purpose");
-    command->add_option("-o,--out", *out, "the picture to write: .png or .svg")
+    command->add_flag("--trim", wish->trim, "leave out yarns that are loose on purpose");
+    command
+        ->add_option("--from-pick", wish->from_pick,
+                     "for warp:N and block: begin at this pick, where the cloth is too large to show whole")
+        ->type_name("N");
+    command->add_option("--from-end", wish->from_end, "for weft:N and block: begin at this end")
+        ->type_name("N");
+    command->add_option("-o,--out", wish->out, "the picture to write: .png or .svg")
         ->type_name("FILE")
         ->required();
-    on_run(command, program, [=, &program] { return render(program, *file, *view, *trim, *out); });
+    on_run(command, program, [=, &program] { return render(program, *wish); });
 }
 
 }  // namespace

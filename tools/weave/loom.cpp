@@ -41,11 +41,11 @@ std::string in_words(const CheckReport& report, const std::string& loom) {
     std::string text;
     for (const Finding& finding : report.findings) {
         text += severity_names[static_cast<std::size_t>(finding.severity)] + "  " + finding.rule + "  " +
-                finding.message + "\n";
+                on_one_line(finding.message) + "\n";
     }
     for (const NotEvaluated& rule : report.not_evaluated)
-        text += "not evaluated  " + rule.rule + "  " + rule.reason + "\n";
-    return text + "On " + loom + ": " + counted(report.count(Severity::error), "error") + ", " +
+        text += "not evaluated  " + rule.rule + "  " + on_one_line(rule.reason) + "\n";
+    return text + "On " + on_one_line(loom) + ": " + counted(report.count(Severity::error), "error") + ", " +
            counted(report.count(Severity::warning), "warning") + ", " +
            counted(report.passed.size(), "rule") + " passed, " + std::to_string(report.not_evaluated.size()) +
            " not evaluated\n";
@@ -77,8 +77,12 @@ Status export_sample(Program& program, const std::string& file, const std::strin
     const Progress progress("exporting " + file);
     const CheckReport report = check_for_loom(cloth.design, cloth.evaluation, profile);
     if (report.count(Severity::error) > 0) {
-        program.answer(to_json(report), in_words(report, profile.name));
-        return invalid("does not validate on " + profile.name + ", so nothing is exported", file);
+        const Error refusal =
+            invalid("does not validate on " + profile.name + ", so nothing is exported", file);
+        Json answer = to_json(report);
+        answer["error"] = error_json(refusal);
+        program.answer(answer, in_words(report, profile.name));
+        return refusal;
     }
     const std::string stem = std::filesystem::path(file).stem().string();
     WEAVE_TRY(const SampleExport made, make_sample_export(cloth.design, cloth.evaluation, profile, stem));
@@ -87,7 +91,7 @@ Status export_sample(Program& program, const std::string& file, const std::strin
     std::string words;
     for (Json entry : made.manifest.at("files")) {
         entry["path"] = (std::filesystem::path(folder) / entry.at("path").get<std::string>()).string();
-        words += entry["path"].get<std::string>() + "\n";
+        words += on_one_line(entry["path"].get<std::string>()) + "\n";
         listed.push_back(std::move(entry));
     }
     program.answer(

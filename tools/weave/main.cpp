@@ -2,10 +2,17 @@
 
 #include "command.hpp"
 
+#include <weave/core/file.hpp>
+#include <weave/core/log.hpp>
+#include <weave/core/text.hpp>
+
+#include <algorithm>
 #include <csignal>
 #include <iostream>
 #include <new>
 #include <string>
+#include <string_view>
+#include <thread>
 #include <vector>
 
 namespace {
@@ -28,11 +35,43 @@ std::string usage_trouble(const CLI::App& app, const CLI::ParseError& trouble) {
     return "there is no " + std::string(option ? "option" : "command") + " '" + unknown.front() + "'";
 }
 
+bool asks_for_json(int count, char** words) {
+    return std::any_of(words + 1, words + count,
+                       [](const char* word) { return std::string(word) == "--json"; });
+}
+
+/// What the library tells besides its results, such as a file's other name that keeps the old content.
+void tell(weave::LogLevel level, std::string_view message) {
+    if (level != weave::LogLevel::debug) std::cerr << "weave: " << weave::on_one_line(message) << '\n';
+}
+
+/// Whoever ends the program by a signal finds no half-written file. A signal that was to be ignored (nohup)
+/// still is.
+void tidy_up_when_ended() {
+    sigset_t ending;
+    sigemptyset(&ending);
+    for (const int signal : {SIGINT, SIGTERM, SIGHUP}) {
+        struct sigaction now {};
+        if (sigaction(signal, nullptr, &now) == 0 && now.sa_handler != SIG_IGN) sigaddset(&ending, signal);
+    }
+    pthread_sigmask(SIG_BLOCK, &ending, nullptr);  // here, and in every thread from now on
+    std::thread([ending] {
+        int signal = 0;
+        if (sigwait(&ending, &signal) != 0) return;
+        weave::drop_unfinished_writes();
+        std::signal(signal, SIG_DFL);
+        pthread_sigmask(SIG_UNBLOCK, &ending, nullptr);
+        std::raise(signal);  // so that the caller learns what ended us
+    }).detach();
+}
+
 }  // namespace
 
 int main(int count, char** words) {
     std::signal(SIGXFSZ,
                 SIG_IGN);  // a file past the limit is an error to tell and tidy up after, not our end
+    tidy_up_when_ended();
+    weave::set_log_sink(tell);
     weave::program::Program program;
     CLI::App app(about, "weave");
     app.get_formatter()->label("SUBCOMMAND", "COMMAND ...");
@@ -50,15 +89,13 @@ int main(int count, char** words) {
         app.parse(count, words);
     } catch (const CLI::ParseError& trouble) {
         if (trouble.get_exit_code() == 0) return app.exit(trouble);  // --help, --version
-        program.note(usage_trouble(app, trouble));
+        program.json = asks_for_json(count, words);                  // which the parser need not have reached
+        program.fail({weave::ErrorCode::usage, usage_trouble(app, trouble), ""});
         std::cerr << "Try 'weave --help' or 'weave COMMAND --help'.\n";
-        return weave::program::usage;
     } catch (const std::bad_alloc&) {
-        std::cerr << "weave: this machine has not enough memory for it\n";
-        return weave::program::fault;
+        program.fail(weave::system_fault("this machine has not enough memory for it"));
     } catch (const std::exception& trouble) {
-        std::cerr << "weave: " << trouble.what() << '\n';
-        return weave::program::fault;
+        program.fail(weave::system_fault(trouble.what()));
     }
     std::cout.flush();
     if (!std::cout) {

@@ -31,7 +31,7 @@ Error usage_error(const std::string& message) {
 
 // ---- samples
 
-void list_samples(const Program& program) {
+void list_samples(Program& program) {
     Json list = Json::array();
     std::string names;
     for (const Sample& sample : samples()) {
@@ -214,8 +214,8 @@ Result<StencilMap> map_of(const ColourImage& image, const std::map<Colour, std::
     return map;
 }
 
-Status make_stencil(const Program& program, const std::string& picture,
-                    const std::vector<std::string>& mappings, const std::string& out) {
+Status make_stencil(Program& program, const std::string& picture, const std::vector<std::string>& mappings,
+                    const std::string& out) {
     Design design;
     StencilOperation stencil;
     std::map<Colour, std::uint16_t> numbers;
@@ -282,6 +282,20 @@ void add_stencil(CLI::App& app, Program& program) {
 
 // ---- flip
 
+/// Tells a program which yarns stand in the way of a flip, picks and ends from 1 and from the bottom up.
+/// People read it in the error.
+void answer_blocked(Program& program, const Block& block, std::size_t pick, std::size_t end,
+                    const Error& error) {
+    const std::size_t row = block.row_of_pick(pick), column = block.column_of_end(end);
+    const std::size_t first_pick = block.first_pick(row), first_end = block.first_end(column);
+    Json picks = Json::array(), ends = Json::array();
+    for (const Slot yarn : flip(block.stack(row, column), pick - first_pick, end - first_end).in_the_way) {
+        if (yarn.is_weft()) picks.push_back(first_pick + yarn.index() + 1);
+        if (yarn.is_warp()) ends.push_back(first_end + yarn.index() + 1);
+    }
+    program.answer({{"picks", std::move(picks)}, {"ends", std::move(ends)}, {"error", error_json(error)}}, "");
+}
+
 void add_flip(CLI::App& app, Program& program) {
     CLI::App* command =
         add_command(app, program, "flip",
@@ -298,8 +312,11 @@ void add_flip(CLI::App& app, Program& program) {
     on_run(command, program, [=, &program]() -> Status {
         WEAVE_TRY(Cloth cloth, load_cloth(program, *file));
         const Block& block = *cloth.evaluation.block;
-        if (Result<Block> flipped = flip(block, *pick - 1, *end - 1); !flipped)
-            return std::move(flipped).error().in(*file);
+        if (Result<Block> flipped = flip(block, *pick - 1, *end - 1); !flipped) {
+            const Error error = std::move(flipped).error().in(*file);
+            if (error.code == ErrorCode::invalid) answer_blocked(program, block, *pick - 1, *end - 1, error);
+            return error;
+        }
         const Flip wish{*pick - 1, *end - 1, !block.weft_over(*pick - 1, *end - 1)};
         WEAVE_CHECK_OK(apply_edit(cloth.design, PutFlip{cloth.design.root, wish}));
         return save_cloth(program, cloth.design, *out, *file);

@@ -1,12 +1,14 @@
 #include "progress.hpp"
 
+#include <weave/core/text.hpp>
+
 #include <chrono>
 #include <cstdio>
 #include <unistd.h>
 
 namespace weave::program {
 
-Progress::Progress(std::string doing) : m_doing(std::move(doing)), m_thread([this] { tell(); }) {}
+Progress::Progress(const std::string& doing) : m_doing(on_one_line(doing)), m_thread([this] { tell(); }) {}
 
 Progress::~Progress() {
     {

@@ -11,7 +11,7 @@ namespace weave::program {
 /// scope.
 class Progress {
   public:
-    explicit Progress(std::string doing);
+    explicit Progress(const std::string& doing);
     ~Progress();
     Progress(const Progress&) = delete;
     Progress& operator=(const Progress&) = delete;

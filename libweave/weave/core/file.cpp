@@ -1,9 +1,11 @@
 #include <weave/core/file.hpp>
+#include <weave/core/log.hpp>
 
 #include <cctype>
 #include <cerrno>
 #include <cstring>
 #include <fcntl.h>
+#include <mutex>
 #include <random>
 #include <sys/stat.h>
 #include <unistd.h>
@@ -44,17 +46,74 @@ Status write_all(const Descriptor& file, std::string_view bytes, const fs::path&
     return {};
 }
 
-fs::path beside(const fs::path& path) {
-    std::random_device random;
-    fs::path temporary = path;
-    temporary += ".part-" + std::to_string(random()) + std::to_string(random());
-    return temporary;
+/// What is being made and would be litter if the program ended now: temporary files and folders, and folders
+/// that were made to hold them. Everything is made under the lock, so that drop_unfinished_writes() misses
+/// nothing.
+struct Unfinished {
+    std::mutex mutex;
+    std::vector<fs::path> places;
+};
+
+Unfinished& unfinished() {
+    static auto* const one = new Unfinished;  // outlives every thread
+    return *one;
 }
 
-Status write_new(const fs::path& path, std::string_view bytes) {
-    Descriptor file(::open(path.c_str(), O_WRONLY | O_CREAT | O_EXCL | O_CLOEXEC, 0666));
-    if (file.number() < 0) return fault(path, "create");
+/// Removes what was made through it, the last first, unless keep() is called. Each thing is noted by itself,
+/// so that no folder is removed with anything in it that is not ours.
+class Scaffold {
+  public:
+    Scaffold() = default;
+    ~Scaffold() {
+        std::error_code ignored;
+        for (auto place = m_places.rbegin(); place != m_places.rend(); ++place) fs::remove(*place, ignored);
+        keep();
+    }
+    Scaffold(const Scaffold&) = delete;
+    Scaffold& operator=(const Scaffold&) = delete;
+
+    /// Runs `make`, which tells whether it made `place`.
+    template <class Make>
+    bool make(const fs::path& place, Make make) {
+        const std::lock_guard lock(unfinished().mutex);
+        if (!make()) return false;
+        m_places.push_back(place);
+        unfinished().places.push_back(place);
+        return true;
+    }
+    void keep() {
+        const std::lock_guard lock(unfinished().mutex);
+        for (const fs::path& place : m_places) std::erase(unfinished().places, place);
+        m_places.clear();
+    }
+
+  private:
+    std::vector<fs::path> m_places;
+};
+
+fs::path temporary_beside(const fs::path& path) {
+    std::random_device random;
+    return path.parent_path() /
+           (".weave-part-" + std::to_string(random()));  // short, however long the name is
+}
+
+constexpr mode_t usual_mode = 0666;  // less what the umask takes
+
+/// A new file with these bytes, flushed; `like` gives owner and permissions.
+Status write_new(Scaffold& scaffold, const fs::path& path, std::string_view bytes,
+                 const struct stat* like = nullptr) {
+    const mode_t mode = like == nullptr ? usual_mode : 0600;
+    int number = -1;
+    const auto open = [&] {
+        return (number = ::open(path.c_str(), O_WRONLY | O_CREAT | O_EXCL | O_CLOEXEC, mode)) >= 0;
+    };
+    if (!scaffold.make(path, open)) return fault(path, "create");
+    Descriptor file(number);
     WEAVE_CHECK_OK(write_all(file, bytes, path));
+    if (like != nullptr) {
+        static_cast<void>(!::fchown(file.number(), like->st_uid, like->st_gid));  // told once it is in place
+        if (::fchmod(file.number(), like->st_mode & 0777) != 0) return fault(path, "set the permissions");
+    }
     if (::fsync(file.number()) != 0) return fault(path, "flush to disk");
     if (::close(file.release()) != 0) return fault(path, "close");
     return {};
@@ -66,12 +125,93 @@ void flush_parent(const fs::path& path) {
     if (folder.number() >= 0) ::fsync(folder.number());
 }
 
-/// The place that `path` leads to, so that a symbolic link stays a link to the new content.
-fs::path real_target(const fs::path& path) {
-    std::error_code ignored;
-    if (!fs::is_symlink(path, ignored)) return path;
-    const fs::path target = fs::canonical(path, ignored);
-    return target.empty() ? path : target;
+/// The place that `path` leads to, whether anything is there or not, so that a symbolic link stays one.
+Result<fs::path> real_target(const fs::path& path) {
+    constexpr int most_links = 40;  // as the system itself
+    fs::path target = path;
+    std::error_code code;
+    for (int k = 0; fs::is_symlink(target, code); ++k) {
+        if (k == most_links) return system_fault("is a loop of symbolic links", path.string());
+        const fs::path next = fs::read_symlink(target, code);
+        if (code) return system_fault("cannot follow the link: " + code.message(), path.string());
+        target = target.parent_path() / next;  // an absolute `next` stands alone
+    }
+    return target;
+}
+
+Status write_through(const fs::path& target, std::string_view bytes, const fs::path& path) {
+    const Descriptor file(::open(target.c_str(), O_WRONLY | O_CLOEXEC));
+    if (file.number() < 0) return fault(path, "open");
+    return write_all(file, bytes, path);
+}
+
+Status check_writable(const fs::path& target, const struct stat& old, const fs::path& path) {
+    const bool protected_for_all = (old.st_mode & 0222) == 0;
+    if (!protected_for_all && ::faccessat(AT_FDCWD, target.c_str(), W_OK, AT_EACCESS) == 0) return {};
+    return Error{ErrorCode::refused, "is write-protected", path.string()};
+}
+
+/// What a replaced file lost that nothing could keep.
+void tell_changes(const fs::path& target, const struct stat& old, const fs::path& path) {
+    if (old.st_nlink > 1)
+        log(LogLevel::warning,
+            path.string() + ": another name of this file (hard link) keeps the old content");
+    struct stat now {};
+    if (::stat(target.c_str(), &now) == 0 && (now.st_uid != old.st_uid || now.st_gid != old.st_gid))
+        log(LogLevel::warning,
+            path.string() + ": does not belong to the owner or group of the old file any more");
+}
+
+/// An error as the person sees it: the file that was asked for, not our temporary one.
+Status seen_from(Status status, const fs::path& path) {
+    if (status) return status;
+    Error error = std::move(status).error();
+    error.where = path.string();
+    return error;
+}
+
+/// The real place of a folder to write. Refused where it is taken.
+Result<fs::path> free_folder(const fs::path& folder) {
+    fs::path plain = folder;
+    if (!plain.has_filename()) plain = plain.parent_path();  // "out/" means "out"
+    WEAVE_TRY(const fs::path linked, real_target(plain));
+    std::error_code code;
+    fs::path target = fs::weakly_canonical(linked, code);
+    if (code) return system_fault("cannot create: " + code.message(), folder.string());
+    const auto refused = [&](const char* why) { return Error{ErrorCode::refused, why, folder.string()}; };
+    if (!fs::exists(target, code)) return target;
+    if (!fs::is_directory(target, code) || !fs::is_empty(target, code))
+        return refused("exists already and is not an empty folder");
+    if (fs::equivalent(target, fs::current_path(code), code))
+        return refused("is the folder in which you are, which cannot be replaced; name another one");
+    return target;
+}
+
+/// Makes the folders above `target`, each noted.
+Status make_parents(Scaffold& scaffold, const fs::path& target) {
+    std::vector<fs::path> missing;
+    std::error_code code;
+    for (fs::path parent = target.parent_path(); !parent.empty() && !fs::exists(parent, code);
+         parent = parent.parent_path())
+        missing.push_back(parent);
+    for (auto parent = missing.rbegin(); parent != missing.rend(); ++parent) {
+        const bool made = scaffold.make(*parent, [&] { return fs::create_directory(*parent, code); });
+        if (!made && code) return system_fault("cannot create: " + code.message());
+    }
+    return {};
+}
+
+/// All of write_folder() but the last step.
+Status write_beside(Scaffold& scaffold, const fs::path& temporary,
+                    const std::vector<std::pair<std::string, std::string>>& files) {
+    std::error_code code;
+    if (!scaffold.make(temporary, [&] { return fs::create_directory(temporary, code); }))
+        return system_fault("cannot create: " + code.message());
+    for (const auto& [name, bytes] : files) {
+        assert(fs::path(name).filename() == name);
+        WEAVE_CHECK_OK(write_new(scaffold, temporary / name, bytes));
+    }
+    return {};
 }
 
 }  // namespace
@@ -100,56 +240,44 @@ Result<std::string> read_file(const fs::path& path, std::uint64_t limit) {
 }
 
 Status write_file(const fs::path& path, std::string_view bytes) {
-    const fs::path target = real_target(path);
-    std::error_code ignored;
-    if (fs::is_directory(target, ignored)) return system_fault("is a folder, not a file", path.string());
-    if (fs::exists(target, ignored) &&
-        !fs::is_regular_file(target, ignored)) {  // a device or pipe: no rename
-        const Descriptor file(::open(target.c_str(), O_WRONLY | O_CLOEXEC));
-        if (file.number() < 0) return fault(path, "open");
-        return write_all(file, bytes, path);
-    }
-    const fs::path temporary = beside(target);
-    Status written = write_new(temporary, bytes);
-    if (written && ::rename(temporary.c_str(), target.c_str()) != 0) written = fault(path, "put into place");
-    if (!written) {
-        ::unlink(temporary.c_str());
-        Error error = std::move(written).error();
-        error.where = path.string();  // the person knows the file that was asked for, not our temporary one
-        return error;
-    }
+    WEAVE_TRY(const fs::path target, real_target(path));
+    struct stat old {};
+    const bool exists = ::stat(target.c_str(), &old) == 0;
+    if (exists && S_ISDIR(old.st_mode)) return system_fault("is a folder, not a file", path.string());
+    if (exists && !S_ISREG(old.st_mode))
+        return write_through(target, bytes, path);  // a device or pipe: no rename
+    if (exists) WEAVE_CHECK_OK(check_writable(target, old, path));
+    Scaffold scaffold;
+    const fs::path temporary = temporary_beside(target);
+    WEAVE_CHECK_OK(seen_from(write_new(scaffold, temporary, bytes, exists ? &old : nullptr), path));
+    if (::rename(temporary.c_str(), target.c_str()) != 0) return fault(path, "put into place");
+    scaffold.keep();
     flush_parent(target);
+    if (exists) tell_changes(target, old, path);
     return {};
 }
 
 Status write_folder(const fs::path& folder, const std::vector<std::pair<std::string, std::string>>& files) {
-    std::error_code code;
-    fs::path target = folder;
-    if (!target.has_filename()) target = target.parent_path();  // "out/" means "out"
-    const bool exists = fs::exists(target, code);
-    if (exists && !(fs::is_directory(target, code) && fs::is_empty(target, code))) {
-        return Error{ErrorCode::refused, "exists already and is not an empty folder", folder.string()};
+    WEAVE_TRY(const fs::path target, free_folder(folder));
+    Scaffold scaffold;
+    WEAVE_CHECK_OK(seen_from(make_parents(scaffold, target), folder));
+    const fs::path temporary = temporary_beside(target);
+    WEAVE_CHECK_OK(seen_from(write_beside(scaffold, temporary, files), folder));
+    if (::rename(temporary.c_str(), target.c_str()) != 0) {
+        if (errno != EBUSY) return fault(folder, "put into place");
+        return Error{ErrorCode::refused, "is in use or a mount point; name a folder that does not exist",
+                     folder.string()};
     }
-    if (target.has_parent_path()) fs::create_directories(target.parent_path(), code);
-    const fs::path temporary = beside(target);
-    if (!fs::create_directory(temporary, code)) {
-        return system_fault("cannot create: " + code.message(), folder.string());
-    }
-    Status written;
-    for (const auto& [name, bytes] : files) {
-        assert(fs::path(name).filename() == name);
-        if (written) written = write_new(temporary / name, bytes);
-    }
-    if (written && ::rename(temporary.c_str(), target.c_str()) != 0)
-        written = fault(folder, "put into place");
-    if (!written) {
-        fs::remove_all(temporary, code);
-        Error error = std::move(written).error();
-        error.where = folder.string();
-        return error;
-    }
+    scaffold.keep();
     flush_parent(target);
     return {};
+}
+
+void drop_unfinished_writes() {
+    unfinished().mutex.lock();  // and never unlocked: nothing is begun any more
+    const std::vector<fs::path>& places = unfinished().places;
+    std::error_code ignored;
+    for (auto place = places.rbegin(); place != places.rend(); ++place) fs::remove(*place, ignored);
 }
 
 std::string lower_extension(const fs::path& path) {

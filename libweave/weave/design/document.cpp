@@ -24,7 +24,7 @@ Json design_json(const Design& design) {
 
 Status check_version(const Json& document) {
     if (!document.is_object() || document.value("format", Json()) != "weave") {
-        return bad_input("is not a .weave document: it does not start with \"format\": \"weave\"");
+        return bad_input("is not a .weave document: it has no \"format\": \"weave\"");
     }
     const Json version = document.value("version", Json());
     const bool whole = version.is_number_integer();

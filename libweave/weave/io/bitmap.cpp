@@ -123,6 +123,19 @@ Result<CardFromBitmap> read_bitmap(std::string_view bytes, const BitmapReading& 
     return read;
 }
 
+Status check_reads_back(std::string_view bytes, const CardImage& card, const BitmapReading& reading) {
+    const Result<CardFromBitmap> back = read_bitmap(bytes, reading);
+    if (back && back->card == card) return {};
+    return system_fault("the card image does not read back as it was; nothing is written");
+}
+
+Result<std::string> write_proven_bitmap(const CardImage& card, BitmapFormat format,
+                                        const BitmapReading& reading) {
+    WEAVE_TRY(std::string bytes, write_bitmap(card, format, reading));
+    WEAVE_CHECK_OK(check_reads_back(bytes, card, reading));
+    return bytes;
+}
+
 Result<ColourImage> read_colour_image(std::string_view bytes) {
     ColourImage image;
     RasterSink sink;

@@ -39,6 +39,14 @@ struct CardFromBitmap {
 };
 Result<CardFromBitmap> read_bitmap(std::string_view bytes, const BitmapReading& reading = {});
 
+/// A card as a picture file that was read back with the same reading and compared: what leaves the system. An
+/// error of the system where it differs.
+Result<std::string> write_proven_bitmap(const CardImage& card, BitmapFormat format,
+                                        const BitmapReading& reading = {});
+
+/// The comparison of it: an error of the system unless `bytes`, read so, are this card.
+Status check_reads_back(std::string_view bytes, const CardImage& card, const BitmapReading& reading);
+
 /// A colour picture for stencils: row 0 is the bottom row of the picture.
 struct ColourImage {
     std::size_t rows = 0, columns = 0;

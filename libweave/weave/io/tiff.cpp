@@ -59,10 +59,16 @@ int on_close(thandle_t) {
 toff_t on_size(thandle_t handle) {
     return talk_of(handle).size();
 }
-int no_map(thandle_t, void**, toff_t*) {
-    return 0;
+/// The bytes are in memory, so libtiff reads them there. Without this, 4.5.0 refuses sound files with tiles
+/// of one bit that are not compressed. It asks for memory to write to, but never writes to what it reads.
+int on_map(thandle_t handle, void** memory, toff_t* size) {
+    const TiffTalk& talk = talk_of(handle);
+    if (talk.writing) return 0;
+    *memory = const_cast<char*>(talk.in.data());
+    *size = talk.in.size();
+    return 1;
 }
-void no_unmap(thandle_t, void*, toff_t) {}
+void on_unmap(thandle_t, void*, toff_t) {}
 
 int on_error(TIFF*, void* user, const char*, const char* format, va_list words) {
     char line[200];
@@ -86,7 +92,7 @@ TiffPtr open(TiffTalk& talk, const char* mode) {
     TIFFOpenOptionsSetWarningHandlerExtR(options, on_warning, &talk);
     TIFFOpenOptionsSetMaxSingleMemAlloc(options, tmsize_t{1} << 28);
     TIFF* tiff = TIFFClientOpenExt("picture", mode, &talk, on_read, on_write, on_seek, on_close, on_size,
-                                   no_map, no_unmap, options);
+                                   on_map, on_unmap, options);
     TIFFOpenOptionsFree(options);
     return TiffPtr(tiff);
 }

@@ -125,6 +125,18 @@ void read_texts(const File& file, Design& design, Warnings& warnings) {
 
 }  // namespace
 
+bool is_wif(std::string_view text) {
+    text = text.substr(0, std::size_t{1} << 16);
+    while (!text.empty()) {
+        const std::size_t end = std::min(text.find_first_of("\r\n"), text.size());
+        std::string_view line = text.substr(0, end);
+        text.remove_prefix(std::min(end + 1, text.size()));
+        if (line.substr(0, 3) == "\xef\xbb\xbf") line.remove_prefix(3);
+        if (line.size() < 200 && normal(line) == "[wif]") return true;
+    }
+    return false;
+}
+
 Result<DesignFromWif> read_wif(std::string_view text) {
     Warnings warnings;
     WEAVE_TRY(const File file, split(text));

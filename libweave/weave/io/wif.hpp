@@ -15,6 +15,9 @@ struct DesignFromWif {
     std::vector<std::string> warnings;
 };
 
+/// Whether the text has a [WIF] section among its first 64 KiB, whatever the file is called.
+bool is_wif(std::string_view text);
+
 /// Reads WIF 1.1: drawdown from threading with tie-up and treadling, or with a lift plan; colours, thickness,
 /// spacing. A design of ours comes back with its feeders, t and p, and title (our private section). Errors
 /// name the line.

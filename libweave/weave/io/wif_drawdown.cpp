@@ -39,6 +39,25 @@ bool from_zero(const Listed& listed, const Threads& threads) {
     return (listed.any && listed.low == 0) || (threads.from_zero && listed.high < threads.count);
 }
 
+/// More threads are declared than listed. An unlisted shaft or treadle is 0, so the last lines may be missing
+/// because nothing lifts there; or the declaration is overstated, as some programs do by far. So: up to a
+/// quarter is the first, more is the second.
+void keep_or_drop(Threads& threads, std::size_t declared, std::size_t line, const std::string& section,
+                  const std::string& noun, Warnings& warnings) {
+    const std::size_t listed = threads.count, missing = declared - listed;
+    const std::string which =
+        missing == 1 ? noun + " " + std::to_string(declared)
+                     : noun + "s " + std::to_string(listed + 1) + " to " + std::to_string(declared);
+    const bool keep = missing <= declared / 4;
+    warnings.add(line, section + " says " + counted(declared, noun) + ", but only " + std::to_string(listed) +
+                           " are listed; " + which +
+                           (keep ? (missing == 1 ? " is" : " are") +
+                                       std::string(" read as lifting nothing, as unlisted threads do")
+                                 : (missing == 1 ? " is" : " are") +
+                                       std::string(" dropped, as more than a quarter is missing")));
+    if (keep) threads.count = declared;
+}
+
 Result<Threads> threads_of(const File& file, const std::string& system, const std::string& main_list,
                            Warnings& warnings) {
     const std::string noun = system == "warp" ? "end" : "pick";
@@ -67,10 +86,10 @@ Result<Threads> threads_of(const File& file, const std::string& system, const st
     WEAVE_TRY(const std::int64_t said, whole(*declared, 1, most_threads));
     const auto count = static_cast<std::size_t>(said);
     if (count > threads.count) {
-        warnings.add(declared->line, shown(system) + " says " + counted(count, noun) + ", but only " +
-                                         std::to_string(threads.count) + " are listed and read");
+        keep_or_drop(threads, count, declared->line, shown(system), noun, warnings);
+    } else {
+        threads.count = count;  // where more are listed per_thread() finds the line to name
     }
-    threads.count = std::min(threads.count, count);  // more are listed: per_thread() finds the line to name
     return threads;
 }
 

@@ -17,7 +17,9 @@ enum class Drive { treadles, lift_plan };
 /// An error where the file holds neither. Where it holds both, treadles win, with a warning.
 Result<Drive> drive_of(const File& file, Warnings& warnings);
 
-/// How many ends, and picks, the file really lists; a warning where [WARP] or [WEFT] say more.
+/// How many ends, and picks, there are: as many as the file lists, or as [WARP] or [WEFT] say where at most a
+/// quarter of those is not listed (unlisted threads lift nothing). A warning, with the rule, where both
+/// differ.
 Result<Threads> ends_of(const File& file, Warnings& warnings);
 Result<Threads> picks_of(const File& file, Drive drive, Warnings& warnings);
 

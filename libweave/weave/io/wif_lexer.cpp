@@ -25,21 +25,6 @@ char lower(char c) {
     return c >= 'A' && c <= 'Z' ? static_cast<char>(c - 'A' + 'a') : c;
 }
 
-/// Bytes of the UTF-8 character that starts here; 0 if none does.
-std::size_t character_length(std::string_view text) {
-    const auto byte = [&](std::size_t k) { return static_cast<unsigned char>(text[k]); };
-    const unsigned char lead = byte(0);
-    if (lead < 0x80) return 1;
-    const std::size_t length = lead >= 0xf0 ? 4 : lead >= 0xe0 ? 3 : 2;
-    if (lead < 0xc2 || lead > 0xf4 || text.size() < length) return 0;
-    for (std::size_t k = 1; k < length; ++k) {
-        if ((byte(k) & 0xc0) != 0x80) return 0;
-    }
-    const bool overlong = (lead == 0xe0 && byte(1) < 0xa0) || (lead == 0xf0 && byte(1) < 0x90);
-    const bool beyond = (lead == 0xed && byte(1) >= 0xa0) || (lead == 0xf4 && byte(1) >= 0x90);
-    return overlong || beyond ? 0 : length;
-}
-
 Status open_section(File& file, std::string_view line, std::size_t number, std::size_t offset,
                     std::size_t& open) {
     const std::size_t close = line.find(']');
@@ -164,13 +149,7 @@ std::string_view plain(std::string_view value) {
 }
 
 std::string utf8(std::string_view value) {
-    bool fine = true;
-    for (std::string_view rest = value; fine && !rest.empty();) {
-        const std::size_t length = character_length(rest);
-        fine = length > 0;
-        rest.remove_prefix(length);
-    }
-    if (fine) return std::string(value);
+    if (is_utf8(value)) return std::string(value);
     std::string text;
     for (const char c : value) {
         const auto byte = static_cast<unsigned char>(c);

@@ -1,10 +1,9 @@
 #include <weave/core/sha256.hpp>
+#include <weave/core/text.hpp>
 #include <weave/design/plan_json.hpp>
 #include <weave/io/wif_private.hpp>
 
-#include <algorithm>
 #include <numeric>
-#include <span>
 
 namespace weave::wif {
 
@@ -21,16 +20,6 @@ std::string text_hash(std::string_view text) {
         text.remove_prefix(std::min(end + 1, text.size()));
     }
     return hash.hex();
-}
-
-/// The shortest list whose repetition is `counts`.
-std::vector<std::uint32_t> period(std::span<const std::uint32_t> counts) {
-    for (std::size_t length = 1; length < counts.size(); ++length) {
-        if (counts.size() % length != 0) continue;
-        if (std::equal(counts.begin() + static_cast<std::ptrdiff_t>(length), counts.end(), counts.begin()))
-            return {counts.begin(), counts.begin() + static_cast<std::ptrdiff_t>(length)};
-    }
-    return {counts.begin(), counts.end()};
 }
 
 /// t or p: repeated whole, it must come out even.
@@ -101,8 +90,8 @@ std::string private_section(const Design& design, const Block& block, const Card
     const std::string text = json.dump(-1, ' ', true, Json::error_handler_t::replace);
     std::string section = shown(private_name) + "\r\nVersion=1\r\nCard SHA-256=" + card.sha256() +
                           "\r\nText SHA-256=" + text_hash(before) + "\r\n";
-    section += "Picks of rows=" + to_text(Sequence{period(block.t())}) + "\r\n";
-    section += "Ends of columns=" + to_text(Sequence{period(block.p())}) + "\r\n";
+    section += "Picks of rows=" + to_text(Sequence{shortest_repeat(block.t())}) + "\r\n";
+    section += "Ends of columns=" + to_text(Sequence{shortest_repeat(block.p())}) + "\r\n";
     for (std::size_t at = 0, k = 1; at < text.size(); at += piece_size, ++k)
         section += std::to_string(k) + "=\"" + text.substr(at, piece_size) + "\"\r\n";
     return section;

@@ -1,5 +1,7 @@
 #include <weave/loom/pick_table.hpp>
 
+#include <string_view>
+
 namespace weave {
 
 namespace {
@@ -26,8 +28,11 @@ class Shuttles {
     std::vector<Direction> m_next;
 };
 
-/// A field of a CSV line (RFC 4180).
-std::string field(const std::string& text) {
+/// A field of a CSV line (RFC 4180). What a spreadsheet would take for a formula gets an apostrophe in front,
+/// which marks it as text: a foreign design's yarn names must not run in the mill's office.
+std::string field(std::string text) {
+    if (!text.empty() && std::string_view("=+-@\t\r").find(text[0]) != std::string_view::npos)
+        text.insert(0, "'");
     if (text.find_first_of(",\"\r\n") == std::string::npos) return text;
     std::string quoted = "\"";
     for (const char c : text) {

@@ -24,6 +24,8 @@ struct Pick {
 std::vector<Pick> pick_table(const Design& design, const Block& block, std::size_t repeats = 1);
 
 /// The same as a CSV text for people and mills: pick (from 1), row, feeder, direction, take-up, yarn, colour.
+/// Names that a spreadsheet would take for a formula (they start with = + - @, tab or CR) get an apostrophe
+/// in front.
 std::string pick_table_csv(const Design& design, const std::vector<Pick>& picks);
 
 /// Yarn type and colour of one end or pick (the first feeder's; absent for a pick without weft).

@@ -18,12 +18,16 @@ constexpr double box_width = 30, box_height = 17, cell_gap = 14;
 
 /// The part of a block that its schematic shows.
 struct Shown {
+    std::size_t first_row = 0, first_column = 0;
     std::size_t rows = 0, columns = 0, levels = 0;
 };
 
 /// The longer side gives way first, so that a narrow block is shown over its whole length.
-Shown shown_part(const Block& block) {
-    Shown shown{std::min(most_shown, block.rows()), std::min(most_shown, block.columns()),
+Shown shown_part(const Subject& subject) {
+    const Block& block = subject.block;
+    const std::size_t row = subject.request.first_row, column = subject.request.first_column;
+    Shown shown{row, column, std::min(most_shown, block.rows() - row),
+                std::min(most_shown, block.columns() - column),
                 std::clamp<std::size_t>(block.height(), 1, SliceMap::most_levels)};
     const auto is_too_much = [&] {
         const std::size_t stacks = shown.rows * shown.columns;
@@ -57,7 +61,7 @@ class Schematic {
         const auto rows = static_cast<double>(m_shown.rows), columns = static_cast<double>(m_shown.columns);
         double left = 1e9, right = -1e9, top = 1e9, bottom = -1e9;
         for (const double x : {-1.5, rows + 0.5}) {
-            for (const double y : {-1.5, columns + 0.5}) {
+            for (const double y : {-2.1, columns + 0.5}) {
                 for (const double z : {base_level, static_cast<double>(m_shown.levels)}) {
                     const Point point = m_view.on_screen({x, y, z});
                     left = std::min(left, point.x), right = std::max(right, point.x);
@@ -74,6 +78,7 @@ class Schematic {
         draw_base(canvas);
         draw_tubes(canvas, m_view, m_tubes);
         draw_labels(canvas);
+        draw_ground_marks(canvas);
         draw_axes(canvas);
     }
 
@@ -81,6 +86,7 @@ class Schematic {
     /// A number that would cover one drawn before it is left out: half a number misleads.
     void draw_labels(Canvas& canvas) const {
         std::vector<Rectangle> taken;
+        for (const GroundMark& mark : ground_marks()) taken.push_back(mark.box());
         for (const Label& label : m_labels) {
             const Point middle = m_view.on_screen(label.place);
             const double half = Canvas::text_width(label.text, 12, true) / 2 + 2;
@@ -117,7 +123,7 @@ class Schematic {
     void add_line(View view, std::size_t line) {
         Subject subject = m_subject;
         subject.request.view = view;
-        subject.request.line = line;
+        subject.request.line = line + (view == View::warp_slice ? m_shown.first_column : m_shown.first_row);
         const SliceMap map = slice_map(subject, m_colours, m_runs);
         const bool warp = view == View::warp_slice;
         const std::size_t shown = warp ? m_shown.rows : m_shown.columns;
@@ -146,7 +152,10 @@ class Schematic {
     [[nodiscard]] bool turns_at(const SlicePath& path, bool warp, Side side) const {
         if (warp || !m_runs.wraparound()) return false;
         return std::ranges::any_of(m_runs.turns(), [&](const Turn& turn) {
-            return turn.side == side && (turn.from_pick == path.number || turn.to_pick == path.number);
+            const std::size_t column = m_runs.column_of(turn);
+            return turn.side == side && column >= m_shown.first_column &&
+                   column < m_shown.first_column + m_shown.columns &&
+                   (turn.from_pick == path.number || turn.to_pick == path.number);
         });
     }
 
@@ -202,18 +211,22 @@ class Schematic {
         const bool near = warp == (way < 0);
         if (!near && m_shown.levels > 3) return;
         m_labels.push_back({place_on(warp, line, edge + way * 0.24, 0, level),
-                            std::to_string(path.number + 1), mix(path.colour, {0, 0, 0}, 0.4)});
+                            std::to_string(path.number + 1), readable(path.colour)});
     }
 
     /// Level and row of a pick at a column, if it lies in the shown part.
     [[nodiscard]] std::optional<Place> place_of(std::size_t pick, std::size_t column) const {
         const Block& block = m_subject.block;
         const std::size_t row = block.row_of_pick(pick);
-        if (row >= m_shown.rows || column >= m_shown.columns) return std::nullopt;
+        if (row < m_shown.first_row || row >= m_shown.first_row + m_shown.rows ||
+            column < m_shown.first_column || column >= m_shown.first_column + m_shown.columns) {
+            return std::nullopt;
+        }
         const std::size_t level =
             block.stack(row, column).positions(System::weft)[pick - block.first_pick(row)];
         if (level >= m_shown.levels) return std::nullopt;
-        return Place{static_cast<double>(row), static_cast<double>(column), static_cast<double>(level)};
+        return Place{static_cast<double>(row - m_shown.first_row),
+                     static_cast<double>(column - m_shown.first_column), static_cast<double>(level)};
     }
 
     /// Half circles round the end that catches each loop.
@@ -224,12 +237,11 @@ class Schematic {
             if (!a || !b) continue;
             const double out = turn.side == Side::right ? 1 : -1, reach = 0.5 + 0.07 * std::abs(a->z - b->z);
             SlicePath path;
-            path.colour = m_colours.drawn_pick(
-                turn.from_pick, turn.from_pick - m_subject.block.first_pick(static_cast<std::size_t>(a->x)));
+            path.colour = m_colours.shaded_pick(turn.from_pick);
             if (turn.caught_by == CaughtBy::none) path.colour = mix(path.colour, {0, 0, 0}, 0.6);
             m_labels.push_back({{(a->x + b->x) / 2, a->y + out * (reach + 0.4), (a->z + b->z) / 2},
                                 std::to_string(turn.from_pick + 1) + "→" + std::to_string(turn.to_pick + 1),
-                                mix(path.colour, {0, 0, 0}, 0.4)});
+                                readable(path.colour)});
             for (int piece = 0; piece < 8; ++piece) {
                 std::vector<Place> places;
                 for (int sample = 0; sample <= 3; ++sample) {
@@ -255,16 +267,40 @@ class Schematic {
         for (double column = -0.5; column <= y; ++column)
             lines.insert(lines.end(), {ground(-0.5, column), ground(x, column)});
         canvas.lines(lines, {.colour = {0xc4, 0xcb, 0xd2}, .width = 1, .round = false});
-        const auto mark = [&](Place tail, Place tip, const char* name) {
-            const Point from = m_view.on_screen(tail), to = m_view.on_screen(tip);
-            const Point shaft[]{from, to};
-            canvas.polyline(shaft, {.colour = accent, .width = 2});
-            canvas.arrow_head(to, {to.x - from.x, to.y - from.y}, 9, accent);
-            canvas.text({from.x - 5, from.y + 3}, name,
-                        {.size = 11, .colour = accent, .anchor = Anchor::end, .bold = true, .centred = true});
+    }
+
+    /// An arrow on the ground that points along the first pick or end shown, beyond the numbers of the yarns.
+    struct GroundMark {
+        Point tail, tip;
+        std::string name;
+        [[nodiscard]] Point text_end() const { return {tail.x - 5, tail.y + 3}; }
+        [[nodiscard]] Rectangle box() const {
+            const double left = text_end().x - Canvas::text_width(name, 11, true);
+            const double top = std::min({tail.y, tip.y, text_end().y - 6}) - 3;
+            return {left, top, tip.x + 4 - left, std::max({tail.y, tip.y, text_end().y + 6}) + 3 - top};
+        }
+    };
+
+    [[nodiscard]] std::vector<GroundMark> ground_marks() const {
+        const Block& block = m_subject.block;
+        const auto mark = [&](Place tail, Place tip, const char* yarn, std::size_t number) {
+            return GroundMark{m_view.on_screen(tail), m_view.on_screen(tip),
+                              yarn + std::to_string(number + 1)};
         };
-        mark({0, -0.95, base_level}, {0, -0.55, base_level}, "pick 1");
-        mark({-0.95, 0, base_level}, {-0.55, 0, base_level}, "end 1");
+        const double tip = -0.5 - 38 / m_scale, tail = tip - 22 / m_scale;  // as far at every scale
+        return {
+            mark({0, tail, base_level}, {0, tip, base_level}, "pick ", block.first_pick(m_shown.first_row)),
+            mark({tail, 0, base_level}, {tip, 0, base_level}, "end ", block.first_end(m_shown.first_column))};
+    }
+
+    void draw_ground_marks(Canvas& canvas) const {
+        for (const GroundMark& mark : ground_marks()) {
+            const Point shaft[]{mark.tail, mark.tip};
+            canvas.polyline(shaft, {.colour = accent, .width = 2});
+            canvas.arrow_head(mark.tip, {mark.tip.x - mark.tail.x, mark.tip.y - mark.tail.y}, 9, accent);
+            canvas.text(mark.text_end(), mark.name,
+                        {.size = 11, .colour = accent, .anchor = Anchor::end, .bold = true, .centred = true});
+        }
     }
 
     void draw_axes(Canvas& canvas) const {
@@ -311,7 +347,7 @@ Point written_size(const Block& block) {
 
 void draw_written(Canvas& canvas, const Block& block, Point corner) {
     canvas.text({corner.x, corner.y + 10}, "Stacks", {.size = 12, .bold = true});
-    canvas.text({corner.x, corner.y + 25}, "bottom up, numbered from 0 as in the file",
+    canvas.text({corner.x, corner.y + 25}, "bottom up, picks T and ends P from 1",
                 {.size = 10, .colour = faint_ink});
     const double high = box_height * static_cast<double>(block.height());
     for (std::size_t row = 0; row < block.rows(); ++row) {
@@ -330,9 +366,9 @@ void draw_written(Canvas& canvas, const Block& block, Point corner) {
                 canvas.rectangle(box, fill);
                 canvas.outline({box.x + 0.5, box.y + 0.5, box.width, box.height},
                                {.colour = {0x70, 0x76, 0x7d}, .width = 1, .round = false});
-                const std::string word =
-                    slot.is_empty() ? "E"
-                                    : to_text(Stack({slot}), block.first_pick(row), block.first_end(column));
+                const std::string word = slot.is_empty() ? "E"
+                                                         : to_text(Stack({slot}), block.first_pick(row) + 1,
+                                                                   block.first_end(column) + 1);
                 canvas.text({box.x + box_width / 2 + 0.5, box.y + box_height / 2 + 0.5}, word,
                             {.size = 10.5,
                              .colour = slot.is_empty() ? Colour{0xb0, 0xb4, 0xb8} : ink,
@@ -343,27 +379,36 @@ void draw_written(Canvas& canvas, const Block& block, Point corner) {
     }
 }
 
+/// Says which part of the block is shown, where it is not the whole.
+void add_shown(PageText& text, const Block& block, const Shown& shown) {
+    std::string words;
+    const auto add = [&](const std::string& part) { words += (words.empty() ? "" : ", ") + part; };
+    const auto add_range = [&](const char* name, std::size_t first, std::size_t count, std::size_t all) {
+        if (count == all) return;
+        add(name + std::string(" ") + std::to_string(first + 1) + "–" + std::to_string(first + count) +
+            " of " + std::to_string(all));
+    };
+    add_range("rows", shown.first_row, shown.rows, block.rows());
+    add_range("columns", shown.first_column, shown.columns, block.columns());
+    if (shown.levels < block.height()) {
+        add("the lowest " + std::to_string(shown.levels) + " of " + std::to_string(block.height()) +
+            " levels");
+    }
+    if (!words.empty()) text.notes.push_back("Shown: " + words + ".");
+}
+
 PageText block_words(const Subject& subject, const Shown& shown, const WeftRuns& runs) {
     const Block& block = subject.block;
     PageText text = words_of(subject, std::string("block, schematic of the stacks, face up, weft ") +
                                           (runs.wraparound() ? "wraparound" : "periodic"));
-    if (shown.rows < block.rows() || shown.columns < block.columns() || shown.levels < block.height()) {
-        text.notes.push_back("Shown: the first " + std::to_string(shown.rows) + " of " +
-                             std::to_string(block.rows()) + " rows and " + std::to_string(shown.columns) +
-                             " of " + std::to_string(block.columns()) + " columns" +
-                             (shown.levels < block.height()
-                                  ? ", the lowest " + std::to_string(shown.levels) + " of " +
-                                        std::to_string(block.height()) + " levels"
-                                  : "") +
-                             ".");
-    }
+    add_shown(text, block, shown);
     text.notes.emplace_back(
-        "Numbers at the yarns count picks and ends from 1, as on the card; where they would overlap, some are "
+        "Numbers at the yarns count picks and ends from 1, as on the card; where they would overlap, some "
+        "are "
         "left out. Ground squares are stacks.");
-    const auto loose = [](const Stack& stack) { return std::ranges::any_of(stack.slots(), &Slot::is_loose); };
     if (subject.request.trim) {
         text.notes.emplace_back("Trimmed: yarns that are loose on purpose are left out.");
-    } else if (std::ranges::any_of(block.stacks(), loose)) {
+    } else if (std::ranges::any_of(block.stacks(), has_loose)) {
         text.notes.emplace_back("Pale and thin: loose on purpose.");
     }
     return text;
@@ -374,13 +419,13 @@ PageText block_words(const Subject& subject, const Shown& shown, const WeftRuns&
 Result<std::string> draw_block(const Subject& subject) {
     const YarnColours colours(subject);
     const WeftRuns runs(subject, colours);
-    const Shown shown = shown_part(subject.block);
+    const Shown shown = shown_part(subject);
     Schematic schematic(subject, colours, runs, shown);
     const Point size = schematic.place_at({Page::margin, Page::body_top});
     const bool written = is_written(subject.block);
     const Point table = written ? written_size(subject.block) : Point{};
     const double table_width = written ? std::max(table.x, 230.0) + 24 : 0;
-    WEAVE_TRY(Page page, Page::open(subject.format, block_words(subject, shown, runs), size.x + table_width,
+    WEAVE_TRY(Page page, Page::open(subject, block_words(subject, shown, runs), size.x + table_width,
                                     std::max(size.y, table.y)));
     schematic.draw(page.canvas);
     if (written)

@@ -1,3 +1,4 @@
+#include <weave/core/text.hpp>
 #include <weave/picture/canvas.hpp>
 #include <weave/picture/encode_png.hpp>
 
@@ -16,7 +17,8 @@ struct Canvas::State {
     cairo_surface_t* surface = nullptr;
     cairo_t* cairo = nullptr;
     std::string svg;  ///< written by cairo while it draws
-    Status trouble;   ///< the first failure that cairo itself does not know of
+    std::vector<Mark>* marks = nullptr;
+    Status trouble;  ///< the first failure that cairo itself does not know of
 };
 
 void Canvas::Close::operator()(State* state) const {
@@ -90,26 +92,6 @@ std::string with_own_numbers(const std::string& svg) {
     return out;
 }
 
-/// Bytes of the UTF-8 character at `at`, or 0 where there is none.
-std::size_t character_size(std::string_view text, std::size_t at) {
-    const auto lead = static_cast<std::uint8_t>(text[at]);
-    const std::size_t size = lead < 0x80       ? 1
-                             : lead >> 5 == 6  ? 2
-                             : lead >> 4 == 14 ? 3
-                             : lead >> 3 == 30 ? 4
-                                               : 0;
-    if (size == 0 || at + size > text.size()) return 0;
-    std::uint32_t code = size == 1 ? lead : lead & (0x7FU >> size);
-    for (std::size_t k = 1; k < size; ++k) {
-        const auto byte = static_cast<std::uint8_t>(text[at + k]);
-        if (byte >> 6 != 2) return 0;
-        code = code << 6 | (byte & 0x3FU);
-    }
-    constexpr std::uint32_t least[]{0, 0, 0x80, 0x800, 0x10000};
-    const bool surrogate = code >= 0xD800 && code < 0xE000;
-    return code >= least[size] && code <= 0x10FFFF && !surrogate ? size : 0;
-}
-
 }  // namespace
 
 Colour mix(Colour a, Colour b, double share) {
@@ -123,9 +105,22 @@ std::uint32_t pixel_of(Colour colour) {
     return std::uint32_t{colour.red} << 16 | std::uint32_t{colour.green} << 8 | colour.blue;
 }
 
+namespace {
+
+/// Brightness as the eye sees it, 0 to 255.
+double lightness(Colour colour) {
+    return 0.299 * colour.red + 0.587 * colour.green + 0.114 * colour.blue;
+}
+
+}  // namespace
+
 Colour ink_on(Colour ground) {
-    const double light = 0.299 * ground.red + 0.587 * ground.green + 0.114 * ground.blue;
-    return light > 140 ? Colour{0x20, 0x20, 0x20} : Colour{0xff, 0xff, 0xff};
+    return lightness(ground) > 140 ? Colour{0x20, 0x20, 0x20} : Colour{0xff, 0xff, 0xff};
+}
+
+Colour readable(Colour colour) {
+    const double most = 95;  // a contrast of more than 5 to 1
+    return mix(colour, {0, 0, 0}, std::max(0.35, 1 - most / std::max(lightness(colour), 1.0)));
 }
 
 std::string printable(std::string_view text, std::size_t most) {
@@ -133,7 +128,7 @@ std::string printable(std::string_view text, std::size_t most) {
     std::size_t characters = 0;
     for (std::size_t at = 0; at < text.size(); ++characters) {
         if (characters == most) return out + "…";
-        const std::size_t size = character_size(text, at);
+        const std::size_t size = utf8_length(text.substr(at));
         const bool control = size == 1 && (static_cast<std::uint8_t>(text[at]) < 0x20 || text[at] == 0x7f);
         if (size == 0) {
             out.push_back('?');
@@ -192,8 +187,20 @@ void Canvas::outline(const Rectangle& place, const Stroke& stroke) {
     stroke_path(m_state->cairo, stroke);
 }
 
+void Canvas::list_marks(std::vector<Mark>* marks) {
+    m_state->marks = marks;
+}
+
+void Canvas::list_line(std::span<const Point> points, const Stroke& stroke) {
+    if (m_state->marks == nullptr) return;
+    Mark mark{Mark::Kind::line, {points.begin(), points.end()}, stroke.colour, stroke.width};
+    mark.dashed = !stroke.dash.empty();
+    m_state->marks->push_back(std::move(mark));
+}
+
 void Canvas::polyline(std::span<const Point> points, const Stroke& stroke) {
     if (points.size() < 2) return;
+    list_line(points, stroke);
     cairo_move_to(m_state->cairo, points[0].x, points[0].y);
     for (const Point point : points.subspan(1)) cairo_line_to(m_state->cairo, point.x, point.y);
     stroke_path(m_state->cairo, stroke);
@@ -210,6 +217,7 @@ void Canvas::lines(std::span<const Point> ends, const Stroke& stroke) {
 
 void Canvas::curve(std::span<const Point> points, const Stroke& stroke) {
     if (points.size() < 4) return;
+    list_line(points, stroke);
     cairo_move_to(m_state->cairo, points[0].x, points[0].y);
     for (std::size_t k = 1; k + 2 < points.size(); k += 3) {
         cairo_curve_to(m_state->cairo, points[k].x, points[k].y, points[k + 1].x, points[k + 1].y,
@@ -268,6 +276,11 @@ void Canvas::yarn(const Rectangle& place, bool along_x, Colour colour) {
 void Canvas::arrow_head(Point tip, Point direction, double length, Colour fill) {
     const double norm = std::hypot(direction.x, direction.y);
     if (norm == 0) return;
+    if (m_state->marks != nullptr) {
+        Mark mark{Mark::Kind::arrow, {tip}, fill, length};
+        mark.direction = {direction.x / norm, direction.y / norm};
+        m_state->marks->push_back(std::move(mark));
+    }
     const double ux = direction.x / norm * length, uy = direction.y / norm * length;
     const Point corners[]{
         tip, {tip.x - ux - uy * 0.5, tip.y - uy + ux * 0.5}, {tip.x - ux + uy * 0.5, tip.y - uy - ux * 0.5}};
@@ -277,6 +290,13 @@ void Canvas::arrow_head(Point tip, Point direction, double length, Colour fill) 
 void Canvas::text(Point at, std::string_view text, const TextStyle& style) {
     cairo_t* cairo = m_state->cairo;
     const std::string clean = printable(text, 400);
+    if (m_state->marks != nullptr) {
+        Mark mark{Mark::Kind::text, {at}, style.colour, style.size};
+        mark.text = clean;
+        mark.anchor = style.anchor;
+        mark.bold = style.bold;
+        m_state->marks->push_back(std::move(mark));
+    }
     choose_font(cairo, style.size, style.bold);
     cairo_text_extents_t extents;
     cairo_text_extents(cairo, clean.c_str(), &extents);

@@ -44,6 +44,19 @@ struct TextStyle {
     double angle = 0;      ///< radians, clockwise on the screen
 };
 
+/// Something drawn that carries meaning by where it stands: a word, an arrow head, a line.
+struct Mark {
+    enum class Kind : std::uint8_t { text, arrow, line };
+    Kind kind = Kind::text;
+    std::vector<Point> points;  ///< where the word stands; tip of the arrow; points of the line as drawn
+    Colour colour;
+    double size = 0;    ///< of the letters, length of the arrow, width of the line, in pixels
+    Point direction{};  ///< of an arrow, length 1
+    std::string text{};
+    Anchor anchor = Anchor::start;
+    bool bold = false, dashed = false;
+};
+
 /// A picture in the making, as PNG or SVG, over cairo. Drawing never fails by itself: finish() reports what
 /// went wrong.
 class Canvas {
@@ -82,6 +95,9 @@ class Canvas {
     void clip(const Rectangle& place);
     void unclip();
 
+    /// From now on lists what is drawn here too; the list must outlive the canvas.
+    void list_marks(std::vector<Mark>* marks);
+
     /// The picture file. Errors: memory ran out, or cairo could not draw.
     Result<std::string> finish() &&;
 
@@ -89,6 +105,7 @@ class Canvas {
     static double text_width(std::string_view text, double size, bool bold = false);
 
   private:
+    void list_line(std::span<const Point> points, const Stroke& stroke);
     struct State;
     struct Close {
         void operator()(State* state) const;
@@ -103,6 +120,8 @@ Colour mix(Colour a, Colour b, double share);
 std::uint32_t pixel_of(Colour colour);
 /// Black or white, whichever reads better on this colour.
 Colour ink_on(Colour ground);
+/// A tone of this colour that reads on white.
+Colour readable(Colour colour);
 /// Text that cairo accepts: valid UTF-8 without control characters, at most `most` characters.
 std::string printable(std::string_view text, std::size_t most = 96);
 

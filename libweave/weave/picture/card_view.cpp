@@ -99,9 +99,8 @@ Result<std::string> draw_card(const Subject& subject) {
         std::string(grid.cell >= 4 && (block.picks() > block.rows() || block.ends() > block.columns())
                         ? " Blue lines part the stacks."
                         : ""));
-    WEAVE_TRY(Page page,
-              Page::open(subject.format, text, grid_left + static_cast<double>(grid.width()) + grid_right,
-                         grid_top + static_cast<double>(grid.height()) + grid_bottom));
+    WEAVE_TRY(Page page, Page::open(subject, text, grid_left + static_cast<double>(grid.width()) + grid_right,
+                                    grid_top + static_cast<double>(grid.height()) + grid_bottom));
     const CardImage card = block.card_image();
     if (grid.cell >= 4) {
         draw_runs(page.canvas, card, grid);

@@ -30,7 +30,7 @@ constexpr std::array<Colour, 8> warp_scale{{{0xfe, 0xed, 0xd6},
                                             {0x85, 0x3a, 0x05},
                                             {0x52, 0x22, 0x03}}};
 constexpr Colour nothing{0xff, 0xff, 0xff};
-constexpr double panel_gap = 36, panel_title = 22;
+constexpr double panel_gap = 36, panel_title = 22, heading_size = 12;
 
 std::size_t bin_of(std::int32_t length) {
     std::size_t bin = 0;
@@ -92,17 +92,30 @@ void draw_shapes(Canvas& canvas, const Grid& grid, const std::vector<std::int32_
         canvas.rectangles(shapes[k], k < 8 ? weft_scale[k] : warp_scale[k - 8]);
 }
 
+struct Longest {
+    std::int32_t weft = 0, warp = 0;
+};
+
+/// Over the cloth as it will be: loose yarns are looked through, as the rules for floats do.
+Longest longest_of(const Subject& subject, const YarnColours& colours, bool back) {
+    Longest longest;
+    for (const std::int32_t length : float_lengths(Surface(subject.block, colours, back, true))) {
+        longest.weft = std::max(longest.weft, length);
+        longest.warp = std::max(longest.warp, -length);
+    }
+    return longest;
+}
+
+std::string heading_of(bool back, Longest longest) {
+    return std::string(back ? "Back, seen from behind" : "Face") + ": longest weft float " +
+           std::to_string(longest.weft) + ", warp float " + std::to_string(longest.warp);
+}
+
 void draw_panel(Canvas& canvas, const Subject& subject, const YarnColours& colours, const Grid& grid) {
     const Surface surface(subject.block, colours, grid.mirrored, subject.request.trim);
     const std::vector<std::int32_t> lengths = float_lengths(surface);
-    std::int32_t weft = 0, warp = 0;
-    for (const std::int32_t length : lengths) {
-        weft = std::max(weft, length);
-        warp = std::max(warp, -length);
-    }
-    std::string words = grid.mirrored ? "Back, seen from behind" : "Face";
-    words += ": longest weft float " + std::to_string(weft) + ", warp float " + std::to_string(warp);
-    canvas.text({grid.corner.x, grid.corner.y - 9}, words, {.size = 12, .bold = true});
+    const std::string words = heading_of(grid.mirrored, longest_of(subject, colours, grid.mirrored));
+    canvas.text({grid.corner.x, grid.corner.y - 9}, words, {.size = heading_size, .bold = true});
     if (grid.cell >= 4) {
         draw_shapes(canvas, grid, lengths);
         draw_directions(canvas, grid, lengths);
@@ -118,9 +131,12 @@ void draw_panel(Canvas& canvas, const Subject& subject, const YarnColours& colou
     draw_rulers(canvas, grid, stack_numbers(subject.block));
 }
 
-/// Width of one panel with its rulers; its heading may be wider than a small grid.
+/// Width of one panel with its rulers; its heading, with the longest floats there could be, may be wider than
+/// a small grid.
 double panel_width(const Grid& grid) {
-    return std::max(grid_left + static_cast<double>(grid.width()) + grid_right, grid_left + 320.0);
+    const Longest most{static_cast<std::int32_t>(grid.columns), static_cast<std::int32_t>(grid.rows)};
+    return grid_left + std::max(static_cast<double>(grid.width()) + grid_right,
+                                Canvas::text_width(heading_of(true, most), heading_size, true));
 }
 
 }  // namespace
@@ -183,10 +199,14 @@ Result<std::string> draw_floats(const Subject& subject) {
     text.notes.push_back(
         "Lengths count stacks over which one yarn stays on the surface; floats end at the edges of the "
         "picture.");
-    if (subject.request.trim) text.notes.push_back("Trimmed: yarns that are loose on purpose are left out.");
+    if (subject.request.trim) {
+        text.notes.emplace_back("Trimmed: yarns that are loose on purpose are left out.");
+    } else if (std::ranges::any_of(subject.block.stacks(), has_loose)) {
+        text.notes.emplace_back("The headings count the cloth without the yarns that are loose on purpose.");
+    }
     const YarnColours colours(subject);
     WEAVE_TRY(Page page,
-              Page::open(subject.format, text, 2 * panel_width(grids.face) + panel_gap,
+              Page::open(subject, text, 2 * panel_width(grids.face) + panel_gap,
                          panel_title + grid_top + static_cast<double>(grids.face.height()) + grid_bottom));
     draw_panel(page.canvas, subject, colours, grids.face);
     draw_panel(page.canvas, subject, colours, grids.back);

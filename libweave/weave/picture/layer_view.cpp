@@ -8,24 +8,64 @@ namespace weave {
 namespace {
 
 constexpr double heading = 24, gutter = 24;
-constexpr Colour no_yarns{0xc9, 0xd3, 0xdc}, lifted{0, 0, 0}, weft_over{0xff, 0xff, 0xff};
+/// No greys: small cards look grey from afar where black and white alternate.
+constexpr Colour no_yarns{0xc9, 0xdc, 0xee}, lifted{0, 0, 0}, weft_over{0xff, 0xff, 0xff},
+    between{0xe0, 0x9a, 0x4a};
 
 Colour colour_of(LayerPixel pixel) {
-    return pixel == LayerPixel::none ? no_yarns : pixel == LayerPixel::lifted ? lifted : weft_over;
+    switch (pixel) {
+        case LayerPixel::lifted:
+            return lifted;
+        case LayerPixel::weft_over:
+            return weft_over;
+        case LayerPixel::between:
+            return between;
+        case LayerPixel::none:
+            break;
+    }
+    return no_yarns;
 }
 
-/// Height in the stack of the yarn that stands for `layer`, or none.
-std::optional<std::size_t> height_of(const Stack& stack, System system, std::size_t layer,
-                                     std::size_t layers) {
-    const std::size_t yarns = system == System::weft ? stack.wefts() : stack.warps();
-    if (yarns == 0) return std::nullopt;
-    std::size_t above = layer * yarns / layers;  // yarns of the system that lie higher
-    for (std::size_t k = stack.height(); k-- > 0;) {
-        const Slot slot = stack.slots()[k];
-        if (system == System::weft ? !slot.is_weft() : !slot.is_warp()) continue;
-        if (above-- == 0) return k;
+/// What each stack of the table shows in each of the first `layers` layers.
+std::vector<std::vector<LayerPixel>> pixels_of_layers(const Block& block, std::size_t layers) {
+    std::vector<std::vector<LayerPixel>> of_layer(layers);
+    for (const Stack& stack : block.stacks()) {
+        const std::vector<LayerPixel> pixels = layer_pixels(stack);
+        for (std::size_t k = 0; k < layers; ++k)
+            of_layer[k].push_back(k < pixels.size() ? pixels[k] : LayerPixel::none);
     }
-    return std::nullopt;
+    return of_layer;
+}
+
+bool is_shown(const std::vector<std::vector<LayerPixel>>& of_layer, LayerPixel wanted) {
+    return std::ranges::any_of(of_layer, [&](const std::vector<LayerPixel>& pixels) {
+        return std::ranges::find(pixels, wanted) != pixels.end();
+    });
+}
+
+PageText layer_words(const Subject& subject, const Grid& grid,
+                     const std::vector<std::vector<LayerPixel>>& of_layer) {
+    const Block& block = subject.block;
+    PageText text = words_of(subject, "layers, top layer first");
+    text.legend = {{"", {{lifted, "ends over the weft"}, {weft_over, "weft over the ends"}}}};
+    std::vector<Swatch>& swatches = text.legend[0].swatches;
+    if (is_shown(of_layer, LayerPixel::between))
+        swatches.push_back({between, "ends on both sides of the weft"});
+    if (is_shown(of_layer, LayerPixel::none)) swatches.push_back({no_yarns, "no such layer here"});
+    text.notes = scale_notes(grid, "of which it shows the first");
+    text.notes.emplace_back(
+        "Layer k: in each stack the k-th weft from the top and the ends that go with it: those nearest to it "
+        "in "
+        "height.");
+    if (std::ranges::any_of(block.stacks(), has_loose)) {
+        text.notes.emplace_back(
+            "Yarns that are loose on purpose are left out; the place of a loose weft counts.");
+    }
+    if (layer_count(block) > of_layer.size()) {
+        text.notes.push_back("Shown: the top " + std::to_string(of_layer.size()) + " of " +
+                             std::to_string(layer_count(block)) + " layers.");
+    }
+    return text;
 }
 
 Point panel_size(const Grid& grid) {
@@ -66,21 +106,6 @@ void draw_layer(Canvas& canvas, const Block& block, const Grid& grid,
 
 }  // namespace
 
-std::size_t layer_count(const Block& block) {
-    std::size_t layers = 1;
-    for (const Stack& stack : block.stacks()) layers = std::max({layers, stack.wefts(), stack.warps()});
-    return layers;
-}
-
-LayerPixel layer_pixel(const Stack& stack, std::size_t layer) {
-    const std::size_t layers = std::max(stack.wefts(), stack.warps());
-    if (layer >= layers) return LayerPixel::none;
-    const auto weft = height_of(stack, System::weft, layer, layers),
-               warp = height_of(stack, System::warp, layer, layers);
-    if (!weft || !warp) return LayerPixel::none;
-    return *weft > *warp ? LayerPixel::weft_over : LayerPixel::lifted;
-}
-
 std::vector<Grid> layer_grids(const Block& block) {
     const std::size_t panels = std::min(layer_count(block), most_layers);
     // A shared pixel shows the first of its places: a mean of layers that come and go would say nothing.
@@ -98,34 +123,21 @@ std::vector<Grid> layer_grids(const Block& block) {
 Result<std::string> draw_layers(const Subject& subject) {
     const Block& block = subject.block;
     const std::vector<Grid> grids = layer_grids(block);
-    PageText text = words_of(subject, "layers, top layer first");
-    text.legend = {{"", {{lifted, "end lifted over its weft"}, {weft_over, "weft over its end"}}}};
-    const bool uneven = std::ranges::any_of(block.stacks(), [&](const Stack& stack) {
-        return layer_pixel(stack, layer_count(block) - 1) == LayerPixel::none;
-    });
-    if (uneven) text.legend[0].swatches.push_back({no_yarns, "no such layer here"});
-    text.notes = scale_notes(grids[0], "of which it shows the first");
-    text.notes.push_back("Layer k: the k-th weft and the k-th warp of each stack, counted from the top.");
-    if (layer_count(block) > grids.size()) {
-        text.notes.push_back("Shown: the top " + std::to_string(grids.size()) + " of " +
-                             std::to_string(layer_count(block)) + " layers.");
-    }
+    const std::vector<std::vector<LayerPixel>> of_layer = pixels_of_layers(block, grids.size());
     const Point size = panel_size(grids[0]);
     const std::size_t across = panels_across(grids.size(), size.x),
                       down = (grids.size() + across - 1) / across;
     const double width = static_cast<double>(across) * (size.x + gutter) - gutter;
     const double height = static_cast<double>(down) * (size.y + gutter / 2) - gutter / 2;
-    WEAVE_TRY(Page page, Page::open(subject.format, text, width, height));
+    WEAVE_TRY(Page page, Page::open(subject, layer_words(subject, grids[0], of_layer), width, height));
     for (std::size_t k = 0; k < grids.size(); ++k) {
-        std::vector<LayerPixel> of_stack;
-        for (const Stack& stack : block.stacks()) of_stack.push_back(layer_pixel(stack, k));
         const std::string name = "Layer " + std::to_string(k + 1) +
                                  (grids.size() == 1             ? " (the only one)"
                                   : k == 0                      ? " (top)"
                                   : k + 1 == layer_count(block) ? " (bottom)"
                                                                 : "");
         page.canvas.text({grids[k].corner.x, grids[k].corner.y - 9}, name, {.size = 12, .bold = true});
-        draw_layer(page.canvas, block, grids[k], of_stack);
+        draw_layer(page.canvas, block, grids[k], of_layer[k]);
     }
     return std::move(page.canvas).finish();
 }

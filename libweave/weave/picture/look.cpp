@@ -1,31 +1,37 @@
 #include <weave/picture/look.hpp>
 
 #include <algorithm>
+#include <map>
 
 namespace weave {
 
 namespace {
 
-/// Shades that tell apart the yarns of one stack: the colour itself, darker, lighter, darkest, lightest.
+constexpr std::size_t shades = 5;
+
+/// The colour itself, darker, lighter, darkest, lightest.
 Colour shade(Colour colour, std::size_t index) {
-    switch (index % 5) {
+    constexpr Colour black{0, 0, 0}, white{0xff, 0xff, 0xff};
+    switch (index) {
         case 1:
-            return mix(colour, {0x40, 0x18, 0x00}, 0.42);
+            return mix(colour, black, 0.35);
         case 2:
-            return mix(colour, {0xff, 0xff, 0xff}, 0.38);
+            return mix(colour, white, 0.4);
         case 3:
-            return mix(colour, {0x20, 0x08, 0x00}, 0.68);
+            return mix(colour, black, 0.6);
         case 4:
-            return mix(colour, {0xff, 0xf0, 0x60}, 0.5);
+            return mix(colour, white, 0.68);
         default:
             return colour;
     }
 }
 
-Colour grey_shade(std::size_t index) {
-    constexpr Colour greys[]{
-        paper_weft, {0x5f, 0x64, 0x6b}, {0xae, 0xb3, 0xb9}, {0x45, 0x49, 0x50}, {0xc2, 0xc6, 0xcb}};
-    return greys[index % 5];
+/// For each yarn of a group how many of its colour come before it, over and over.
+template <class ColourOf>
+void add_shades(std::vector<std::uint8_t>& list, std::size_t first, std::size_t after, ColourOf colour_of) {
+    std::map<std::uint32_t, std::size_t> met;
+    for (std::size_t yarn = first; yarn < after; ++yarn)
+        list.push_back(static_cast<std::uint8_t>(met[pixel_of(colour_of(yarn))]++ % shades));
 }
 
 bool same_colours(const std::vector<YarnType>& a, const std::vector<YarnType>& b) {
@@ -45,14 +51,23 @@ YarnColours::YarnColours(const Subject& subject) : m_table(pick_table(subject.de
     }
     m_own_warp = !same_colours(design.warp.yarns, default_warp().yarns) || !design.warp.colours.empty();
     m_own_weft = !same_colours(design.weft.yarns, default_weft().yarns);
+    const Block& block = subject.block;
+    for (std::size_t column = 0; column < block.columns(); ++column) {
+        add_shades(m_end_shades, block.first_end(column), block.first_end(column + 1),
+                   [&](std::size_t end) { return drawn_end(end); });
+    }
+    for (std::size_t row = 0; row < block.rows(); ++row) {
+        add_shades(m_pick_shades, block.first_pick(row), block.first_pick(row + 1),
+                   [&](std::size_t pick) { return drawn_pick(pick); });
+    }
 }
 
-Colour YarnColours::drawn_end(std::size_t end, std::size_t index) const {
-    return m_own_warp ? m_ends[end] : shade(paper_warp, index);
+Colour YarnColours::shaded_end(std::size_t end) const {
+    return shade(drawn_end(end), m_end_shades[end]);
 }
 
-Colour YarnColours::drawn_pick(std::size_t pick, std::size_t index) const {
-    return m_own_weft ? m_picks[pick] : grey_shade(index);
+Colour YarnColours::shaded_pick(std::size_t pick) const {
+    return shade(drawn_pick(pick), m_pick_shades[pick]);
 }
 
 Surface::Surface(const Block& block, const YarnColours& colours, bool back, bool trim)

@@ -4,6 +4,7 @@
 #include <weave/picture/page.hpp>
 
 #include <cstddef>
+#include <cstdint>
 #include <optional>
 #include <vector>
 
@@ -20,15 +21,21 @@ class YarnColours {
     [[nodiscard]] Colour of_end(std::size_t end) const { return m_ends[end]; }
     [[nodiscard]] Colour of_pick(std::size_t pick) const { return m_picks[pick]; }
     [[nodiscard]] bool has_weft(std::size_t pick) const { return m_woven[pick]; }
-    /// For drawings that explain: the paper's colours, in shades that tell apart the yarns of one stack,
-    /// unless the design has colours of its own for this system.
-    [[nodiscard]] Colour drawn_end(std::size_t end, std::size_t index) const;
-    [[nodiscard]] Colour drawn_pick(std::size_t pick, std::size_t index) const;
+    /// For drawings that explain: the paper's colours, unless the design has colours of its own for this
+    /// system.
+    [[nodiscard]] Colour drawn_end(std::size_t end) const { return m_own_warp ? m_ends[end] : paper_warp; }
+    [[nodiscard]] Colour drawn_pick(std::size_t pick) const {
+        return m_own_weft ? m_picks[pick] : paper_weft;
+    }
+    /// The same in a shade that tells the yarn from those of its colour in the same column or row.
+    [[nodiscard]] Colour shaded_end(std::size_t end) const;
+    [[nodiscard]] Colour shaded_pick(std::size_t pick) const;
     [[nodiscard]] const std::vector<Pick>& picks() const { return m_table; }
 
   private:
     std::vector<Pick> m_table;
     std::vector<Colour> m_ends, m_picks;
+    std::vector<std::uint8_t> m_end_shades, m_pick_shades;
     std::vector<bool> m_woven;
     bool m_own_warp = false, m_own_weft = false;
 };

@@ -51,7 +51,7 @@ void draw_legend(Canvas& canvas, const std::vector<LegendRow>& rows, double left
 
 }  // namespace
 
-Result<Page> Page::open(PictureFormat format, const PageText& text, double body_width, double body_height) {
+Result<Page> Page::open(const Subject& subject, const PageText& text, double body_width, double body_height) {
     double width = std::max({body_width, 300.0, Canvas::text_width(text.title, title_size, true),
                              Canvas::text_width(text.subtitle, small_size)});
     for (const std::string& note : text.notes) width = std::max(width, Canvas::text_width(note, small_size));
@@ -64,7 +64,8 @@ Result<Page> Page::open(PictureFormat format, const PageText& text, double body_
     const double words =
         row_height * static_cast<double>(legend.size()) + 17 * static_cast<double>(text.notes.size());
     const double bottom = body_top + body_height + (words > 0 ? 18 + words : 0);
-    WEAVE_TRY(Canvas canvas, Canvas::make(format, width + 2 * margin, bottom + margin));
+    WEAVE_TRY(Canvas canvas, Canvas::make(subject.format, width + 2 * margin, bottom + margin));
+    canvas.list_marks(subject.marks);
     canvas.text({margin, margin + 15}, text.title,
                 {.size = title_size, .colour = {0x11, 0x11, 0x11}, .bold = true});
     canvas.text({margin, margin + 34}, text.subtitle, {.size = small_size, .colour = {0x60, 0x60, 0x60}});
@@ -76,6 +77,10 @@ Result<Page> Page::open(PictureFormat format, const PageText& text, double body_
         y += 17;
     }
     return Page{std::move(canvas), {margin, body_top, body_width, body_height}};
+}
+
+bool has_loose(const Stack& stack) {
+    return std::ranges::any_of(stack.slots(), &Slot::is_loose);
 }
 
 PageText words_of(const Subject& subject, const std::string& view) {

@@ -13,6 +13,7 @@ struct Subject {
     const Block& block;
     PictureRequest request;
     PictureFormat format = PictureFormat::png;
+    std::vector<Mark>* marks = nullptr;  ///< where to list what is drawn, or nowhere
 };
 
 /// A patch of colour in a legend, and what it stands for.
@@ -41,11 +42,14 @@ struct Page {
     /// Sizes of the title's letters and of all others.
     static constexpr double title_size = 16, small_size = 11.5;
     /// Body of this size; the page is made wide enough for its words.
-    static Result<Page> open(PictureFormat format, const PageText& text, double body_width,
+    static Result<Page> open(const Subject& subject, const PageText& text, double body_width,
                              double body_height);
     Canvas canvas;
     Rectangle body;
 };
+
+/// Whether some yarn of a stack is loose on purpose.
+bool has_loose(const Stack& stack);
 
 /// Title and size of the cloth: `Twill sample` over `card image · face up · 8 picks × 8 ends`.
 PageText words_of(const Subject& subject, const std::string& view);

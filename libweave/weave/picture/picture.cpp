@@ -30,6 +30,8 @@ Result<std::size_t> line_of(std::string_view text, const Block& block, System sy
     return weft ? block.row_of_pick(number - 1) : block.column_of_end(number - 1);
 }
 
+}  // namespace
+
 Result<std::string> draw_view(const Subject& subject) {
     switch (subject.request.view) {
         case View::card:
@@ -49,8 +51,6 @@ Result<std::string> draw_view(const Subject& subject) {
     }
     return invalid("there is no such view");
 }
-
-}  // namespace
 
 Result<PictureRequest> parse_view(std::string_view text, const Block& block) {
     PictureRequest request;
@@ -73,6 +73,28 @@ Result<PictureRequest> parse_view(std::string_view text, const Block& block) {
                  {}};
 }
 
+Status begin_at(PictureRequest& request, const Block& block, std::optional<std::size_t> pick,
+                std::optional<std::size_t> end) {
+    const auto refused = [](std::string message) { return Error{ErrorCode::usage, std::move(message), {}}; };
+    const auto check = [&](std::optional<std::size_t> number, std::size_t count, View slice, const char* yarn,
+                           const char* views) -> Status {
+        if (!number) return {};
+        if (request.view != slice && request.view != View::block) {
+            return refused(std::string("only ") + views + " can begin at " + yarn);
+        }
+        if (*number < 1 || *number > count) {
+            return refused("there is no such " + std::string(yarn).substr(yarn[1] == 'n' ? 3 : 2) + " as " +
+                           std::to_string(*number) + ": the cloth has 1 to " + std::to_string(count));
+        }
+        return {};
+    };
+    WEAVE_CHECK_OK(check(pick, block.picks(), View::warp_slice, "a pick", "warp slices and the block"));
+    WEAVE_CHECK_OK(check(end, block.ends(), View::weft_slice, "an end", "weft slices and the block"));
+    if (pick) request.first_row = block.row_of_pick(*pick - 1);
+    if (end) request.first_column = block.column_of_end(*end - 1);
+    return {};
+}
+
 Result<std::string> draw(const Design& design, const Evaluation& cloth, const PictureRequest& request,
                          PictureFormat format) {
     if (!cloth.block) return invalid("there is no cloth to draw");
@@ -83,6 +105,15 @@ Result<std::string> draw(const Design& design, const Evaluation& cloth, const Pi
                      "the cloth has " + std::to_string(block.rows()) + " rows and " +
                          std::to_string(block.columns()) + " columns of stacks, so there is no slice " +
                          std::to_string(request.line + 1),
+                     {}};
+    }
+    if (request.first_row >= block.rows() || request.first_column >= block.columns()) {
+        return Error{ErrorCode::usage,
+                     "the cloth has " + std::to_string(block.rows()) + " rows and " +
+                         std::to_string(block.columns()) +
+                         " columns of stacks, so a picture cannot begin at row " +
+                         std::to_string(request.first_row + 1) + ", column " +
+                         std::to_string(request.first_column + 1),
                      {}};
     }
     try {

@@ -9,27 +9,28 @@ namespace {
 constexpr double across = 46, up = 27;  ///< pixels between positions and between levels
 constexpr double left = 104, top = 30;
 
-const Stack& stack_at(const Subject& subject, System dots, std::size_t position) {
-    return dots == System::weft ? subject.block.stack(position, subject.request.line)
-                                : subject.block.stack(subject.request.line, position);
+const Stack& stack_at(const Subject& subject, const SliceMap& map, std::size_t position) {
+    const std::size_t place = map.begin + position;
+    return map.dots == System::weft ? subject.block.stack(place, subject.request.line)
+                                    : subject.block.stack(subject.request.line, place);
 }
 
 void list_dots(const Subject& subject, const YarnColours& colours, SliceMap& map) {
     const Block& block = subject.block;
     for (std::size_t position = 0; position < map.positions; ++position) {
-        const auto slots = stack_at(subject, map.dots, position).slots();
+        const auto slots = stack_at(subject, map, position).slots();
         for (std::size_t level = 0; level < std::min(slots.size(), map.levels); ++level) {
             const Slot slot = slots[level];
             if (map.dots == System::weft ? !slot.is_weft() : !slot.is_warp()) continue;
             if (subject.request.trim && slot.is_loose()) continue;
             SliceDot dot{position, level, slot.index(), {}, slot.is_loose()};
             if (map.dots == System::weft) {
-                dot.number += block.first_pick(position);
+                dot.number += block.first_pick(map.begin + position);
                 if (!colours.has_weft(dot.number)) continue;
-                dot.colour = colours.drawn_pick(dot.number, 0);
+                dot.colour = colours.drawn_pick(dot.number);
             } else {
-                dot.number += block.first_end(position);
-                dot.colour = colours.drawn_end(dot.number, 0);
+                dot.number += block.first_end(map.begin + position);
+                dot.colour = colours.drawn_end(dot.number);
             }
             map.dot_list.push_back(dot);
         }
@@ -40,7 +41,7 @@ void list_dots(const Subject& subject, const YarnColours& colours, SliceMap& map
 void list_paths(const Subject& subject, SliceMap& map, std::size_t yarns) {
     map.paths.resize(yarns);
     for (std::size_t position = 0; position < map.positions; ++position) {
-        const auto slots = stack_at(subject, map.dots, position).slots();
+        const auto slots = stack_at(subject, map, position).slots();
         for (std::size_t level = 0; level < slots.size(); ++level) {
             const Slot slot = slots[level];
             if (slot.is_empty() || (map.dots == System::weft ? !slot.is_warp() : !slot.is_weft())) continue;
@@ -53,11 +54,13 @@ void list_paths(const Subject& subject, SliceMap& map, std::size_t yarns) {
     }
 }
 
-void cut(SlicePath& path, const WeftRuns::Run& run) {
-    const std::size_t last = std::min(run.last, path.levels.size() - 1);
-    if (run.first > last) return path.levels.clear();
-    const auto from = static_cast<std::ptrdiff_t>(run.first), to = static_cast<std::ptrdiff_t>(last + 1);
-    path.first = run.first;
+/// Leaves the part of a path that its yarn runs through.
+void cut(SlicePath& path, const WeftRuns::Run& run, std::size_t begin) {
+    const std::size_t after = begin + path.levels.size();
+    if (run.first >= after || run.last < begin) return path.levels.clear();
+    path.first = std::max(run.first, begin) - begin;
+    const auto from = static_cast<std::ptrdiff_t>(path.first),
+               to = static_cast<std::ptrdiff_t>(std::min(run.last + 1, after) - begin);
     path.levels = {path.levels.begin() + from, path.levels.begin() + to};
     path.loose = {path.loose.begin() + from, path.loose.begin() + to};
 }
@@ -72,19 +75,20 @@ SliceMap slice_map(const Subject& subject, const YarnColours& colours, const Wef
     const bool warps_run = map.dots == System::weft;
     map.all_positions = warps_run ? block.rows() : block.columns();
     map.all_levels = block.height();
-    map.positions = std::min(map.all_positions, SliceMap::most_positions);
+    map.begin = warps_run ? subject.request.first_row : subject.request.first_column;
+    map.positions = std::min(map.all_positions - map.begin, SliceMap::most_positions);
     map.levels = std::min(map.all_levels, SliceMap::most_levels);
     list_dots(subject, colours, map);
     list_paths(subject, map, warps_run ? block.p()[line] : block.t()[line]);
     for (std::size_t k = 0; k < map.paths.size(); ++k) {
         SlicePath& path = map.paths[k];
         path.number = (warps_run ? block.first_end(line) : block.first_pick(line)) + k;
-        path.colour = warps_run ? colours.drawn_end(path.number, k) : colours.drawn_pick(path.number, k);
+        path.colour = warps_run ? colours.shaded_end(path.number) : colours.shaded_pick(path.number);
         if (warps_run) continue;
         const WeftRuns::Run& run = runs.of_pick(path.number);
         path.leftwards = run.leftwards;
         if (run.woven) {
-            cut(path, run);
+            cut(path, run, map.begin);
         } else {
             path.levels.clear();
         }

@@ -11,8 +11,8 @@ namespace weave {
 
 /// A yarn that a slice cuts: it is seen end-on.
 struct SliceDot {
-    std::size_t position = 0, level = 0;
-    std::size_t number = 0;  ///< on the card, from 0
+    std::size_t position = 0, level = 0;  ///< positions count from the first one shown
+    std::size_t number = 0;               ///< on the card, from 0
     Colour colour;
     bool loose = false;
 };
@@ -31,9 +31,11 @@ struct SlicePath {
 
 /// What a slice picture shows, apart from how it looks.
 struct SliceMap {
-    /// Slices are drawn up to this many positions and levels, counted from the origin; a note says so.
+    /// Slices are drawn up to this many positions, from the one asked for, and levels, from the bottom; a
+    /// note says so.
     static constexpr std::size_t most_positions = 60, most_levels = 48;
     System dots = System::weft;
+    std::size_t begin = 0;                  ///< row or column of the first position shown
     std::size_t positions = 0, levels = 0;  ///< shown
     std::size_t all_positions = 0, all_levels = 0;
     std::vector<SliceDot> dot_list;

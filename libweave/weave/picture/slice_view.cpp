@@ -14,8 +14,9 @@ constexpr Colour grid_ink{0xd4, 0xd8, 0xdc}, uncaught_ink{0x11, 0x11, 0x11};
 /// The drawer of one slice.
 class SliceDrawer {
   public:
-    SliceDrawer(Canvas& canvas, const SliceMap& map, const WeftRuns& runs, bool trim)
-        : m_canvas(canvas), m_map(map), m_runs(runs), m_trim(trim) {}
+    /// `first_yarn` is the pick or end with which the shown part begins.
+    SliceDrawer(Canvas& canvas, const SliceMap& map, const WeftRuns& runs, std::size_t first_yarn, bool trim)
+        : m_canvas(canvas), m_map(map), m_runs(runs), m_first_yarn(first_yarn), m_trim(trim) {}
 
     void draw() {
         draw_grid();
@@ -28,6 +29,7 @@ class SliceDrawer {
         for (const SlicePath& path : m_map.paths) draw_path(path, false);
         for (const SliceDot& dot : m_map.dot_list) draw_dot(dot);
         for (const SlicePath& path : m_map.paths) draw_names(path);
+        for (const WayOut& way : m_ways_out) draw_name(way);
         m_canvas.unclip();
     }
 
@@ -55,7 +57,7 @@ class SliceDrawer {
             lines.insert(lines.end(), {at(position, -0.4), at(position, levels - 0.6)});
             Point name = at(position, 0);
             name.y += 34;
-            m_canvas.text(name, std::to_string(k + 1),
+            m_canvas.text(name, std::to_string(m_map.begin + k + 1),
                           {.size = 10, .colour = faint_ink, .anchor = Anchor::middle});
         }
         m_canvas.lines(lines, {.colour = grid_ink, .width = 1, .round = false});
@@ -66,7 +68,8 @@ class SliceDrawer {
         m_canvas.polyline(axis, {.colour = accent, .width = 2});
         m_canvas.arrow_head({axis[1].x + 6, from.y}, {1, 0}, 8, accent);
         m_canvas.text({axis[1].x + 12, from.y},
-                      rows ? "rows, from pick 1 (along the warp)" : "columns, from end 1 (along the weft)",
+                      (rows ? "rows, from pick " : "columns, from end ") + std::to_string(m_first_yarn + 1) +
+                          (rows ? " (along the warp)" : " (along the weft)"),
                       {.size = 11, .colour = accent, .bold = true, .centred = true});
         const Point corner{at(0, 0).x - 96, at(0, 0).y};
         const Point height[]{corner, {corner.x, corner.y - 16}};
@@ -96,7 +99,8 @@ class SliceDrawer {
         if (!turning()) return true;
         const Side side = at_end ? Side::right : Side::left;
         return std::ranges::none_of(m_runs.turns(), [&](const Turn& turn) {
-            return turn.side == side && (turn.from_pick == path.number || turn.to_pick == path.number);
+            return turn.side == side && is_shown(turn) &&
+                   (turn.from_pick == path.number || turn.to_pick == path.number);
         });
     }
 
@@ -186,29 +190,48 @@ class SliceDrawer {
             {.size = size, .colour = ink_on(fill), .anchor = Anchor::middle, .bold = true, .centred = true});
     }
 
+    /// The number on the yarn itself.
+    void draw_tag(const SlicePath& path, double position, std::size_t k) {
+        if (path.levels[k] >= m_map.levels || (m_trim && path.loose[k])) return;
+        const std::string number = std::to_string(path.number + 1);
+        const Point middle = at(position, static_cast<double>(path.levels[k]));
+        const double half = Canvas::text_width(number, 11, true) / 2 + 2;
+        m_canvas.rectangle({middle.x - half, middle.y - 7, 2 * half, 14}, {0xff, 0xff, 0xff}, 0.9);
+        m_canvas.text(middle, number,
+                      {.size = 11,
+                       .colour = readable(path.colour),
+                       .anchor = Anchor::middle,
+                       .bold = true,
+                       .centred = true});
+    }
+
+    /// A pick's number stands at the edges it runs to, on the yarn where it turns, and so often along a long
+    /// way that it can be followed, in another place on each yarn.
     void draw_names(const SlicePath& path) {
         const std::string number = std::to_string(path.number + 1);
-        const Colour dark = mix(path.colour, {0, 0, 0}, 0.35);
         const auto name = [&](double position, std::size_t level, Anchor anchor) {
             if (level >= m_map.levels) return;
             m_canvas.text(at(position, static_cast<double>(level)), number,
-                          {.size = 11, .colour = dark, .anchor = anchor, .bold = true, .centred = true});
+                          {.size = 11,
+                           .colour = readable(path.colour),
+                           .anchor = anchor,
+                           .bold = true,
+                           .centred = true});
         };
-        // Where a pick turns at both ends its number stands on the yarn itself.
-        if (!reaches(path, false) && !reaches(path, true) && path.levels.front() < m_map.levels) {
-            const Point middle =
-                at(static_cast<double>(path.first) + 0.2, static_cast<double>(path.levels.front()));
-            const double half = Canvas::text_width(number, 11, true) / 2 + 2;
-            m_canvas.rectangle({middle.x - half, middle.y - 7, 2 * half, 14}, {0xff, 0xff, 0xff}, 0.9);
-            m_canvas.text(
-                middle, number,
-                {.size = 11, .colour = dark, .anchor = Anchor::middle, .bold = true, .centred = true});
-        }
         const double edge = static_cast<double>(m_map.positions) - 1;
-        if (reaches(path, false) && !(m_trim && path.loose.front()))
+        const std::size_t last = path.levels.size() - 1;
+        if (!reaches(path, false)) {
+            draw_tag(path, static_cast<double>(path.first) + 0.2, 0);
+        } else if (!(m_trim && path.loose.front())) {
             name(-overhang - 0.14, path.levels.front(), Anchor::end);
-        if (reaches(path, true) && !(m_trim && path.loose.back()))
+        }
+        if (!reaches(path, true)) {
+            if (last > 1) draw_tag(path, static_cast<double>(path.last()) - 0.2, last);
+        } else if (!(m_trim && path.loose.back())) {
             name(edge + overhang + 0.14, path.levels.back(), Anchor::start);
+        }
+        for (std::size_t k = 4 + 3 * (path.number % 3); k + 6 < path.levels.size(); k += 10)
+            draw_tag(path, static_cast<double>(path.first + k), k);
     }
 
     [[nodiscard]] const SlicePath* path_of(std::size_t pick) const {
@@ -216,15 +239,34 @@ class SliceDrawer {
         return found == m_map.paths.end() ? nullptr : &*found;
     }
 
+    /// Wide turns go round narrow ones.
     void draw_turns() {
+        struct Arc {
+            const Turn* turn;
+            const SlicePath *from, *to;
+            double low, high;
+            std::size_t inside = 0;  ///< turns that it goes round
+        };
+        std::vector<Arc> arcs;
         for (const Turn& turn : m_runs.turns()) {
             const SlicePath* from = path_of(turn.from_pick);
             const SlicePath* to = path_of(turn.to_pick);
-            if (from != nullptr && to != nullptr) {
-                draw_turn(turn, *from, *to);
-            } else if (from != nullptr || to != nullptr) {
+            if (!is_shown(turn) || (from == nullptr && to == nullptr)) continue;
+            if (from == nullptr || to == nullptr) {
                 draw_way_out(turn, from != nullptr ? *from : *to, from != nullptr);
+                continue;
             }
+            const double a = end_of(*from, turn.side).y, b = end_of(*to, turn.side).y;
+            arcs.push_back({&turn, from, to, std::min(a, b), std::max(a, b)});
+        }
+        std::ranges::stable_sort(arcs, {}, [](const Arc& arc) { return arc.high - arc.low; });
+        for (std::size_t k = 0; k < arcs.size(); ++k) {
+            for (std::size_t j = 0; j < k; ++j) {
+                const bool meet = arcs[j].turn->side == arcs[k].turn->side && arcs[j].low < arcs[k].high &&
+                                  arcs[k].low < arcs[j].high;
+                if (meet) arcs[k].inside = std::max(arcs[k].inside, arcs[j].inside + 1);
+            }
+            draw_turn(*arcs[k].turn, *arcs[k].from, *arcs[k].to, arcs[k].inside);
         }
     }
 
@@ -235,14 +277,18 @@ class SliceDrawer {
     }
 
     /// Whether the side on which a path ends lies within the shown part.
-    [[nodiscard]] bool is_shown(const Turn& turn) const { return m_runs.column_of(turn) < m_map.positions; }
+    [[nodiscard]] bool is_shown(const Turn& turn) const {
+        const std::size_t column = m_runs.column_of(turn);
+        return column >= m_map.begin && column < m_map.begin + m_map.positions;
+    }
 
-    void draw_turn(const Turn& turn, const SlicePath& from, const SlicePath& to) {
-        if (!is_shown(turn)) return;
+    void draw_turn(const Turn& turn, const SlicePath& from, const SlicePath& to, std::size_t inside) {
         const Point a = end_of(from, turn.side), b = end_of(to, turn.side);
         const double out = turn.side == Side::right ? 1 : -1;
         const double outermost = out > 0 ? std::max(a.x, b.x) : std::min(a.x, b.x);
-        const double reach = outermost + out * (34 + std::abs(a.y - b.y) * 0.12);
+        const double reach =
+            outermost +
+            out * std::min(34 + 18.0 * static_cast<double>(inside) + std::abs(a.y - b.y) * 0.12, 86.0);
         const Point arc[]{a, {reach, a.y}, {reach, b.y}, b};
         const bool caught = turn.caught_by != CaughtBy::none;
         const Colour colour = caught ? from.colour : uncaught_ink;
@@ -258,29 +304,68 @@ class SliceDrawer {
     /// A turn whose other pick lies in another row: the yarn leaves the slice, with the number of where it
     /// goes or comes from.
     void draw_way_out(const Turn& turn, const SlicePath& path, bool leaves) {
-        if (!is_shown(turn)) return;
         const Point a = end_of(path, turn.side);
         const double out = turn.side == Side::right ? 1 : -1;
         const Point stub[]{a, {a.x + out * 24, a.y}};
         m_canvas.polyline(stub, {.colour = mix(path.colour, {0, 0, 0}, 0.3), .width = 2, .dash = {1, 4}});
         if (leaves) m_canvas.arrow_head({a.x + out * 32, a.y}, {out, 0}, 9, mix(path.colour, {0, 0, 0}, 0.5));
-        const std::size_t other = (leaves ? turn.to_pick : turn.from_pick) + 1;
-        m_canvas.text({a.x + out * 35, a.y}, (leaves ? "to " : "from ") + std::to_string(other),
-                      {.size = 10,
-                       .colour = faint_ink,
-                       .anchor = out > 0 ? Anchor::start : Anchor::end,
-                       .centred = true});
+        m_ways_out.push_back(
+            {{a.x + out * 35, a.y},
+             (leaves ? "to " : "from ") + std::to_string((leaves ? turn.to_pick : turn.from_pick) + 1),
+             out > 0 ? Anchor::start : Anchor::end});
+    }
+
+    struct WayOut {
+        Point place;
+        std::string words;
+        Anchor anchor;
+    };
+
+    /// Beside the yarn where dots would cover the words.
+    void draw_name(const WayOut& way) {
+        constexpr double size = 10;
+        const double width = Canvas::text_width(way.words, size);
+        const double left = way.anchor == Anchor::start ? way.place.x : way.place.x - width;
+        const bool covered = std::ranges::any_of(m_map.dot_list, [&](const SliceDot& dot) {
+            const Point centre = at(static_cast<double>(dot.position), static_cast<double>(dot.level));
+            return std::abs(centre.y - way.place.y) < dot_radius && centre.x + dot_radius > left &&
+                   centre.x - dot_radius < left + width;
+        });
+        const Point place{way.place.x, way.place.y + (covered ? 17 : 0)};
+        if (covered) m_canvas.rectangle({left - 1, place.y - 6, width + 2, 12}, {0xff, 0xff, 0xff}, 0.8);
+        m_canvas.text(place, way.words,
+                      {.size = size, .colour = faint_ink, .anchor = way.anchor, .centred = true});
     }
 
     Canvas& m_canvas;
     const SliceMap& m_map;
     const WeftRuns& m_runs;
+    std::size_t m_first_yarn;
+    std::vector<WayOut> m_ways_out;
     bool m_trim;
 };
 
 std::string range(const char* one, const char* many, std::size_t first, std::size_t after) {
     if (after - first == 1) return std::string(one) + " " + std::to_string(first + 1);
     return std::string(many) + " " + std::to_string(first + 1) + "–" + std::to_string(after);
+}
+
+/// Says which part of the slice is shown, where it is not the whole.
+void add_shown(PageText& text, const Block& block, const SliceMap& map) {
+    const bool rows = map.dots == System::weft;
+    const std::size_t after = map.begin + map.positions;
+    std::string words;
+    if (map.positions < map.all_positions) {
+        words = range(rows ? "row" : "column", rows ? "rows" : "columns", map.begin, after) + " of " +
+                std::to_string(map.all_positions) + ", " +
+                (rows ? range("pick", "picks", block.first_pick(map.begin), block.first_pick(after))
+                      : range("end", "ends", block.first_end(map.begin), block.first_end(after)));
+    }
+    if (map.levels < map.all_levels) {
+        words += (words.empty() ? "the lowest " : "; the lowest ") + std::to_string(map.levels) + " of " +
+                 std::to_string(map.all_levels) + " levels";
+    }
+    if (!words.empty()) text.notes.push_back("Shown: " + words + ".");
 }
 
 PageText slice_words(const Subject& subject, const SliceMap& map, const WeftRuns& runs) {
@@ -294,12 +379,7 @@ PageText slice_words(const Subject& subject, const SliceMap& map, const WeftRuns
                            : "weft slice, row " + place + ": " +
                                  range("pick", "picks", block.first_pick(line), block.first_pick(line + 1)) +
                                  (runs.wraparound() ? ", wraparound" : ", periodic"));
-    if (map.positions < map.all_positions || map.levels < map.all_levels) {
-        text.notes.push_back("Shown: the first " + std::to_string(map.positions) + " of " +
-                             std::to_string(map.all_positions) + (warps_run ? " rows" : " columns") +
-                             ", the lowest " + std::to_string(map.levels) + " of " +
-                             std::to_string(map.all_levels) + " levels.");
-    }
+    add_shown(text, block, map);
     text.notes.push_back(warps_run
                              ? "Dots: wefts with their pick numbers. Lines: warps with their end numbers."
                              : "Dots: warps with their end numbers. Lines: wefts with their pick numbers; "
@@ -326,9 +406,11 @@ Result<std::string> draw_slice(const Subject& subject) {
     const SliceMap map = slice_map(subject, colours, runs);
     const Point origin = slice_point(map, 0, 0),
                 far = slice_point(map, static_cast<double>(map.positions), static_cast<double>(map.levels));
-    WEAVE_TRY(Page page, Page::open(subject.format, slice_words(subject, map, runs),
-                                    far.x + 40 - Page::margin, origin.y - Page::body_top + 58));
-    SliceDrawer(page.canvas, map, runs, subject.request.trim).draw();
+    WEAVE_TRY(Page page, Page::open(subject, slice_words(subject, map, runs), far.x + 40 - Page::margin,
+                                    origin.y - Page::body_top + 58));
+    const std::size_t first_yarn =
+        map.dots == System::weft ? subject.block.first_pick(map.begin) : subject.block.first_end(map.begin);
+    SliceDrawer(page.canvas, map, runs, first_yarn, subject.request.trim).draw();
     return std::move(page.canvas).finish();
 }
 

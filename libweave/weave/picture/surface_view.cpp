@@ -140,9 +140,8 @@ Result<std::string> draw_surface(const Subject& subject) {
                              " yarn of its stack.");
     }
     if (subject.request.trim) text.notes.push_back("Trimmed: yarns that are loose on purpose are left out.");
-    WEAVE_TRY(Page page,
-              Page::open(subject.format, text, grid_left + static_cast<double>(grid.width()) + grid_right,
-                         grid_top + static_cast<double>(grid.height()) + grid_bottom));
+    WEAVE_TRY(Page page, Page::open(subject, text, grid_left + static_cast<double>(grid.width()) + grid_right,
+                                    grid_top + static_cast<double>(grid.height()) + grid_bottom));
     if (grid.cell >= yarn_look) {
         draw_yarns(page.canvas, surface, grid);
     } else {

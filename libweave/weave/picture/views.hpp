@@ -6,6 +6,8 @@
 
 namespace weave {
 
+/// The view that the subject asks for.
+Result<std::string> draw_view(const Subject& subject);
 /// The card image: black where the end is lifted, rulers, stack grid, pick-1 arrow.
 Result<std::string> draw_card(const Subject& subject);
 /// Colour and weave as seen on the face, or from behind on the back.

@@ -3,15 +3,13 @@
 #include <algorithm>
 #include <chrono>
 #include <cmath>
-#include <cstdio>
-#include <cstdlib>
 
 namespace weave::sim {
 
 namespace {
 
 /// Below this residual the matrix is exact.
-const double exact_below = getenv("EX") ? atof(getenv("EX")) : 1.0;
+constexpr double exact_below = 1;
 
 double seconds_since(std::chrono::steady_clock::time_point start) {
     return std::chrono::duration<double>(std::chrono::steady_clock::now() - start).count();
@@ -129,7 +127,6 @@ class Newton {
             if (cg.negative) {
                 m_result.curves_down = true;
                 damping += std::max(1.5 * lack(cg.negative_direction), damping);
-                if (getenv("DBG")) printf("    negative after %zu: damping %.3g\n", cg.iterations, damping);
                 continue;
             }
             if (accept_step(damping)) return true;
@@ -189,7 +186,6 @@ class Newton {
             if (halving == 0 && gain > 0.5 * expected) damping = damping < 1e-8 ? 0 : damping / 4;
             if (halving > 1 || gain < 0.1 * expected) damping = std::max(4 * damping, 1e-6);
             const bool goes_on = falls && halving == 0 && gain > 1.5 * expected;
-            if (getenv("DBG")) printf("    share %.3g most %.3g halv %d damp %.2g gain/exp %.3g cg %zu\n", share, most, halving, damping, gain / expected, m_result.cg_iterations);
             take(value);
             if (goes_on) stretch(share, most);
             return true;
@@ -231,7 +227,7 @@ class Newton {
 
     static constexpr double longest_stretch = 64, most_exact_damping = 1;
     static constexpr int convex_run = 4;
-    static constexpr std::size_t most_cg = 200;
+    static constexpr std::size_t most_cg = 1500;
 
     Energy<Real>& m_energy;
     std::vector<Real>& m_state;
