@@ -44,6 +44,8 @@ struct Page {
     /// Body of this size; the page is made wide enough for its words.
     static Result<Page> open(const Subject& subject, const PageText& text, double body_width,
                              double body_height);
+    static Result<Page> open(PictureFormat format, const PageText& text, double body_width, double body_height,
+                             std::vector<Mark>* marks = nullptr);
     Canvas canvas;
     Rectangle body;
 };

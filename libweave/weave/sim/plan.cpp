@@ -104,6 +104,8 @@ class Planner {
         const Resolution resolution = resolution_of(m_request.fidelity);
         m_plan.fidelity = m_request.fidelity;
         m_plan.goal = resolution.goal;
+        m_plan.cloth_rows = m_block.rows();
+        m_plan.cloth_columns = m_block.columns();
         m_plan.points_per_key = m_request.points_per_key.value_or(resolution.points_per_key);
         m_plan.scene.sample_spacing = m_request.sample_spacing.value_or(resolution.sample_spacing);
         WEAVE_CHECK_OK(check_request());

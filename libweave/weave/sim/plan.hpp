@@ -45,6 +45,7 @@ struct Plan {
     ClothCurves curves;  ///< of what is simulated: one repeat, a region, or the whole
     std::vector<std::size_t> curve_of;           ///< of each simulated yarn its index in `curves`
     std::array<std::size_t, 2> repeats{1, 1};    ///< how often the simulated repeat fills the cloth, in x and y
+    std::size_t cloth_rows = 0, cloth_columns = 0;  ///< of the whole design
     std::vector<PlanLine> lines;
     Fidelity fidelity = Fidelity::standard;
     double points_per_key = 0;
