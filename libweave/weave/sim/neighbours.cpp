@@ -85,7 +85,7 @@ Neighbours<Real>::Neighbours(const Fabric<Real>& fabric, const Executor& executo
     for (const SimYarn& yarn : fabric.scene().yarns) radii.push_back(yarn.radius_mm);
     std::sort(radii.begin(), radii.end());
     for (const double radius : radii) {
-        if (m_classes.empty() || radius > m_classes.back() * class_ratio) m_classes.push_back(radius * class_ratio);
+        if (m_classes.empty() || radius > m_classes.back()) m_classes.push_back(radius * class_ratio);
     }
     // The bound of a class is the greatest radius in it.
     std::vector<double> greatest(m_classes.size(), 0);
