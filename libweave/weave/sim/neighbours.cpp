@@ -226,22 +226,27 @@ template <class Real>
 template <class Found>
 void Neighbours<Real>::near(const std::vector<Grid>& grids, std::size_t sample, const Found& found) const {
     const double x = m_x[sample], y = m_y[sample], z = m_z[sample], radius = m_radius[sample];
+    const auto look_at = [&](std::uint32_t b) {
+        const double dx = m_x[b] - x, dy = m_y[b] - y, dz = m_z[b] - z, limit = radius + m_radius[b] + m_skin;
+        if (dx * dx + dy * dy + dz * dz < limit * limit && b != sample && !same_stretch(sample, b)) found(b);
+    };
     for (const Grid& grid : grids) {
         const double reach = radius + grid.radius + m_skin;
         const Cell low{grid.cell(x - reach), grid.cell(y - reach), grid.cell(z - reach)},
             high{grid.cell(x + reach), grid.cell(y + reach), grid.cell(z + reach)};
+        // A thick yarn spans more cells of thin ones than there are thin samples: then each of these is looked at.
+        const double cells = double(high[0] - low[0] + 1) * double(high[1] - low[1] + 1) * double(high[2] - low[2] + 1);
+        if (cells > static_cast<double>(grid.samples.size())) {
+            for (const std::uint32_t b : grid.samples) look_at(b);
+            continue;
+        }
         for (std::int32_t i = low[0]; i <= high[0]; ++i) {
             for (std::int32_t j = low[1]; j <= high[1]; ++j) {
                 for (std::int32_t k = low[2]; k <= high[2]; ++k) {
                     const std::uint64_t key = key_of({i, j, k});
                     const std::size_t bucket = mixed(key) & grid.mask;
                     for (std::uint32_t e = grid.first[bucket]; e < grid.first[bucket + 1]; ++e) {
-                        if (grid.keys[e] != key) continue;
-                        const std::uint32_t b = grid.samples[e];
-                        const double dx = m_x[b] - x, dy = m_y[b] - y, dz = m_z[b] - z,
-                                     limit = radius + m_radius[b] + m_skin;
-                        if (dx * dx + dy * dy + dz * dz < limit * limit && b != sample && !same_stretch(sample, b))
-                            found(b);
+                        if (grid.keys[e] == key) look_at(grid.samples[e]);
                     }
                 }
             }
