@@ -21,7 +21,7 @@ double gradient_error(const SimScene& scene, Terms terms = {}) {
     bench.evaluate(terms);
     const std::vector<double> gradient = bench.gradient;
     const double step = 1e-6, scale = greatest(gradient);
-    REQUIRE(scale > 1e-3);
+    REQUIRE(scale > 1e-6);
     double worst = 0;
     for (std::size_t slot = 0; slot < bench.fabric.slots(); ++slot) {
         for (std::size_t i = 3 * slot; i < 3 * slot + 3; ++i) {

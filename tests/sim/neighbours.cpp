@@ -168,13 +168,20 @@ TEST_CASE("every pair stands in both lists, and goes on standing there until the
                     }
                 }
                 if (bench.energy.neighbours().builds() == builds) CHECK(bench.energy.neighbours().holds());
-                // What touches is found, however old the list is.
-                std::vector<double> fresh;
+                // What touches is found, however old the list is: far away and back makes a new one.
+                const double energy = bench.evaluate();
                 Bench anew(bench.fabric.scene());
-                CHECK(anew.energy.evaluate(bench.state, fresh) == Approx(bench.evaluate()).epsilon(1e-12));
+                anew.evaluate();
+                for (const std::size_t far : {std::size_t{9}, std::size_t{0}}) {
+                    anew.state = bench.state;
+                    for (std::size_t i = 2; i < anew.state.size(); i += 3)
+                        anew.state[i] += static_cast<double>(far);
+                    CHECK(anew.evaluate() == Approx(energy).epsilon(1e-12));
+                }
+                CHECK(anew.energy.neighbours().builds() == 3);
             }
         },
-        4);
+        20);
 }
 
 TEST_CASE("a yarn does not touch itself within half a turn along it, but beyond") {

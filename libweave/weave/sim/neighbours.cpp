@@ -139,6 +139,7 @@ void Neighbours<Real>::move_halo() {
 
 template <class Real>
 void Neighbours<Real>::build() {
+    if (m_builds == 0) m_first_weight.assign(m_weight.begin(), m_weight.begin() + static_cast<std::ptrdiff_t>(m_own));
     find_halo();
     std::vector<Grid> grids(m_classes.size());
     std::vector<std::vector<std::uint32_t>> members(m_classes.size());
@@ -193,7 +194,8 @@ void Neighbours<Real>::find_halo() {
     move_halo();
 }
 
-/// Whether another sample lies on the same stretch of the same yarn: within half a turn along it.
+/// Whether another sample lies on the same stretch of the same yarn: within half a turn along it. Lengths are those of
+/// the first list: were they of now, the energy would jump whenever a list is made anew.
 template <class Real>
 bool Neighbours<Real>::same_stretch(std::size_t sample, std::uint32_t other) const {
     const std::uint32_t of = own(other);
@@ -217,8 +219,7 @@ bool Neighbours<Real>::same_stretch(std::size_t sample, std::uint32_t other) con
         }
         apart += turns * static_cast<std::int64_t>(place.segments) * constants.samples;
     }
-    const double a = m_weight[sample], b = m_weight[other];
-    const double step = (a + b) / (2 * static_cast<double>(constants.root_k));
+    const double step = (m_first_weight[sample] + m_first_weight[of]) / (2 * static_cast<double>(constants.root_k));
     return std::abs(static_cast<double>(apart)) * step < std::numbers::pi * static_cast<double>(constants.radius_mm);
 }
 
@@ -272,7 +273,7 @@ void Neighbours<Real>::list_neighbours(const std::vector<Grid>& grids) {
 
 template <class Real>
 std::size_t Neighbours<Real>::bytes() const {
-    return (m_x.capacity() * 5 + m_built.capacity()) * sizeof(Real) +
+    return (m_x.capacity() * 5 + m_built.capacity() + m_first_weight.capacity()) * sizeof(Real) +
            (m_segment_of.capacity() + m_first.capacity() + m_others.capacity()) * 4 + m_halo.capacity() * sizeof(HaloSample);
 }
 
