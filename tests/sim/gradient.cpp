@@ -134,8 +134,9 @@ TEST_CASE("stretch and bending pull as their energies say, and curve as their pu
 }
 
 TEST_CASE("contact pulls as its energy says, equal and mixed radii, open ends, frozen points") {
+    std::size_t touching = 0;
     weave::testing::for_all(
-        [](Random& random) {
+        [&](Random& random) {
             SimScene scene = heap(random, random.between(2, 4), random.coin() ? 0.12 : 0.04);
             if (random.coin()) {
                 for (SimYarn& yarn : scene.yarns) {
@@ -143,11 +144,17 @@ TEST_CASE("contact pulls as its energy says, equal and mixed radii, open ends, f
                     for (std::uint8_t& frozen : yarn.frozen) frozen = random.between(0, 3) == 0;
                 }
             }
-            CHECK(gradient_error(scene, {.elastic = false, .contact = true}) < 1e-6);
+            Bench bench(scene);
+            bench.evaluate({.elastic = false, .contact = true});
+            if (greatest(bench.gradient) > 1e-3) {
+                CHECK(gradient_error(scene, {.elastic = false, .contact = true}) < 1e-6);
+                ++touching;
+            }
             CHECK(gradient_error(scene) < 1e-6);
             check_matrices(scene);
         },
-        12);
+        20);
+    CHECK(touching > 10);
 }
 
 TEST_CASE("contact with periodic images pulls as its energy says") {
