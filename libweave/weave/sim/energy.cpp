@@ -67,21 +67,15 @@ void Energy<Real>::gather(std::vector<Real>& gradient) const {
     });
 }
 
-/// Spheres push yarns outwards by ½·K·depth² a control point; gravity by weight.
+/// Spheres push yarns outwards by ½·K·depth² a control point; gravity pulls on every length alike.
 template <class Real>
 double Energy<Real>::add_fields(const std::vector<Real>& state, std::vector<Real>& gradient) const {
     const SimScene& scene = m_fabric.scene();
-    if (scene.fields.empty() && scene.gravity_mm_ms2 == 0) return 0;
-    double energy = 0;
-    for (std::size_t y = 0; y < scene.yarns.size(); ++y) {
-        const YarnPlace& place = m_fabric.yarns()[y];
-        const double heavy = scene.yarns[y].gram_per_mm * scene.gravity_mm_ms2 *
-                             static_cast<double>(m_fabric.constants()[y].rest_mm);
-        for (std::size_t i = 0; i < place.points; ++i) {
-            const std::size_t slot = place.first_slot + 1 + i;
+    double energy = scene.gravity_mm_ms2 == 0 ? 0 : add_weight(state, gradient);
+    if (scene.fields.empty()) return energy;
+    for (const YarnPlace& place : m_fabric.yarns()) {
+        for (std::size_t slot = place.first_slot + 1; slot < place.first_slot + 1 + place.points; ++slot) {
             const Vec<double> at = load(&state[3 * slot]).template cast<double>();
-            energy += heavy * at.z();
-            gradient[3 * slot + 2] += static_cast<Real>(heavy);
             for (const ForceField& field : scene.fields) {
                 const Vec<double> out = at - Vec<double>(field.centre_mm[0], field.centre_mm[1], field.centre_mm[2]);
                 const double distance = out.norm(), depth = field.radius_mm - distance;
@@ -91,6 +85,24 @@ double Energy<Real>::add_fields(const std::vector<Real>& state, std::vector<Real
                 for (std::size_t k = 0; k < 3; ++k)
                     gradient[3 * slot + k] += static_cast<Real>(force[static_cast<Eigen::Index>(k)]);
             }
+        }
+    }
+    return energy;
+}
+
+/// Weight times mean height of each segment, which is ∫ of its four splines: else the tip of a yarn would weigh double.
+template <class Real>
+double Energy<Real>::add_weight(const std::vector<Real>& state, std::vector<Real>& gradient) const {
+    constexpr double shares[]{1.0 / 24, 11.0 / 24, 11.0 / 24, 1.0 / 24};
+    const SimScene& scene = m_fabric.scene();
+    double energy = 0;
+    for (const SegmentPlace& segment : m_fabric.segment_places()) {
+        const double weight = scene.yarns[segment.yarn].gram_per_mm * scene.gravity_mm_ms2 *
+                              static_cast<double>(m_fabric.constants()[segment.yarn].rest_mm);
+        for (std::size_t c = 0; c < 4; ++c) {
+            const std::size_t z = 3 * (segment.slot + c) + 2;
+            energy += weight * shares[c] * static_cast<double>(state[z]);
+            gradient[z] += static_cast<Real>(weight * shares[c]);
         }
     }
     return energy;

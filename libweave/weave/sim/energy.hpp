@@ -37,6 +37,7 @@ class Energy {
     [[nodiscard]] double safe_share_of(const FabricView<Real>& fabric, std::size_t sample, double most) const;
     void gather(std::vector<Real>& gradient) const;
     double add_fields(const std::vector<Real>& state, std::vector<Real>& gradient) const;
+    double add_weight(const std::vector<Real>& state, std::vector<Real>& gradient) const;
 
     const Fabric<Real>& m_fabric;
     const Executor& m_executor;

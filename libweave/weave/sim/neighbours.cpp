@@ -85,7 +85,7 @@ Neighbours<Real>::Neighbours(const Fabric<Real>& fabric, const Executor& executo
     for (const SimYarn& yarn : fabric.scene().yarns) radii.push_back(yarn.radius_mm);
     std::sort(radii.begin(), radii.end());
     for (const double radius : radii) {
-        if (m_classes.empty() || radius > m_classes.back() * class_ratio) m_classes.push_back(radius * class_ratio);
+        if (m_classes.empty() || radius > m_classes.back()) m_classes.push_back(radius * class_ratio);
     }
     // The bound of a class is the greatest radius in it.
     std::vector<double> greatest(m_classes.size(), 0);
@@ -139,6 +139,7 @@ void Neighbours<Real>::move_halo() {
 
 template <class Real>
 void Neighbours<Real>::build() {
+    if (m_builds == 0) m_first_weight.assign(m_weight.begin(), m_weight.begin() + static_cast<std::ptrdiff_t>(m_own));
     find_halo();
     std::vector<Grid> grids(m_classes.size());
     std::vector<std::vector<std::uint32_t>> members(m_classes.size());
@@ -193,7 +194,8 @@ void Neighbours<Real>::find_halo() {
     move_halo();
 }
 
-/// Whether another sample lies on the same stretch of the same yarn: within half a turn along it.
+/// Whether another sample lies on the same stretch of the same yarn: within half a turn along it. Lengths are those of
+/// the first list: were they of now, the energy would jump whenever a list is made anew.
 template <class Real>
 bool Neighbours<Real>::same_stretch(std::size_t sample, std::uint32_t other) const {
     const std::uint32_t of = own(other);
@@ -217,8 +219,7 @@ bool Neighbours<Real>::same_stretch(std::size_t sample, std::uint32_t other) con
         }
         apart += turns * static_cast<std::int64_t>(place.segments) * constants.samples;
     }
-    const double a = m_weight[sample], b = m_weight[other];
-    const double step = (a + b) / (2 * static_cast<double>(constants.root_k));
+    const double step = (m_first_weight[sample] + m_first_weight[of]) / (2 * static_cast<double>(constants.root_k));
     return std::abs(static_cast<double>(apart)) * step < std::numbers::pi * static_cast<double>(constants.radius_mm);
 }
 
@@ -226,22 +227,27 @@ template <class Real>
 template <class Found>
 void Neighbours<Real>::near(const std::vector<Grid>& grids, std::size_t sample, const Found& found) const {
     const double x = m_x[sample], y = m_y[sample], z = m_z[sample], radius = m_radius[sample];
+    const auto look_at = [&](std::uint32_t b) {
+        const double dx = m_x[b] - x, dy = m_y[b] - y, dz = m_z[b] - z, limit = radius + m_radius[b] + m_skin;
+        if (dx * dx + dy * dy + dz * dz < limit * limit && b != sample && !same_stretch(sample, b)) found(b);
+    };
     for (const Grid& grid : grids) {
         const double reach = radius + grid.radius + m_skin;
         const Cell low{grid.cell(x - reach), grid.cell(y - reach), grid.cell(z - reach)},
             high{grid.cell(x + reach), grid.cell(y + reach), grid.cell(z + reach)};
+        // A thick yarn spans more cells of thin ones than there are thin samples: then each of these is looked at.
+        const double cells = double(high[0] - low[0] + 1) * double(high[1] - low[1] + 1) * double(high[2] - low[2] + 1);
+        if (cells > static_cast<double>(grid.samples.size())) {
+            for (const std::uint32_t b : grid.samples) look_at(b);
+            continue;
+        }
         for (std::int32_t i = low[0]; i <= high[0]; ++i) {
             for (std::int32_t j = low[1]; j <= high[1]; ++j) {
                 for (std::int32_t k = low[2]; k <= high[2]; ++k) {
                     const std::uint64_t key = key_of({i, j, k});
                     const std::size_t bucket = mixed(key) & grid.mask;
                     for (std::uint32_t e = grid.first[bucket]; e < grid.first[bucket + 1]; ++e) {
-                        if (grid.keys[e] != key) continue;
-                        const std::uint32_t b = grid.samples[e];
-                        const double dx = m_x[b] - x, dy = m_y[b] - y, dz = m_z[b] - z,
-                                     limit = radius + m_radius[b] + m_skin;
-                        if (dx * dx + dy * dy + dz * dz < limit * limit && b != sample && !same_stretch(sample, b))
-                            found(b);
+                        if (grid.keys[e] == key) look_at(grid.samples[e]);
                     }
                 }
             }
@@ -267,7 +273,7 @@ void Neighbours<Real>::list_neighbours(const std::vector<Grid>& grids) {
 
 template <class Real>
 std::size_t Neighbours<Real>::bytes() const {
-    return (m_x.capacity() * 5 + m_built.capacity()) * sizeof(Real) +
+    return (m_x.capacity() * 5 + m_built.capacity() + m_first_weight.capacity()) * sizeof(Real) +
            (m_segment_of.capacity() + m_first.capacity() + m_others.capacity()) * 4 + m_halo.capacity() * sizeof(HaloSample);
 }
 

@@ -57,6 +57,7 @@ class Neighbours {
     double m_skin;
     std::vector<Real> m_x, m_y, m_z, m_weight, m_radius;
     std::vector<Real> m_built;  ///< places when the list was built, x y z of own samples
+    std::vector<Real> m_first_weight;  ///< of own samples when the first list was made
     std::vector<std::uint32_t> m_segment_of;
     std::vector<std::uint32_t> m_class_of_yarn;
     std::vector<double> m_classes;  ///< greatest radius of each class, rising

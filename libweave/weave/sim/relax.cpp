@@ -64,6 +64,8 @@ class Newton {
         m_value = m_energy.evaluate(m_state, m_gradient);
         while (true) {
             m_result.residual = residual_of(m_gradient);
+            // Rest is judged by the forces of this state: those of a crushed start would hide what is left.
+            if (m_result.residual <= m_options.residual) measure_anew();
             const Progress progress{m_result.iterations, m_result.residual, m_value, seconds_since(m_start)};
             m_result.history.push_back(progress);
             if (m_options.watch && !m_options.watch(progress)) return ended(Ending::stopped);
@@ -82,13 +84,21 @@ class Newton {
         return m_result.reference_N > 0 ? force / m_result.reference_N : 0;
     }
 
+    /// The residual with the reference of this very state.
+    void measure_anew() {
+        if (m_referred != m_result.iterations) renew_reference();
+        m_result.residual = residual_of(m_gradient);
+    }
+
     void renew_reference() {
+        m_referred = m_result.iterations;
         std::vector<Real> gradient = m_gradient;
         m_result.reference_N = reference_force(m_energy, m_state);
         m_energy.evaluate(m_state, gradient);
     }
 
     RelaxResult ended(Ending ending) {
+        measure_anew();
         m_result.ending = ending;
         m_result.energy = m_value;
         m_result.evaluations = m_energy.evaluations();
@@ -241,6 +251,7 @@ class Newton {
     std::vector<float> m_scale;
     double m_value = 0, m_damping = 1e-3, m_exact_damping = 0, m_damped = 0;
     int m_convex_steps = 0;
+    std::size_t m_referred = 0;  ///< iteration whose state the reference force is of
     RelaxResult m_result;
     std::chrono::steady_clock::time_point m_start = std::chrono::steady_clock::now();
 };
