@@ -109,6 +109,7 @@ class Planner {
         m_plan.points_per_key = m_request.points_per_key.value_or(resolution.points_per_key);
         m_plan.scene.sample_spacing = m_request.sample_spacing.value_or(resolution.sample_spacing);
         WEAVE_CHECK_OK(check_request());
+        WEAVE_CHECK_OK(check_terms());
         WEAVE_CHECK_OK(lay_curves());
         set_boundaries();
         for (std::size_t c = 0; c < m_plan.curves.yarns.size(); ++c) add_yarn(c);
@@ -128,6 +129,12 @@ class Planner {
             return Error{ErrorCode::usage, "points per crossing must be from 1 to 64", {}};
         if (!(m_plan.scene.sample_spacing > 0 && m_plan.scene.sample_spacing <= 0.45))
             return Error{ErrorCode::usage, "sample spacing must be above 0 and at most 0.45 of two radii", {}};
+        return {};
+    }
+
+    /// Better no answer than one that leaves out what the scene asks for.
+    [[nodiscard]] Status check_terms() const {
+        if (m_design.scene.friction > 0) return invalid("friction is not simulated yet: set it to 0", "scene.friction");
         return {};
     }
 
@@ -248,7 +255,7 @@ class Planner {
         tell("radii", std::to_string(radii.size()), radii.size() == 1 ? "one grid of contact samples" : "a grid for each class of radii");
         tell("fields", scene.fields.empty() ? "off" : std::to_string(scene.fields.size()), scene.fields.empty() ? "the scene has none" : "as the scene says");
         tell("gravity", scene.gravity ? "on" : "off", "as the scene says");
-        tell("friction", scene.friction > 0 ? "on" : "off", scene.friction > 0 ? "as the scene says" : "its coefficient is 0");
+        tell("friction", "off", "its coefficient is 0");
     }
 
     const Design& m_design;
