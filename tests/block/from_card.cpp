@@ -3,8 +3,8 @@
 #include <weave/block/preset.hpp>
 
 #include <array>
+#include <cstdio>
 #include <block/brute.hpp>
-#include <regex>
 #include <set>
 #include <support/random.hpp>
 
@@ -50,14 +50,16 @@ bool admits_order(const CardImage& card, std::size_t first_pick, std::size_t pic
 
 /// The four numbers of the message, from 0: pick over end 1, under end 2; other pick.
 std::array<std::size_t, 4> named_in(const std::string& message) {
-    static const std::regex shape(
-        R"(no order fits: pick (\d+) lies over end (\d+) and under end (\d+), but pick (\d+) under end (\d+) and over end (\d+))");
-    std::smatch found;
-    REQUIRE(std::regex_match(message, found, shape));
-    REQUIRE(found[2] == found[5]);
-    REQUIRE(found[3] == found[6]);
-    return {std::stoul(found[1]) - 1, std::stoul(found[4]) - 1, std::stoul(found[2]) - 1,
-            std::stoul(found[3]) - 1};
+    std::size_t pick = 0, over = 0, under = 0, other = 0, under_again = 0, over_again = 0;
+    int read = 0;
+    std::sscanf(message.c_str(),
+                "no order fits: pick %zu lies over end %zu and under end %zu, but pick %zu under end %zu and over end "
+                "%zu%n",
+                &pick, &over, &under, &other, &under_again, &over_again, &read);
+    REQUIRE(static_cast<std::size_t>(read) == message.size());
+    REQUIRE(over == under_again);
+    REQUIRE(under == over_again);
+    return {pick - 1, other - 1, over - 1, under - 1};
 }
 
 std::size_t place_of(const std::vector<Grouping>& groupings, const Block& truth) {
