@@ -4,6 +4,7 @@
 #include <weave/design/design.hpp>
 #include <weave/design/evaluate.hpp>
 #include <weave/io/bitmap.hpp>
+#include <weave/sim/yarns.hpp>
 
 #include <CLI/CLI.hpp>
 
@@ -63,6 +64,9 @@ Result<Cloth> load_cloth(Program& program, const std::string& file);
 Status save_cloth(Program& program, const Design& design, const std::string& file, const std::string& sources,
                   const std::vector<std::string>& warnings = {});
 
+/// Relaxed yarns from a file.
+Result<Yarns> load_yarns(const std::string& file);
+
 /// The first of the options below that was given, such as `--lifted`; empty if none was.
 std::string given_reading_option(const CLI::App* command);
 
@@ -75,5 +79,6 @@ void add_make_commands(CLI::App& app,
 void add_import_command(CLI::App& app, Program& program);  // import
 void add_look_commands(CLI::App& app, Program& program);   // info, card, render
 void add_loom_commands(CLI::App& app, Program& program);   // check, export
+void add_simulation_commands(CLI::App& app, Program& program);  // simulate, export-yarns
 
 }  // namespace weave::program

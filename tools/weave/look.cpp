@@ -8,6 +8,7 @@
 #include <weave/design/document.hpp>
 #include <weave/io/bitmap.hpp>
 #include <weave/io/wif.hpp>
+#include <weave/picture/cloth_view.hpp>
 #include <weave/picture/picture.hpp>
 
 #include <algorithm>
@@ -142,10 +143,23 @@ struct Rendering {
     std::string file, view, out;
     bool trim = false;
     std::optional<std::size_t> from_pick, from_end;
+    ClothWords cloth;  ///< how relaxed cloth is looked at
 };
 
+Status render_cloth(Program& program, const Rendering& wish) {
+    WEAVE_TRY(ClothView view, parse_cloth_view(wish.cloth));
+    WEAVE_TRY(view.format, picture_format_of(wish.out));
+    WEAVE_TRY(const Yarns yarns, load_yarns(wish.file));
+    const Progress progress("drawing " + wish.out);
+    WEAVE_TRY(const std::string bytes, draw_cloth(yarns, view));
+    WEAVE_CHECK_OK(write_file(wish.out, bytes));
+    program.answer({{"file", wish.out}, {"view", "3d"}, {"bytes", bytes.size()}}, on_one_line(wish.out) + ": 3d\n");
+    return {};
+}
+
 Status render(Program& program, const Rendering& wish) {
-    const auto& [file, view, out, trim, from_pick, from_end] = wish;
+    if (wish.view == "3d") return render_cloth(program, wish);
+    const auto& [file, view, out, trim, from_pick, from_end, cloth_words] = wish;
     WEAVE_TRY(const PictureFormat format, picture_format_of(out));
     WEAVE_TRY(const Cloth cloth, load_cloth(program, file));
     const Progress progress("drawing " + out);
@@ -163,10 +177,10 @@ void add_render(CLI::App& app, Program& program) {
     CLI::App* command = add_command(app, program, "render",
                                     "Draw a design: card, face, back, floats, layers, slices, or the block");
     const auto wish = std::make_shared<Rendering>();
-    command->add_option("FILE", wish->file, "the .weave file")->required();
+    command->add_option("FILE", wish->file, "the .weave file; for 3d the .yarns file of `weave simulate`")->required();
     command
         ->add_option("--view", wish->view,
-                     "card, face, back, floats, layers, weft:N, warp:N (pick or end N, from 1) or block")
+                     "card, face, back, floats, layers, weft:N, warp:N (pick or end N, from 1), block or 3d")
         ->type_name("VIEW")
         ->required();
     command->add_flag("--trim", wish->trim, "leave out yarns that are loose on purpose");
@@ -176,6 +190,14 @@ void add_render(CLI::App& app, Program& program) {
         ->type_name("N");
     command->add_option("--from-end", wish->from_end, "for weft:N and block: begin at this end")
         ->type_name("N");
+    command->add_option("--side", wish->cloth.side, "3d: top, bottom, front, back, left, right, corner, or AZIMUTH,ELEVATION")
+        ->type_name("SIDE");
+    command->add_option("--cut", wish->cloth.cut, "3d: cut away what lies before a plane: x=N, y=N or z=N in mm, or PX,PY,PZ:NX,NY,NZ")
+        ->type_name("PLANE");
+    command->add_option("--colour", wish->cloth.colour, "3d: yarn, strain, contact or moved")->type_name("WORD");
+    command->add_option("--repeat", wish->cloth.repeat, "3d: NxM periodic pieces side by side")->type_name("NxM");
+    command->add_option("--size", wish->cloth.size, "3d: WIDTHxHEIGHT in pixels")->type_name("WxH");
+    command->add_flag("--perspective", wish->cloth.perspective, "3d: a mild perspective");
     command->add_option("-o,--out", wish->out, "the picture to write: .png or .svg")
         ->type_name("FILE")
         ->required();

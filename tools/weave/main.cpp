@@ -1,8 +1,8 @@
 // The command-line program `weave`: from slices, presets, card images and WIF to one validated card image.
 
 #include "command.hpp"
+#include "interrupt.hpp"
 
-#include <weave/core/file.hpp>
 #include <weave/core/log.hpp>
 #include <weave/core/text.hpp>
 
@@ -12,7 +12,6 @@
 #include <new>
 #include <string>
 #include <string_view>
-#include <thread>
 #include <vector>
 
 namespace {
@@ -45,32 +44,12 @@ void tell(weave::LogLevel level, std::string_view message) {
     if (level != weave::LogLevel::debug) std::cerr << "weave: " << weave::on_one_line(message) << '\n';
 }
 
-/// Whoever ends the program by a signal finds no half-written file. A signal that was to be ignored (nohup)
-/// still is.
-void tidy_up_when_ended() {
-    sigset_t ending;
-    sigemptyset(&ending);
-    for (const int signal : {SIGINT, SIGTERM, SIGHUP}) {
-        struct sigaction now {};
-        if (sigaction(signal, nullptr, &now) == 0 && now.sa_handler != SIG_IGN) sigaddset(&ending, signal);
-    }
-    pthread_sigmask(SIG_BLOCK, &ending, nullptr);  // here, and in every thread from now on
-    std::thread([ending] {
-        int signal = 0;
-        if (sigwait(&ending, &signal) != 0) return;
-        weave::drop_unfinished_writes();
-        std::signal(signal, SIG_DFL);
-        pthread_sigmask(SIG_UNBLOCK, &ending, nullptr);
-        std::raise(signal);  // so that the caller learns what ended us
-    }).detach();
-}
-
 }  // namespace
 
 int main(int count, char** words) {
     std::signal(SIGXFSZ,
                 SIG_IGN);  // a file past the limit is an error to tell and tidy up after, not our end
-    tidy_up_when_ended();
+    weave::program::tidy_up_when_ended();
     weave::set_log_sink(tell);
     weave::program::Program program;
     CLI::App app(about, "weave");
@@ -84,6 +63,7 @@ int main(int count, char** words) {
     weave::program::add_import_command(app, program);
     weave::program::add_look_commands(app, program);
     weave::program::add_loom_commands(app, program);
+    weave::program::add_simulation_commands(app, program);
     app.footer("'weave COMMAND --help' tells what a command takes.\n" + std::string(endings));
     try {
         app.parse(count, words);

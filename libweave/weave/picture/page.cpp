@@ -6,7 +6,8 @@ namespace weave {
 
 namespace {
 
-constexpr double swatch_side = 12, swatch_gap = 18, row_height = 20, title_size = 16, small_size = 11.5;
+constexpr double swatch_side = 12, swatch_gap = 18, row_height = 20;
+constexpr double small_size = Page::small_size;
 
 double swatch_width(const Swatch& swatch) {
     return swatch_side + 6 + Canvas::text_width(swatch.text, small_size) + swatch_gap;
@@ -51,6 +52,11 @@ void draw_legend(Canvas& canvas, const std::vector<LegendRow>& rows, double left
 }  // namespace
 
 Result<Page> Page::open(const Subject& subject, const PageText& text, double body_width, double body_height) {
+    return open(subject.format, text, body_width, body_height, subject.marks);
+}
+
+Result<Page> Page::open(PictureFormat format, const PageText& text, double body_width, double body_height,
+                        std::vector<Mark>* marks) {
     double width = std::max({body_width, 300.0, Canvas::text_width(text.title, title_size, true),
                              Canvas::text_width(text.subtitle, small_size)});
     for (const std::string& note : text.notes) width = std::max(width, Canvas::text_width(note, small_size));
@@ -63,8 +69,8 @@ Result<Page> Page::open(const Subject& subject, const PageText& text, double bod
     const double words =
         row_height * static_cast<double>(legend.size()) + 17 * static_cast<double>(text.notes.size());
     const double bottom = body_top + body_height + (words > 0 ? 18 + words : 0);
-    WEAVE_TRY(Canvas canvas, Canvas::make(subject.format, width + 2 * margin, bottom + margin));
-    canvas.list_marks(subject.marks);
+    WEAVE_TRY(Canvas canvas, Canvas::make(format, width + 2 * margin, bottom + margin));
+    canvas.list_marks(marks);
     canvas.text({margin, margin + 15}, text.title,
                 {.size = title_size, .colour = {0x11, 0x11, 0x11}, .bold = true});
     canvas.text({margin, margin + 34}, text.subtitle, {.size = small_size, .colour = {0x60, 0x60, 0x60}});

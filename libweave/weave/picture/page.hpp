@@ -39,9 +39,13 @@ struct PageText {
 struct Page {
     /// White rim of every page, and where its body begins, in pixels.
     static constexpr double margin = 24, body_top = 74;
+    /// Sizes of the title's letters and of all others.
+    static constexpr double title_size = 16, small_size = 11.5;
     /// Body of this size; the page is made wide enough for its words.
     static Result<Page> open(const Subject& subject, const PageText& text, double body_width,
                              double body_height);
+    static Result<Page> open(PictureFormat format, const PageText& text, double body_width, double body_height,
+                             std::vector<Mark>* marks = nullptr);
     Canvas canvas;
     Rectangle body;
 };

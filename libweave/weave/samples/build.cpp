@@ -89,6 +89,15 @@ YarnType yarn(std::string name, std::string_view shade, double radius_mm, double
     return type;
 }
 
+YarnType roving(std::string name, std::string_view shade, double radius_mm, double tex) {
+    // Glass or carbon, untwisted. Its filaments lie wavy in it: at weaving tension the first percent of strain only
+    // straightens them, so it is far softer than its material, and it slides on itself when it bends. It is packed
+    // hard, so that it gives way to other yarns less than cotton does.
+    YarnType type = yarn(std::move(name), shade, radius_mm, tex, 2 * tex, 5e-4 * tex);
+    type.contact_stiffness_N_mm2 = 20;
+    return type;
+}
+
 YarnType cotton(std::string name, std::string_view shade, double radius_mm, double tex) {
     // A spun cotton yarn stretches about 6 % at 0.15 N/tex; its fibres slide, so it bends far softer than a
     // rod.

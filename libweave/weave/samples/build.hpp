@@ -75,6 +75,7 @@ NodePtr renumbered(std::string of, std::size_t row, std::vector<std::size_t> ord
 /// A kind of yarn whose stiffness follows from what it is made of.
 YarnType yarn(std::string name, std::string_view colour, double radius_mm, double tex, double stretch_N,
               double bend_N_mm2);
+YarnType roving(std::string name, std::string_view shade, double radius_mm, double tex);
 YarnType cotton(std::string name, std::string_view colour, double radius_mm = 0.12, double tex = 30);
 Colour colour(std::string_view text);
 

@@ -52,9 +52,8 @@ void add_slices(Design& design, const std::string& name, std::size_t rows, std::
 }
 
 Design composite(std::string title, std::string notes) {
-    // Glass rovings: stiff, untwisted, hardly any stretch.
-    Design design = cloth(std::move(title), std::move(notes), yarn("binder", "#e08a2c", 0.2, 200, 9000, 0.6),
-                          yarn("filling", "#8f959b", 0.25, 300, 13000, 0.9));
+    Design design = cloth(std::move(title), std::move(notes), roving("binder", "#e08a2c", 0.2, 200),
+                          roving("filling", "#8f959b", 0.25, 300));
     design.warp.density_ends_per_cm = 20;
     design.weft.density_picks_per_cm = 8;
     return design;
@@ -168,7 +167,7 @@ Design angle_interlock_b() {
         composite("Angle interlock B",
                   "Three levels of wefts, binders on a slant from face to face, and beside each binder two "
                   "straight stuffer ends, one between the lower and one between the upper two levels.");
-    design.warp.yarns.push_back(yarn("stuffer", "#3f6fb0", 0.25, 300, 13000, 0.9));
+    design.warp.yarns.push_back(roving("stuffer", "#3f6fb0", 0.25, 300));
     design.warp.order.once = {1, 1, 0};
     design.warp.beams = {{"binders"}, {"stuffers"}};
     design.warp.beam_order.once = {1, 1, 0};
@@ -184,7 +183,7 @@ Design orthogonal() {
         composite("Orthogonal",
                   "Four levels of wefts and three straight stuffer ends between them; a binder stands "
                   "upright between its turns over the top and under the bottom weft.");
-    design.warp.yarns.push_back(yarn("stuffer", "#3f6fb0", 0.25, 300, 13000, 0.9));
+    design.warp.yarns.push_back(roving("stuffer", "#3f6fb0", 0.25, 300));
     design.warp.order.once = {1, 1, 1, 0};
     design.warp.beams = {{"stuffers"}, {"binders"}};
     design.warp.beam_order.once = {0, 0, 0, 1};

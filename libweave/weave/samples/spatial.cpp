@@ -33,8 +33,8 @@ Design hexagon_tubes() {
         "to hexagons: first layers 1 and 2, and 3 and 4, are one wall each, then 2 and 3. The "
         "outermost wefts are pinned, which stands for whatever keeps the cloth from collapsing under "
         "warp tension. The paper shows its section; the weave was built from that description.",
-        yarn("glass warp", "#e08a2c", 0.15, 136, 6000, 0.3),
-        yarn("glass weft", "#8f959b", 0.2, 200, 9000, 0.6));
+        roving("glass warp", "#e08a2c", 0.15, 136),
+        roving("glass weft", "#8f959b", 0.2, 200));
     design.warp.beams = {{"layer 1"}, {"layer 2"}, {"layer 3"}, {"layer 4"}};
     design.warp.beam_order.once = {0, 1, 2, 3};
     design.warp.colour_order.once = {0, 1, 2, 3};
@@ -252,8 +252,8 @@ Design i_beam() {
         "first and last pick run out to the left edge. Each flange has a shuttle of its own, or its edges "
         "would be tied to the other flange, and its picks go in between those of the web where their turns "
         "do not catch the web's. Built after figure 14; the paper prints its card too small to be read.",
-        yarn("carbon warp", "#e08a2c", 0.25, 200, 26000, 1.5),
-        yarn("carbon weft", "#8f959b", 0.25, 200, 26000, 1.5));
+        roving("carbon warp", "#e08a2c", 0.25, 200),
+        roving("carbon weft", "#8f959b", 0.25, 200));
     design.warp.beams = {{"flanges"}, {"web"}};
     design.warp.beam_order.once = {0, 0, 0, 0, 1, 1, 1, 1, 1, 0, 0, 0, 0};
     design.warp.colours = {colour("#7d3c98")};

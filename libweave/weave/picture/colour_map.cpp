@@ -1,0 +1,23 @@
+#include <weave/picture/canvas.hpp>
+#include <weave/picture/colour_map.hpp>
+
+#include <algorithm>
+#include <cmath>
+#include <iterator>
+
+namespace weave {
+
+Colour map_colour(double share) {
+    // Seventeen evenly spaced colours of the map; between them a straight mix is within two steps of 255.
+    static constexpr Colour stops[]{
+        {0x44, 0x01, 0x54}, {0x48, 0x18, 0x6a}, {0x47, 0x2d, 0x7b}, {0x42, 0x40, 0x86}, {0x3b, 0x52, 0x8b},
+        {0x33, 0x63, 0x8d}, {0x2c, 0x72, 0x8e}, {0x26, 0x82, 0x8e}, {0x21, 0x91, 0x8c}, {0x1f, 0xa0, 0x88},
+        {0x28, 0xae, 0x80}, {0x3f, 0xbc, 0x73}, {0x5e, 0xc9, 0x62}, {0x84, 0xd4, 0x4b}, {0xad, 0xdc, 0x30},
+        {0xd8, 0xe2, 0x19}, {0xfd, 0xe7, 0x25}};
+    constexpr auto last = std::size(stops) - 1;
+    const double at = std::clamp(share, 0.0, 1.0) * static_cast<double>(last);
+    const auto stop = std::min(static_cast<std::size_t>(at), last - 1);
+    return mix(stops[stop], stops[stop + 1], at - static_cast<double>(stop));
+}
+
+}  // namespace weave

@@ -1,0 +1,83 @@
+#pragma once
+
+#include <weave/sim/execute.hpp>
+
+#include <Eigen/Core>
+
+#include <cstddef>
+#include <cstdint>
+#include <span>
+#include <vector>
+
+namespace weave::sim {
+
+/// A symmetric sparse matrix of 3×3 blocks, both halves stored. Entries are float: they only shape steps, whose goal is
+/// judged in double, and half the bytes are twice the speed.
+class BlockMatrix {
+  public:
+    using Block = Eigen::Matrix<float, 3, 3>;
+
+    /// `first` has one entry more than there are rows; the columns of a row rise.
+    void shape(std::vector<std::uint32_t> first, std::vector<std::uint32_t> columns);
+    void clear_values();
+
+    [[nodiscard]] std::size_t rows() const { return m_first.empty() ? 0 : m_first.size() - 1; }
+    [[nodiscard]] std::size_t blocks() const { return m_columns.size(); }
+    [[nodiscard]] std::uint32_t first(std::size_t row) const { return m_first[row]; }
+    [[nodiscard]] std::uint32_t column(std::size_t at) const { return m_columns[at]; }
+    [[nodiscard]] float* value(std::size_t at) { return &m_values[9 * at]; }
+    [[nodiscard]] const float* value(std::size_t at) const { return &m_values[9 * at]; }
+    [[nodiscard]] std::uint32_t diagonal(std::size_t row) const { return m_diagonal[row]; }
+    /// Where the block of a row and column lies; it must be part of the shape.
+    [[nodiscard]] std::size_t find(std::uint32_t row, std::uint32_t column) const;
+    [[nodiscard]] std::size_t bytes() const { return m_values.capacity() * 4 + m_columns.capacity() * 4 + m_first.capacity() * 8; }
+
+    /// result = A·x, 3 numbers a row.
+    void multiply(const Executor& executor, const std::vector<double>& x, std::vector<double>& result) const;
+
+  private:
+    std::vector<std::uint32_t> m_first, m_columns, m_diagonal;
+    std::vector<float> m_values;  ///< 9 a block, column by column
+};
+
+/// A·x ≈ b made easy: a positive definite matrix near A whose inverse is cheap.
+class Preconditioner {
+  public:
+    virtual ~Preconditioner() = default;
+    virtual void apply(const std::vector<double>& residual, std::vector<double>& step) = 0;
+};
+
+/// Incomplete block Cholesky without fill: L·D·Lᵀ on the shape of A. Along each yarn the matrix is a band, which it
+/// solves exactly; contacts are met as far as the shape goes.
+class IncompleteCholesky : public Preconditioner {
+  public:
+    /// Factors A; a pivot that is not positive definite is lifted until it is.
+    void factor(const BlockMatrix& matrix);
+    void apply(const std::vector<double>& residual, std::vector<double>& step) override;
+    [[nodiscard]] std::size_t lifted() const { return m_lifted; }
+
+  private:
+    void factor_row(const BlockMatrix& matrix, std::size_t row, std::vector<std::int32_t>& place);
+    void invert_pivot(std::size_t row, Eigen::Matrix3d pivot);
+
+    std::vector<std::uint32_t> m_first, m_columns;  ///< strictly lower half
+    std::vector<float> m_lower;                     ///< L, 9 a block
+    std::vector<float> m_pivot, m_inverse;          ///< D and its inverse
+    std::size_t m_lifted = 0;
+};
+
+/// How a run of conjugate gradients ended.
+struct CgResult {
+    std::size_t iterations = 0;
+    bool negative = false;   ///< met a direction in which A does not curve upwards
+    double relative = 0;     ///< |b - A·x| / |b|
+    std::vector<double> negative_direction;  ///< of that curvature
+};
+
+/// Conjugate gradients for A·x = b from x = 0, until the residual has fallen to `tolerance` of |b|. Where a direction
+/// of negative curvature comes up the run ends with the best x so far (b itself, preconditioned, if it is the first).
+CgResult conjugate_gradients(const Executor& executor, const BlockMatrix& matrix, Preconditioner& preconditioner,
+                             const std::vector<double>& b, double tolerance, std::size_t most_iterations,
+                             std::vector<double>& x);
+
+}  // namespace weave::sim

@@ -1,0 +1,299 @@
+#pragma once
+
+// The arithmetic of the simulator as small bodies over views: no containers, no allocation, no globals. A backend runs
+// a body once for every index of its range, in any order; no two indices write the same place. The same bodies run on
+// the CPU and, compiled by nvcc, on a GPU.
+
+#include <Eigen/Core>
+
+#include <cmath>
+#include <cstddef>
+#include <cstdint>
+
+#if defined(__CUDACC__)
+#define WEAVE_HD __host__ __device__
+#else
+#define WEAVE_HD
+#endif
+
+namespace weave::sim {
+
+template <class Real>
+using Vec = Eigen::Matrix<Real, 3, 1>;
+template <class Real>
+using Mat = Eigen::Matrix<Real, 3, 3>;
+
+/// Values of the four cubic B-splines that reach a segment, and of their first and second derivatives.
+template <class Real>
+struct Basis {
+    Real value[4], slope[4], bend[4];
+};
+
+/// At `s` from 0 to 1 within the segment.
+template <class Real>
+WEAVE_HD inline Basis<Real> basis_at(Real s) {
+    const Real r = 1 - s, sixth = Real(1) / 6;
+    return {{r * r * r * sixth, (3 * s * s * s - 6 * s * s + 4) * sixth,
+             (-3 * s * s * s + 3 * s * s + 3 * s + 1) * sixth, s * s * s * sixth},
+            {-r * r / 2, (3 * s * s - 4 * s) / 2, (-3 * s * s + 2 * s + 1) / 2, s * s / 2},
+            {r, 3 * s - 2, 1 - 3 * s, s}};
+}
+
+/// Four Gauss points of [0, 1]: exact for the stretch of any cubic.
+inline constexpr std::size_t gauss_points = 4;
+template <class Real>
+struct Gauss {
+    Basis<Real> basis[gauss_points];
+    Real weight[gauss_points];
+};
+
+/// How a yarn resists being stretched.
+enum class Supply : std::uint8_t {
+    tension,  ///< fed at constant tension: the rest length follows (paper, section 5.1)
+    length,   ///< a fixed length of yarn
+};
+
+/// Constants of one yarn.
+template <class Real>
+struct YarnConstants {
+    Real radius_mm;
+    Real stretch_N;    ///< EA
+    Real bending;      ///< EI, N·mm²
+    Real tension_N;    ///< EA (S - 1); of balanced yarns
+    Real evenness_N;   ///< EA·S: keeps a balanced yarn's parameter even
+    Real rest_mm;      ///< rest length of one segment; of yarns of fixed length
+    Real root_k;       ///< square root of the contact stiffness, N^½/mm
+    Supply supply;
+    std::uint32_t samples;  ///< contact samples of one segment
+    std::uint32_t basis;    ///< where its sample bases begin
+};
+
+/// Where a segment's data lies: its four control slots follow one another, so do its samples.
+struct SegmentPlace {
+    std::uint32_t slot, yarn, sample;
+};
+
+/// Contact samples, own ones first, then the halo: periodic images (or, later, those of other ranks).
+template <class Real>
+struct SamplesView {
+    Real *x, *y, *z;
+    Real* weight;  ///< √k · arc length that the sample stands for
+    Real* radius;
+};
+
+/// Everything that the bodies read and write.
+template <class Real>
+struct FabricView {
+    const Real* place;  ///< of slot i at 3i
+    const SegmentPlace* segments;
+    const YarnConstants<Real>* yarns;
+    const Basis<Real>* bases;
+    const Gauss<Real>* gauss;
+    SamplesView<Real> samples;
+    const std::uint32_t* first_neighbour;  ///< per own sample, and one more
+    const std::uint32_t* neighbours;       ///< indices of samples
+    Real floor;                            ///< least (d/D)² of the contact law; below it goes on linearly
+};
+
+template <class Real>
+WEAVE_HD inline Vec<Real> load(const Real* at) {
+    return {at[0], at[1], at[2]};
+}
+
+template <class Real>
+WEAVE_HD inline Vec<Real> combine(const Real (&weights)[4], const Real* slots) {
+    return weights[0] * load(slots) + weights[1] * load(slots + 3) + weights[2] * load(slots + 6) +
+           weights[3] * load(slots + 9);
+}
+
+/// Lays the contact samples of one segment.
+template <class Real>
+struct PlaceSamples {
+    FabricView<Real> fabric;
+
+    WEAVE_HD void operator()(std::size_t index) const {
+        const SegmentPlace segment = fabric.segments[index];
+        const YarnConstants<Real>& yarn = fabric.yarns[segment.yarn];
+        const Real* slots = fabric.place + 3 * std::size_t(segment.slot);
+        const Real share = yarn.root_k / Real(yarn.samples);
+        for (std::uint32_t k = 0; k < yarn.samples; ++k) {
+            const Basis<Real>& basis = fabric.bases[yarn.basis + k];
+            const Vec<Real> at = combine(basis.value, slots);
+            const std::size_t sample = segment.sample + k;
+            fabric.samples.x[sample] = at.x();
+            fabric.samples.y[sample] = at.y();
+            fabric.samples.z[sample] = at.z();
+            fabric.samples.weight[sample] = share * combine(basis.slope, slots).norm();
+        }
+    }
+};
+
+/// The contact law f as a function of s = (d/D)²: f = 1/s + s - 2 below 1 (Kaldor 2008), 0 beyond, and linear below the
+/// floor, where yarns lie almost in one another.
+template <class Real>
+struct ContactLaw {
+    Real value, slope, bend;  ///< f, df/ds, d²f/ds²
+
+    WEAVE_HD static ContactLaw at(Real s, Real floor) {
+        if (s >= 1) return {0, 0, 0};
+        const Real c = s > floor ? s : floor, inverse = 1 / c;
+        const Real slope = 1 - inverse * inverse;
+        if (s > floor) return {inverse + s - 2, slope, 2 * inverse * inverse * inverse};
+        return {inverse + c - 2 + slope * (s - c), slope, 0};
+    }
+};
+
+/// What the neighbours of a sample do to it.
+template <class Real>
+struct ContactSum {
+    Real spread = 0;            ///< Σ w_b f
+    Real fx = 0, fy = 0, fz = 0;  ///< Σ w_b ∂f/∂y
+};
+
+template <class Real>
+WEAVE_HD inline ContactSum<Real> contact_of(const FabricView<Real>& fabric, std::size_t sample) {
+    const SamplesView<Real>& all = fabric.samples;
+    const Real x = all.x[sample], y = all.y[sample], z = all.z[sample], radius = all.radius[sample];
+    const std::uint32_t *at = fabric.neighbours + fabric.first_neighbour[sample],
+                        *end = fabric.neighbours + fabric.first_neighbour[sample + 1];
+    ContactSum<Real> sum;
+    for (; at != end; ++at) {
+        const std::uint32_t b = *at;
+        const Real dx = x - all.x[b], dy = y - all.y[b], dz = z - all.z[b], reach = radius + all.radius[b];
+        const Real square = dx * dx + dy * dy + dz * dz, limit = reach * reach;
+        if (square >= limit) continue;
+        const Real inverse = 1 / limit;
+        const ContactLaw<Real> law = ContactLaw<Real>::at(square * inverse, fabric.floor);
+        const Real weight = all.weight[b], pull = 2 * weight * law.slope * inverse;
+        sum.spread += weight * law.value;
+        sum.fx += pull * dx;
+        sum.fy += pull * dy;
+        sum.fz += pull * dz;
+    }
+    return sum;
+}
+
+/// Energy of one segment and its gradient by the four slots.
+template <class Real>
+struct SegmentSum {
+    Real energy = 0;
+    Real gradient[12] = {};
+
+    WEAVE_HD void add(const Real (&weights)[4], const Vec<Real>& force) {
+        for (int c = 0; c < 4; ++c) {
+            for (int k = 0; k < 3; ++k) gradient[3 * c + k] += weights[c] * force[k];
+        }
+    }
+};
+
+/// Length of a segment and the mean square of its speed |y'|.
+template <class Real>
+struct Speeds {
+    Real speed[gauss_points];
+    Vec<Real> tangent[gauss_points];
+    Real length = 0, square = 0;
+
+    WEAVE_HD Speeds(const Gauss<Real>& gauss, const Real* slots) {
+        for (std::size_t g = 0; g < gauss_points; ++g) {
+            tangent[g] = combine(gauss.basis[g].slope, slots);
+            speed[g] = tangent[g].norm();
+            length += gauss.weight[g] * speed[g];
+            square += gauss.weight[g] * speed[g] * speed[g];
+        }
+    }
+};
+
+/// No tangent counts as shorter than this share of the yarn's radius a segment: bending would divide by nothing.
+template <class Real>
+WEAVE_HD inline Real guarded(Real speed, const YarnConstants<Real>& yarn) {
+    const Real least = Real(1e-3) * yarn.radius_mm;
+    return speed > least ? speed : least;
+}
+
+/// Stretch. Fixed length: ½·EA·L ∫(|y'|/L - 1)² ds. Constant tension: T·l + ½·EA·S ∫(|y'| - l)²/l ds, whose
+/// stationary points are those of the paper's balanced strain L = l/S (section 5.1).
+template <class Real>
+WEAVE_HD inline void add_stretch(const YarnConstants<Real>& yarn, const Gauss<Real>& gauss,
+                                 const Speeds<Real>& speeds, SegmentSum<Real>& sum) {
+    const bool fed = yarn.supply == Supply::tension;
+    const Real length = guarded(speeds.length, yarn), ratio = speeds.square / (length * length);
+    if (fed) {
+        sum.energy += yarn.tension_N * speeds.length +
+                      yarn.evenness_N * (speeds.square / length - length) / 2;
+    }
+    for (std::size_t g = 0; g < gauss_points; ++g) {
+        const Real speed = speeds.speed[g], over = speed - yarn.rest_mm;
+        const Real pull =
+            fed ? yarn.tension_N + yarn.evenness_N * (speed / length - (ratio + 1) / 2)
+                : yarn.stretch_N * over / yarn.rest_mm;
+        if (!fed) sum.energy += gauss.weight[g] * yarn.stretch_N * over * over / (2 * yarn.rest_mm);
+        sum.add(gauss.basis[g].slope, speeds.tangent[g] * (gauss.weight[g] * pull / guarded(speed, yarn)));
+    }
+}
+
+/// Bending: ½·EI ∫κ² dl with κ² = |y'×y''|²/|y'|⁶; straight at rest.
+template <class Real>
+WEAVE_HD inline void add_bending(const YarnConstants<Real>& yarn, const Gauss<Real>& gauss, const Real* slots,
+                                 const Speeds<Real>& speeds, SegmentSum<Real>& sum) {
+    for (std::size_t g = 0; g < gauss_points; ++g) {
+        const Vec<Real> tangent = speeds.tangent[g], bend = combine(gauss.basis[g].bend, slots);
+        const Real speed = guarded(speeds.speed[g], yarn), square = speed * speed;
+        const Real scale = gauss.weight[g] * yarn.bending / (2 * square * square * speed);
+        const Real along = tangent.dot(bend), own = tangent.squaredNorm(), bent = bend.squaredNorm();
+        const Real twist = own * bent - along * along;  // |y' × y''|²
+        sum.energy += scale * twist;
+        sum.add(gauss.basis[g].bend, (own * bend - along * tangent) * (2 * scale));
+        const Real fall = speeds.speed[g] >= speed ? 5 * twist / square : Real(0);
+        sum.add(gauss.basis[g].slope, (tangent * (2 * bent - fall) - bend * (2 * along)) * scale);
+    }
+}
+
+/// Contact: k ∬ f(d/D) dl dl over current arc length, both derivatives: by place and by arc length. Every pair is seen
+/// from both sides, so each side counts half the energy and the whole of its own force.
+template <class Real>
+WEAVE_HD inline void add_contact(const FabricView<Real>& fabric, const SegmentPlace& segment,
+                                 const YarnConstants<Real>& yarn, const Real* slots, SegmentSum<Real>& sum) {
+    const Real share = yarn.root_k / Real(yarn.samples);
+    for (std::uint32_t k = 0; k < yarn.samples; ++k) {
+        const std::size_t sample = segment.sample + k;
+        const ContactSum<Real> contact = contact_of(fabric, sample);
+        if (contact.spread == 0) continue;
+        const Basis<Real>& basis = fabric.bases[yarn.basis + k];
+        const Real weight = fabric.samples.weight[sample];
+        sum.energy += weight * contact.spread / 2;
+        sum.add(basis.value, Vec<Real>(contact.fx, contact.fy, contact.fz) * weight);
+        const Vec<Real> tangent = combine(basis.slope, slots);
+        sum.add(basis.slope, tangent * (share * contact.spread / guarded(tangent.norm(), yarn)));
+    }
+}
+
+/// Which forces a pass adds up.
+struct Terms {
+    bool elastic = true, contact = true;
+};
+
+/// Energy and gradient of one segment.
+template <class Real>
+struct SegmentForces {
+    FabricView<Real> fabric;
+    Terms terms;
+    Real* energy;    ///< per segment
+    Real* gradient;  ///< 12 per segment
+
+    WEAVE_HD void operator()(std::size_t index) const {
+        const SegmentPlace segment = fabric.segments[index];
+        const YarnConstants<Real>& yarn = fabric.yarns[segment.yarn];
+        const Real* slots = fabric.place + 3 * std::size_t(segment.slot);
+        SegmentSum<Real> sum;
+        if (terms.elastic) {
+            const Speeds<Real> speeds(*fabric.gauss, slots);
+            add_stretch(yarn, *fabric.gauss, speeds, sum);
+            add_bending(yarn, *fabric.gauss, slots, speeds, sum);
+        }
+        if (terms.contact) add_contact(fabric, segment, yarn, slots, sum);
+        energy[index] = sum.energy;
+        for (int k = 0; k < 12; ++k) gradient[12 * index + std::size_t(k)] = sum.gradient[k];
+    }
+};
+
+}  // namespace weave::sim

@@ -1,0 +1,178 @@
+#include <weave/sim/energy.hpp>
+
+#include <algorithm>
+#include <cmath>
+
+namespace weave::sim {
+
+namespace {
+
+/// Below a tenth of the reach the contact law goes on linearly.
+constexpr double contact_floor = 0.01;
+
+}  // namespace
+
+template <class Real>
+Energy<Real>::Energy(const Fabric<Real>& fabric, const Executor& executor)
+    : m_fabric(fabric),
+      m_executor(executor),
+      m_neighbours(fabric, executor),
+      m_segment_energy(fabric.segments()),
+      m_segment_gradient(12 * fabric.segments()) {}
+
+template <class Real>
+FabricView<Real> Energy<Real>::view(const std::vector<Real>& state) {
+    return {state.data(),
+            m_fabric.segment_places().data(),
+            m_fabric.constants().data(),
+            m_fabric.bases().data(),
+            &m_fabric.gauss(),
+            m_neighbours.samples(),
+            m_neighbours.first(),
+            m_neighbours.others(),
+            static_cast<Real>(contact_floor)};
+}
+
+template <class Real>
+double Energy<Real>::evaluate(const std::vector<Real>& state, std::vector<Real>& gradient, Terms terms) {
+    ++m_evaluations;
+    m_executor.each(m_fabric.segments(), PlaceSamples<Real>{view(state)});
+    m_neighbours.update();
+    m_executor.each(m_fabric.segments(), SegmentForces<Real>{view(state), terms, m_segment_energy.data(),
+                                                             m_segment_gradient.data()});
+    gather(gradient);
+    double energy = m_executor.sum(m_fabric.segments(),
+                                   [&](std::size_t s) { return static_cast<double>(m_segment_energy[s]); });
+    if (terms.elastic) energy += add_fields(state, gradient);
+    m_fabric.fold(gradient);
+    return energy;
+}
+
+/// Each slot adds up what the segments that reach it have found: segment s - c of its yarn at its place c.
+template <class Real>
+void Energy<Real>::gather(std::vector<Real>& gradient) const {
+    gradient.resize(3 * m_fabric.slots());
+    const std::vector<YarnPlace>& yarns = m_fabric.yarns();
+    const std::vector<std::uint32_t>& yarn_of_slot = m_fabric.yarn_of_slot();
+    m_executor.each(m_fabric.slots(), [&](std::size_t slot) {
+        const YarnPlace& yarn = yarns[yarn_of_slot[slot]];
+        const std::size_t within = slot - yarn.first_slot;
+        Real sum[3]{};
+        for (std::size_t c = 0; c < 4 && c <= within; ++c) {
+            if (within - c >= yarn.segments) continue;
+            const Real* part = &m_segment_gradient[12 * (yarn.first_segment + within - c) + 3 * c];
+            for (int k = 0; k < 3; ++k) sum[k] += part[k];
+        }
+        for (std::size_t k = 0; k < 3; ++k) gradient[3 * slot + k] = sum[k];
+    });
+}
+
+/// Spheres push yarns outwards by ½·K·depth² a control point; gravity pulls on every length alike.
+template <class Real>
+double Energy<Real>::add_fields(const std::vector<Real>& state, std::vector<Real>& gradient) const {
+    const SimScene& scene = m_fabric.scene();
+    double energy = scene.gravity_mm_ms2 == 0 ? 0 : add_weight(state, gradient);
+    if (scene.fields.empty()) return energy;
+    for (const YarnPlace& place : m_fabric.yarns()) {
+        for (std::size_t slot = place.first_slot + 1; slot < place.first_slot + 1 + place.points; ++slot) {
+            const Vec<double> at = load(&state[3 * slot]).template cast<double>();
+            for (const ForceField& field : scene.fields) {
+                const Vec<double> out = at - Vec<double>(field.centre_mm[0], field.centre_mm[1], field.centre_mm[2]);
+                const double distance = out.norm(), depth = field.radius_mm - distance;
+                if (depth <= 0 || distance <= 0) continue;
+                energy += field.strength_N_per_mm * depth * depth / 2;
+                const Vec<double> force = -field.strength_N_per_mm * depth / distance * out;
+                for (std::size_t k = 0; k < 3; ++k)
+                    gradient[3 * slot + k] += static_cast<Real>(force[static_cast<Eigen::Index>(k)]);
+            }
+        }
+    }
+    return energy;
+}
+
+/// Weight times mean height of each segment, which is ∫ of its four splines: else the tip of a yarn would weigh double.
+template <class Real>
+double Energy<Real>::add_weight(const std::vector<Real>& state, std::vector<Real>& gradient) const {
+    constexpr double shares[]{1.0 / 24, 11.0 / 24, 11.0 / 24, 1.0 / 24};
+    const SimScene& scene = m_fabric.scene();
+    double energy = 0;
+    for (const SegmentPlace& segment : m_fabric.segment_places()) {
+        const double weight = scene.yarns[segment.yarn].gram_per_mm * scene.gravity_mm_ms2 *
+                              static_cast<double>(m_fabric.constants()[segment.yarn].rest_mm);
+        for (std::size_t c = 0; c < 4; ++c) {
+            const std::size_t z = 3 * (segment.slot + c) + 2;
+            energy += weight * shares[c] * static_cast<double>(state[z]);
+            gradient[z] += static_cast<Real>(weight * shares[c]);
+        }
+    }
+    return energy;
+}
+
+template <class Real>
+void Energy<Real>::move_samples(const std::vector<Real>& change) {
+    m_moved.resize(3 * m_fabric.samples());
+    const std::vector<SegmentPlace>& segments = m_fabric.segment_places();
+    m_executor.each(segments.size(), [&](std::size_t s) {
+        const YarnConstants<Real>& yarn = m_fabric.constants()[segments[s].yarn];
+        for (std::uint32_t k = 0; k < yarn.samples; ++k) {
+            const Vec<Real> moved =
+                combine(m_fabric.bases()[yarn.basis + k].value, &change[3 * std::size_t(segments[s].slot)]);
+            for (std::size_t axis = 0; axis < 3; ++axis)
+                m_moved[3 * (segments[s].sample + k) + axis] = moved[static_cast<Eigen::Index>(axis)];
+        }
+    });
+}
+
+template <class Real>
+double Energy<Real>::safe_share_of(const FabricView<Real>& fabric, std::size_t a, double most) const {
+    const Vec<Real> mine = load(&m_moved[3 * a]);
+    const auto moved = static_cast<double>(mine.norm());
+    double share = std::min(most, m_fabric.least_reach() / 4 / std::max(1e-300, moved));
+    for (std::uint32_t e = fabric.first_neighbour[a]; e < fabric.first_neighbour[a + 1]; ++e) {
+        const std::uint32_t b = fabric.neighbours[e];
+        const Vec<Real> apart(fabric.samples.x[a] - fabric.samples.x[b], fabric.samples.y[a] - fabric.samples.y[b],
+                              fabric.samples.z[a] - fabric.samples.z[b]);
+        const auto change = static_cast<double>((mine - load(&m_moved[3 * std::size_t(m_neighbours.own(b))])).norm());
+        if (change > 0) share = std::min(share, 0.45 * static_cast<double>(apart.norm()) / change);
+    }
+    return share;
+}
+
+template <class Real>
+double Energy<Real>::safe_share(const std::vector<Real>& state, const std::vector<Real>& change, double most) {
+    move_samples(change);
+    const FabricView<Real> fabric = view(state);
+    return m_executor.least(m_fabric.samples(), [&](std::size_t a) { return safe_share_of(fabric, a, most); }, most);
+}
+
+template <class Real>
+void Energy<Real>::shorten(const std::vector<Real>& state, std::vector<Real>& change) {
+    constexpr int rounds = 6;
+    const FabricView<Real> fabric = view(state);
+    std::vector<double> share(m_fabric.segments());
+    const std::vector<YarnPlace>& yarns = m_fabric.yarns();
+    for (int round = 0; round < rounds; ++round) {
+        move_samples(change);
+        m_executor.each(share.size(), [&](std::size_t s) {
+            const SegmentPlace& segment = fabric.segments[s];
+            share[s] = 1;
+            for (std::uint32_t k = 0; k < fabric.yarns[segment.yarn].samples; ++k)
+                share[s] = std::min(share[s], safe_share_of(fabric, segment.sample + k, 1));
+        });
+        m_executor.each(m_fabric.slots(), [&](std::size_t slot) {
+            const YarnPlace& yarn = yarns[m_fabric.yarn_of_slot()[slot]];
+            const std::size_t within = slot - yarn.first_slot;
+            double least = 1;
+            for (std::size_t c = 0; c < 4 && c <= within; ++c) {
+                if (within - c < yarn.segments) least = std::min(least, share[yarn.first_segment + within - c]);
+            }
+            for (std::size_t k = 0; k < 3; ++k) change[3 * slot + k] *= static_cast<Real>(least);
+        });
+        m_fabric.follow_change(change);
+    }
+}
+
+template class Energy<float>;
+template class Energy<double>;
+
+}  // namespace weave::sim

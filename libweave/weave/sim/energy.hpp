@@ -1,0 +1,53 @@
+#pragma once
+
+#include <weave/sim/execute.hpp>
+#include <weave/sim/fabric.hpp>
+#include <weave/sim/neighbours.hpp>
+
+#include <cstddef>
+#include <vector>
+
+namespace weave::sim {
+
+/// Energy of the yarns and its gradient: stretch, bending and contact, and the fields that the scene has.
+template <class Real>
+class Energy {
+  public:
+    Energy(const Fabric<Real>& fabric, const Executor& executor);
+
+    /// Energy in N·mm; `gradient` is resized to the state and holds ∂E/∂q, zero at slots that do not move.
+    double evaluate(const std::vector<Real>& state, std::vector<Real>& gradient, Terms terms = {});
+
+    /// The samples and their neighbours as the latest evaluation left them.
+    [[nodiscard]] Neighbours<Real>& neighbours() { return m_neighbours; }
+    [[nodiscard]] FabricView<Real> view(const std::vector<Real>& state);
+    [[nodiscard]] const Fabric<Real>& fabric() const { return m_fabric; }
+    [[nodiscard]] const Executor& executor() const { return m_executor; }
+    [[nodiscard]] std::size_t evaluations() const { return m_evaluations; }
+
+    /// How much of a change of state, at most `most`, may be made at once so that no two yarns can pass through one another: no pair of
+    /// near samples comes closer by half its distance or more, and no sample moves by a quarter of the least reach.
+    double safe_share(const std::vector<Real>& state, const std::vector<Real>& change, double most);
+
+    /// Shortens a change where it is not safe: each control point goes as far as the samples near it allow.
+    void shorten(const std::vector<Real>& state, std::vector<Real>& change);
+
+  private:
+    void move_samples(const std::vector<Real>& change);
+    [[nodiscard]] double safe_share_of(const FabricView<Real>& fabric, std::size_t sample, double most) const;
+    void gather(std::vector<Real>& gradient) const;
+    double add_fields(const std::vector<Real>& state, std::vector<Real>& gradient) const;
+    double add_weight(const std::vector<Real>& state, std::vector<Real>& gradient) const;
+
+    const Fabric<Real>& m_fabric;
+    const Executor& m_executor;
+    Neighbours<Real> m_neighbours;
+    std::vector<Real> m_segment_energy, m_segment_gradient;
+    std::vector<Real> m_moved;  ///< change of each sample, scratch of safe_share
+    std::size_t m_evaluations = 0;
+};
+
+extern template class Energy<float>;
+extern template class Energy<double>;
+
+}  // namespace weave::sim

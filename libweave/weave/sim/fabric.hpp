@@ -1,0 +1,96 @@
+#pragma once
+
+#include <weave/sim/bodies.hpp>
+#include <weave/sim/scene.hpp>
+
+#include <array>
+#include <cstddef>
+#include <cstdint>
+#include <vector>
+
+namespace weave::sim {
+
+/// Control slots of one yarn: its control points, with the slots beyond its ends that its first and last segments
+/// reach. Slot first + 1 + i is control point i.
+struct YarnPlace {
+    std::uint32_t first_slot = 0, slots = 0, points = 0;
+    std::uint32_t first_segment = 0, segments = 0;
+    std::uint32_t first_sample = 0;
+};
+
+/// A slot beyond a yarn's end that follows from one or two of its control points: weight·point + …, moved by whole
+/// periods.
+struct FollowSlot {
+    std::uint32_t slot = 0;
+    std::array<std::uint32_t, 2> from{};
+    std::array<double, 2> weight{1, 0};
+    int turns = 0;  ///< times the yarn's shift
+};
+
+/// One number for each yarn of the piece, its halo image, and where it came from.
+struct HaloSample {
+    std::uint32_t of = 0;                ///< own sample
+    std::array<std::int16_t, 2> image{};  ///< periods in x and y
+};
+
+/// The yarns as structure of arrays: what bodies read. A state is a vector of 3 numbers a slot; vectors of changes have
+/// zeros at frozen and following slots.
+template <class Real>
+class Fabric {
+  public:
+    explicit Fabric(const SimScene& scene);
+
+    [[nodiscard]] const SimScene& scene() const { return m_scene; }
+    [[nodiscard]] std::size_t slots() const { return m_moves.size(); }
+    [[nodiscard]] std::size_t points() const { return m_points; }
+    [[nodiscard]] std::size_t segments() const { return m_segments.size(); }
+    [[nodiscard]] std::size_t samples() const { return m_samples; }
+    [[nodiscard]] const std::vector<YarnPlace>& yarns() const { return m_places; }
+    [[nodiscard]] const std::vector<SegmentPlace>& segment_places() const { return m_segments; }
+    [[nodiscard]] const std::vector<YarnConstants<Real>>& constants() const { return m_constants; }
+    [[nodiscard]] const std::vector<Basis<Real>>& bases() const { return m_bases; }
+    [[nodiscard]] const Gauss<Real>& gauss() const { return m_gauss; }
+    [[nodiscard]] const std::vector<FollowSlot>& follows() const { return m_follows; }
+    /// Whether a slot is a control point that may move.
+    [[nodiscard]] const std::vector<std::uint8_t>& moves() const { return m_moves; }
+    /// The first segment among those that reach a slot, in 4 contributions: segment s adds to slots s.slot + 0 … 3.
+    [[nodiscard]] const std::vector<std::uint32_t>& yarn_of_slot() const { return m_yarn_of_slot; }
+    /// Smallest sum of two radii, and the greatest radius, mm.
+    [[nodiscard]] double least_reach() const { return m_least_reach; }
+    [[nodiscard]] double greatest_radius() const { return m_greatest_radius; }
+
+    /// The state of the scene's control points.
+    [[nodiscard]] std::vector<Real> state() const;
+    /// Puts a state's control points back into the scene's yarns.
+    [[nodiscard]] std::vector<std::vector<Vec3>> control(const std::vector<Real>& state) const;
+    /// Places the following slots of a state.
+    void follow(std::vector<Real>& state) const;
+    /// The same for a change of state: no periods are added.
+    void follow_change(std::vector<Real>& change) const;
+    /// Adds what following slots have gathered to the points that they follow, and clears them and frozen slots.
+    void fold(std::vector<Real>& gradient) const;
+
+  private:
+    void add_yarn(const SimYarn& yarn);
+    void add_follows(const SimYarn& yarn, const YarnPlace& place);
+    std::uint32_t basis_for(std::uint32_t samples);
+    void set_constants();
+
+    SimScene m_scene;
+    std::vector<YarnPlace> m_places;
+    std::vector<SegmentPlace> m_segments;
+    std::vector<YarnConstants<Real>> m_constants;
+    std::vector<Basis<Real>> m_bases;
+    std::vector<std::pair<std::uint32_t, std::uint32_t>> m_basis_of_samples;
+    Gauss<Real> m_gauss;
+    std::vector<FollowSlot> m_follows;
+    std::vector<std::uint8_t> m_moves;
+    std::vector<std::uint32_t> m_yarn_of_slot;
+    std::size_t m_points = 0, m_samples = 0;
+    double m_least_reach = 0, m_greatest_radius = 0;
+};
+
+extern template class Fabric<float>;
+extern template class Fabric<double>;
+
+}  // namespace weave::sim

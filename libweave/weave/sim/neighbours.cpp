@@ -1,0 +1,283 @@
+#include <weave/sim/neighbours.hpp>
+
+#include <algorithm>
+#include <array>
+#include <bit>
+#include <cmath>
+#include <limits>
+#include <numbers>
+
+namespace weave::sim {
+
+namespace {
+
+/// Skin as a share of the smallest reach: wide enough that a list lasts for tens of steps near rest.
+constexpr double skin_share = 0.25;
+/// Radii within this factor share a grid: a cell is then never more than twice too wide.
+constexpr double class_ratio = 1.5;
+
+using Cell = std::array<std::int32_t, 3>;
+
+std::uint64_t key_of(const Cell& cell) {
+    constexpr std::uint64_t mask = (std::uint64_t{1} << 21) - 1;
+    return (static_cast<std::uint64_t>(cell[0]) & mask) << 42 | (static_cast<std::uint64_t>(cell[1]) & mask) << 21 |
+           (static_cast<std::uint64_t>(cell[2]) & mask);
+}
+
+std::uint64_t mixed(std::uint64_t key) {
+    key ^= key >> 31;
+    key *= 0x9e3779b97f4a7c15ULL;
+    key ^= key >> 29;
+    return key;
+}
+
+}  // namespace
+
+/// The samples of one class of radii, sorted by cell: cells are hashed, so empty space costs nothing.
+template <class Real>
+struct Neighbours<Real>::Grid {
+    double radius = 0, width = 1;
+    std::size_t mask = 0;
+    std::vector<std::uint32_t> first;  ///< per bucket, and one more
+    std::vector<std::uint32_t> samples;
+    std::vector<std::uint64_t> keys;  ///< cell of each entry: buckets may be shared
+
+    [[nodiscard]] std::int32_t cell(double x) const {
+        return static_cast<std::int32_t>(std::clamp(std::floor(x / width), -1e9, 1e9));
+    }
+
+    void fill(const std::vector<std::uint32_t>& members, const std::vector<Real>& x, const std::vector<Real>& y,
+              const std::vector<Real>& z) {
+        const std::size_t buckets = std::bit_ceil(std::max<std::size_t>(16, members.size()));
+        mask = buckets - 1;
+        first.assign(buckets + 1, 0);
+        std::vector<std::uint64_t> key(members.size());
+        for (std::size_t i = 0; i < members.size(); ++i) {
+            const std::uint32_t s = members[i];
+            key[i] = key_of({cell(x[s]), cell(y[s]), cell(z[s])});
+            ++first[(mixed(key[i]) & mask) + 1];
+        }
+        for (std::size_t b = 0; b < buckets; ++b) first[b + 1] += first[b];
+        samples.resize(members.size());
+        keys.resize(members.size());
+        std::vector<std::uint32_t> next(first.begin(), first.end() - 1);
+        for (std::size_t i = 0; i < members.size(); ++i) {
+            const std::uint32_t at = next[mixed(key[i]) & mask]++;
+            samples[at] = members[i];
+            keys[at] = key[i];
+        }
+    }
+};
+
+template <class Real>
+Neighbours<Real>::Neighbours(const Fabric<Real>& fabric, const Executor& executor)
+    : m_fabric(fabric),
+      m_executor(executor),
+      m_own(fabric.samples()),
+      m_skin(skin_share * fabric.least_reach()),
+      m_x(m_own),
+      m_y(m_own),
+      m_z(m_own),
+      m_weight(m_own),
+      m_radius(m_own),
+      m_segment_of(m_own) {
+    std::vector<double> radii;
+    for (const SimYarn& yarn : fabric.scene().yarns) radii.push_back(yarn.radius_mm);
+    std::sort(radii.begin(), radii.end());
+    for (const double radius : radii) {
+        if (m_classes.empty() || radius > m_classes.back()) m_classes.push_back(radius * class_ratio);
+    }
+    // The bound of a class is the greatest radius in it.
+    std::vector<double> greatest(m_classes.size(), 0);
+    for (const SimYarn& yarn : fabric.scene().yarns) {
+        const auto found = std::lower_bound(m_classes.begin(), m_classes.end(), yarn.radius_mm);
+        const auto at = static_cast<std::size_t>(found - m_classes.begin());
+        m_class_of_yarn.push_back(static_cast<std::uint32_t>(at));
+        greatest[at] = std::max(greatest[at], yarn.radius_mm);
+    }
+    m_classes = greatest;
+    for (std::size_t s = 0; s < fabric.segments(); ++s) {
+        const SegmentPlace& segment = fabric.segment_places()[s];
+        const YarnConstants<Real>& yarn = fabric.constants()[segment.yarn];
+        for (std::uint32_t k = 0; k < yarn.samples; ++k) {
+            m_segment_of[segment.sample + k] = static_cast<std::uint32_t>(s);
+            m_radius[segment.sample + k] = yarn.radius_mm;
+        }
+    }
+}
+
+template <class Real>
+bool Neighbours<Real>::holds() const {
+    if (m_builds == 0) return false;
+    const double far = m_executor.greatest(m_own, [&](std::size_t s) {
+        const double dx = m_x[s] - m_built[3 * s], dy = m_y[s] - m_built[3 * s + 1], dz = m_z[s] - m_built[3 * s + 2];
+        return dx * dx + dy * dy + dz * dz;
+    });
+    return far <= m_skin * m_skin / 4;
+}
+
+template <class Real>
+void Neighbours<Real>::update() {
+    if (holds()) {
+        move_halo();
+    } else {
+        build();
+    }
+}
+
+template <class Real>
+void Neighbours<Real>::move_halo() {
+    const std::array<double, 2>& period = m_fabric.scene().period_mm;
+    m_executor.each(m_halo.size(), [&](std::size_t h) {
+        const HaloSample& halo = m_halo[h];
+        m_x[m_own + h] = m_x[halo.of] + static_cast<Real>(halo.image[0] * period[0]);
+        m_y[m_own + h] = m_y[halo.of] + static_cast<Real>(halo.image[1] * period[1]);
+        m_z[m_own + h] = m_z[halo.of];
+        m_weight[m_own + h] = m_weight[halo.of];
+    });
+}
+
+template <class Real>
+void Neighbours<Real>::build() {
+    if (m_builds == 0) m_first_weight.assign(m_weight.begin(), m_weight.begin() + static_cast<std::ptrdiff_t>(m_own));
+    find_halo();
+    std::vector<Grid> grids(m_classes.size());
+    std::vector<std::vector<std::uint32_t>> members(m_classes.size());
+    for (std::uint32_t s = 0; s < m_own + m_halo.size(); ++s)
+        members[m_class_of_yarn[m_fabric.segment_places()[m_segment_of[own(s)]].yarn]].push_back(s);
+    for (std::size_t c = 0; c < grids.size(); ++c) {
+        grids[c].radius = m_classes[c];
+        // Half the reach within the class: 5 cells a side hold little that is not near.
+        grids[c].width = std::max(1e-9, (2 * m_classes[c] + m_skin) / 2);
+        grids[c].fill(members[c], m_x, m_y, m_z);
+    }
+    list_neighbours(grids);
+    m_built.resize(3 * m_own);
+    for (std::size_t s = 0; s < m_own; ++s) {
+        m_built[3 * s] = m_x[s];
+        m_built[3 * s + 1] = m_y[s];
+        m_built[3 * s + 2] = m_z[s];
+    }
+    ++m_builds;
+}
+
+/// Images of samples that come within reach of the box that holds all own samples.
+template <class Real>
+void Neighbours<Real>::find_halo() {
+    m_halo.clear();
+    const SimScene& scene = m_fabric.scene();
+    const double reach = 2 * m_fabric.greatest_radius() + m_skin;
+    const std::array<const std::vector<Real>*, 2> axis{&m_x, &m_y};
+    std::array<double, 2> low{}, high{};
+    for (std::size_t k = 0; k < 2 && m_own > 0; ++k) {
+        const auto [least, most] = std::minmax_element(axis[k]->begin(), axis[k]->begin() + static_cast<std::ptrdiff_t>(m_own));
+        low[k] = *least - reach;
+        high[k] = *most + reach;
+    }
+    // Images i of a sample at c with low <= c + i·period <= high.
+    const auto images = [&](std::size_t k, double at) -> std::array<int, 2> {
+        if (!scene.is_periodic[k] || !(scene.period_mm[k] > 0)) return {0, 0};
+        return {static_cast<int>(std::ceil((low[k] - at) / scene.period_mm[k])),
+                static_cast<int>(std::floor((high[k] - at) / scene.period_mm[k]))};
+    };
+    for (std::uint32_t s = 0; s < m_own; ++s) {
+        const std::array<int, 2> along_x = images(0, m_x[s]), along_y = images(1, m_y[s]);
+        for (int i = along_x[0]; i <= along_x[1]; ++i) {
+            for (int j = along_y[0]; j <= along_y[1]; ++j) {
+                if (i != 0 || j != 0) m_halo.push_back({s, {static_cast<std::int16_t>(i), static_cast<std::int16_t>(j)}});
+            }
+        }
+    }
+    const std::size_t all = m_own + m_halo.size();
+    for (std::vector<Real>* array : {&m_x, &m_y, &m_z, &m_weight, &m_radius}) array->resize(all);
+    for (std::size_t h = 0; h < m_halo.size(); ++h) m_radius[m_own + h] = m_radius[m_halo[h].of];
+    move_halo();
+}
+
+/// Whether another sample lies on the same stretch of the same yarn: within half a turn along it. Lengths are those of
+/// the first list: were they of now, the energy would jump whenever a list is made anew.
+template <class Real>
+bool Neighbours<Real>::same_stretch(std::size_t sample, std::uint32_t other) const {
+    const std::uint32_t of = own(other);
+    const SegmentPlace &mine = m_fabric.segment_places()[m_segment_of[sample]],
+                       &theirs = m_fabric.segment_places()[m_segment_of[of]];
+    if (mine.yarn != theirs.yarn) return false;
+    const SimYarn& yarn = m_fabric.scene().yarns[mine.yarn];
+    const YarnPlace& place = m_fabric.yarns()[mine.yarn];
+    const YarnConstants<Real>& constants = m_fabric.constants()[mine.yarn];
+    std::int64_t apart = static_cast<std::int64_t>(of) - static_cast<std::int64_t>(sample);
+    if (other >= m_own) {
+        const HaloSample& halo = m_halo[other - m_own];
+        if (!yarn.is_periodic) return false;
+        // The image lies on this very strand only where it is whole turns along it.
+        std::int64_t turns = 0;
+        for (std::size_t k = 0; k < 2; ++k) {
+            if (yarn.turns[k] != 0) turns = halo.image[k] / yarn.turns[k];
+        }
+        for (std::size_t k = 0; k < 2; ++k) {
+            if (halo.image[k] != turns * yarn.turns[k]) return false;
+        }
+        apart += turns * static_cast<std::int64_t>(place.segments) * constants.samples;
+    }
+    const double step = (m_first_weight[sample] + m_first_weight[of]) / (2 * static_cast<double>(constants.root_k));
+    return std::abs(static_cast<double>(apart)) * step < std::numbers::pi * static_cast<double>(constants.radius_mm);
+}
+
+template <class Real>
+template <class Found>
+void Neighbours<Real>::near(const std::vector<Grid>& grids, std::size_t sample, const Found& found) const {
+    const double x = m_x[sample], y = m_y[sample], z = m_z[sample], radius = m_radius[sample];
+    const auto look_at = [&](std::uint32_t b) {
+        const double dx = m_x[b] - x, dy = m_y[b] - y, dz = m_z[b] - z, limit = radius + m_radius[b] + m_skin;
+        if (dx * dx + dy * dy + dz * dz < limit * limit && b != sample && !same_stretch(sample, b)) found(b);
+    };
+    for (const Grid& grid : grids) {
+        const double reach = radius + grid.radius + m_skin;
+        const Cell low{grid.cell(x - reach), grid.cell(y - reach), grid.cell(z - reach)},
+            high{grid.cell(x + reach), grid.cell(y + reach), grid.cell(z + reach)};
+        // A thick yarn spans more cells of thin ones than there are thin samples: then each of these is looked at.
+        const double cells = double(high[0] - low[0] + 1) * double(high[1] - low[1] + 1) * double(high[2] - low[2] + 1);
+        if (cells > static_cast<double>(grid.samples.size())) {
+            for (const std::uint32_t b : grid.samples) look_at(b);
+            continue;
+        }
+        for (std::int32_t i = low[0]; i <= high[0]; ++i) {
+            for (std::int32_t j = low[1]; j <= high[1]; ++j) {
+                for (std::int32_t k = low[2]; k <= high[2]; ++k) {
+                    const std::uint64_t key = key_of({i, j, k});
+                    const std::size_t bucket = mixed(key) & grid.mask;
+                    for (std::uint32_t e = grid.first[bucket]; e < grid.first[bucket + 1]; ++e) {
+                        if (grid.keys[e] == key) look_at(grid.samples[e]);
+                    }
+                }
+            }
+        }
+    }
+}
+
+template <class Real>
+void Neighbours<Real>::list_neighbours(const std::vector<Grid>& grids) {
+    m_first.assign(m_own + 1, 0);
+    m_executor.each(m_own, [&](std::size_t s) {
+        std::uint32_t count = 0;
+        near(grids, s, [&](std::uint32_t) { ++count; });
+        m_first[s + 1] = count;
+    });
+    for (std::size_t s = 0; s < m_own; ++s) m_first[s + 1] += m_first[s];
+    m_others.resize(m_first.back());
+    m_executor.each(m_own, [&](std::size_t s) {
+        std::uint32_t at = m_first[s];
+        near(grids, s, [&](std::uint32_t b) { m_others[at++] = b; });
+    });
+}
+
+template <class Real>
+std::size_t Neighbours<Real>::bytes() const {
+    return (m_x.capacity() * 5 + m_built.capacity() + m_first_weight.capacity()) * sizeof(Real) +
+           (m_segment_of.capacity() + m_first.capacity() + m_others.capacity()) * 4 + m_halo.capacity() * sizeof(HaloSample);
+}
+
+template class Neighbours<float>;
+template class Neighbours<double>;
+
+}  // namespace weave::sim

@@ -1,0 +1,72 @@
+#pragma once
+
+#include <weave/sim/execute.hpp>
+#include <weave/sim/fabric.hpp>
+
+#include <cstddef>
+#include <cstdint>
+#include <vector>
+
+namespace weave::sim {
+
+/// Contact samples with their halo, and for each own sample those that may touch it: every sample nearer than the sum
+/// of the two radii and a skin, but for those of the same yarn within half a turn of it along the yarn (π r). The list
+/// holds until a sample has moved by half the skin.
+template <class Real>
+class Neighbours {
+  public:
+    Neighbours(const Fabric<Real>& fabric, const Executor& executor);
+
+    /// Own samples are placed by the body PlaceSamples, then update() moves the halo along, and builds the list anew
+    /// where it no longer holds.
+    void update();
+    /// Only the halo: the list is known to hold.
+    void move_halo();
+    /// Whether the list holds for where the samples are now.
+    [[nodiscard]] bool holds() const;
+
+    [[nodiscard]] SamplesView<Real> samples() {
+        return {m_x.data(), m_y.data(), m_z.data(), m_weight.data(), m_radius.data()};
+    }
+    [[nodiscard]] const std::uint32_t* first() const { return m_first.data(); }
+    [[nodiscard]] const std::uint32_t* others() const { return m_others.data(); }
+    [[nodiscard]] std::size_t entries() const { return m_others.size(); }
+    [[nodiscard]] std::size_t halo() const { return m_halo.size(); }
+    /// The own sample that a sample is, or is an image of.
+    [[nodiscard]] std::uint32_t own(std::uint32_t sample) const {
+        return sample < m_own ? sample : m_halo[sample - m_own].of;
+    }
+    [[nodiscard]] std::uint32_t segment_of(std::uint32_t own_sample) const { return m_segment_of[own_sample]; }
+    /// Bumped by each rebuild.
+    [[nodiscard]] std::size_t builds() const { return m_builds; }
+    [[nodiscard]] double skin_mm() const { return m_skin; }
+    [[nodiscard]] std::size_t bytes() const;
+
+  private:
+    struct Grid;
+    void build();
+    void find_halo();
+    void list_neighbours(const std::vector<Grid>& grids);
+    template <class Found>
+    void near(const std::vector<Grid>& grids, std::size_t sample, const Found& found) const;
+    [[nodiscard]] bool same_stretch(std::size_t sample, std::uint32_t other) const;
+
+    const Fabric<Real>& m_fabric;
+    const Executor& m_executor;
+    std::size_t m_own;
+    double m_skin;
+    std::vector<Real> m_x, m_y, m_z, m_weight, m_radius;
+    std::vector<Real> m_built;  ///< places when the list was built, x y z of own samples
+    std::vector<Real> m_first_weight;  ///< of own samples when the first list was made
+    std::vector<std::uint32_t> m_segment_of;
+    std::vector<std::uint32_t> m_class_of_yarn;
+    std::vector<double> m_classes;  ///< greatest radius of each class, rising
+    std::vector<HaloSample> m_halo;
+    std::vector<std::uint32_t> m_first, m_others;
+    std::size_t m_builds = 0;
+};
+
+extern template class Neighbours<float>;
+extern template class Neighbours<double>;
+
+}  // namespace weave::sim

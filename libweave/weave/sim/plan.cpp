@@ -1,0 +1,287 @@
+#include <weave/core/text.hpp>
+#include <weave/core/units.hpp>
+#include <weave/curve/spline.hpp>
+#include <weave/loom/pick_table.hpp>
+#include <weave/sim/plan.hpp>
+
+#include <algorithm>
+#include <cmath>
+#include <set>
+
+namespace weave::sim {
+
+namespace {
+
+/// Wefts are inserted a little longer than the cloth is wide.
+constexpr double weft_excess = 0.01;
+constexpr double usual_strain = 1.01;  ///< the paper's target strain
+constexpr std::size_t rim_points = 2;  ///< control points held at a frozen end
+
+struct Resolution {
+    double points_per_key, sample_spacing, goal;
+};
+
+Resolution resolution_of(Fidelity fidelity) {
+    switch (fidelity) {
+        case Fidelity::draft:
+            return {2, 0.25, 1e-2};
+        case Fidelity::standard:
+            return {4, 0.25, 1e-3};
+        case Fidelity::reference:
+            break;
+    }
+    return {8, 0.125, 1e-8};
+}
+
+/// The smallest period of a line: equal(i, i + period) for all i, and a divisor of the length.
+template <class Equal>
+std::size_t period_of(std::size_t length, Equal equal) {
+    for (std::size_t period = 1; period < length; ++period) {
+        if (length % period != 0) continue;
+        bool repeats = true;
+        for (std::size_t i = 0; repeats && i + period < length; ++i) repeats = equal(i, i + period);
+        if (repeats) return period;
+    }
+    return length;
+}
+
+bool feeds_alike(const std::vector<Pick>& picks, std::size_t a, std::size_t b) {
+    return picks[a].feeders == picks[b].feeders;
+}
+
+/// Rows and columns of the smallest repeat of the cloth, its yarns included.
+std::array<std::size_t, 2> smallest_repeat(const Design& design, const Block& block) {
+    const std::vector<Pick> picks = pick_table(design, block);
+    const std::size_t rows = period_of(block.rows(), [&](std::size_t i, std::size_t j) {
+        if (block.t()[i] != block.t()[j] || !std::ranges::equal(block.cells(i), block.cells(j))) return false;
+        for (std::size_t k = 0; k < block.t()[i]; ++k) {
+            if (!feeds_alike(picks, block.first_pick(i) + k, block.first_pick(j) + k)) return false;
+        }
+        return true;
+    });
+    const std::size_t columns = period_of(block.columns(), [&](std::size_t i, std::size_t j) {
+        if (block.p()[i] != block.p()[j]) return false;
+        for (std::size_t k = 0; k < block.p()[i]; ++k) {
+            if (design.warp.order.at(block.first_end(i) + k) != design.warp.order.at(block.first_end(j) + k))
+                return false;
+        }
+        for (std::size_t row = 0; row < block.rows(); ++row) {
+            if (block.cells(row)[i] != block.cells(row)[j]) return false;
+        }
+        return true;
+    });
+    return {rows, columns};
+}
+
+Result<Block> first_repeat(const Block& block, std::size_t rows, std::size_t columns) {
+    std::vector<std::uint32_t> t(block.t().begin(), block.t().begin() + static_cast<std::ptrdiff_t>(rows)),
+        p(block.p().begin(), block.p().begin() + static_cast<std::ptrdiff_t>(columns));
+    return make_block(
+        std::move(t), std::move(p), [&](std::size_t row, std::size_t column) { return block.stack(row, column); },
+        block.height());
+}
+
+/// Length that a weft is cut to: as it lies on the loom, straight along each pick and round each turn.
+double inserted_length(const YarnCurve& curve) {
+    const auto flat = [](const KeyPoint& key) {
+        return key.row == KeyPoint::none ? key.place : Vec3(key.place.x(), key.place.y(), 0);
+    };
+    if (curve.is_periodic && curve.shift.y() != 0) return curve.shift.norm();
+    double length = 0;
+    for (std::size_t k = 0; k + 1 < curve.keys.size(); ++k)
+        length += (flat(curve.keys[k + 1]) - flat(curve.keys[k])).norm();
+    if (curve.is_periodic) length += (flat(curve.keys.front()) + curve.shift - flat(curve.keys.back())).norm();
+    return length;
+}
+
+/// Makes a plan step by step; each step tells what it chose.
+class Planner {
+  public:
+    Planner(const Design& design, const Block& block, const SimulationRequest& request)
+        : m_design(design), m_block(block), m_request(request) {}
+
+    Result<Plan> run() {
+        const Resolution resolution = resolution_of(m_request.fidelity);
+        m_plan.fidelity = m_request.fidelity;
+        m_plan.goal = resolution.goal;
+        m_plan.cloth_rows = m_block.rows();
+        m_plan.cloth_columns = m_block.columns();
+        m_plan.points_per_key = m_request.points_per_key.value_or(resolution.points_per_key);
+        m_plan.scene.sample_spacing = m_request.sample_spacing.value_or(resolution.sample_spacing);
+        WEAVE_CHECK_OK(check_request());
+        WEAVE_CHECK_OK(check_terms());
+        WEAVE_CHECK_OK(lay_curves());
+        set_boundaries();
+        for (std::size_t c = 0; c < m_plan.curves.yarns.size(); ++c) add_yarn(c);
+        if (m_plan.scene.yarns.empty()) return invalid("no yarn touches another, so there is nothing to simulate");
+        WEAVE_CHECK_OK(check_balance());
+        set_terms();
+        return std::move(m_plan);
+    }
+
+  private:
+    void tell(std::string term, std::string choice, std::string reason) {
+        m_plan.lines.push_back({std::move(term), std::move(choice), std::move(reason)});
+    }
+
+    [[nodiscard]] Status check_request() const {
+        if (!(m_plan.points_per_key >= 1 && m_plan.points_per_key <= 64))
+            return Error{ErrorCode::usage, "points per crossing must be from 1 to 64", {}};
+        if (!(m_plan.scene.sample_spacing > 0 && m_plan.scene.sample_spacing <= 0.45))
+            return Error{ErrorCode::usage, "sample spacing must be above 0 and at most 0.45 of two radii", {}};
+        return {};
+    }
+
+    /// Better no answer than one that leaves out what the scene asks for.
+    [[nodiscard]] Status check_terms() const {
+        if (m_design.scene.friction > 0) return invalid("friction is not simulated yet: set it to 0", "scene.friction");
+        return {};
+    }
+
+    Status lay_curves() {
+        const CurveOptions options{m_request.region, m_request.weft_mode};
+        const bool periodic = m_design.scene.boundary_x == Boundary::periodic &&
+                              m_design.scene.boundary_y == Boundary::periodic && !m_request.region &&
+                              m_request.weft_mode.value_or(m_design.scene.weft_mode) == WeftMode::periodic;
+        std::array<std::size_t, 2> repeat{m_block.rows(), m_block.columns()};
+        if (periodic && m_request.reduce) repeat = smallest_repeat(m_design, m_block);
+        m_plan.repeats = {m_block.rows() / repeat[0], m_block.columns() / repeat[1]};
+        const std::size_t cells = m_plan.repeats[0] * m_plan.repeats[1];
+        if (cells == 1) {
+            WEAVE_TRY(m_plan.curves, cloth_curves(m_design, m_block, options));
+            tell("repeat", "whole", periodic ? "the cloth has no smaller repeat" : "only a periodic cloth is its repeat");
+            return {};
+        }
+        WEAVE_TRY(const Block small, first_repeat(m_block, repeat[0], repeat[1]));
+        WEAVE_TRY(m_plan.curves, cloth_curves(m_design, small, options));
+        tell("repeat", "1 of " + std::to_string(cells) + " cells",
+             "rows repeat after " + std::to_string(repeat[0]) + " and columns after " + std::to_string(repeat[1]));
+        return {};
+    }
+
+    void set_boundaries() {
+        m_plan.scene.is_periodic = m_plan.curves.is_periodic;
+        m_plan.scene.period_mm = m_plan.curves.size_mm;
+        for (std::size_t axis = 0; axis < 2; ++axis) {
+            const Boundary asked = axis == 0 ? m_design.scene.boundary_x : m_design.scene.boundary_y;
+            m_rim[axis] = m_request.region ? Boundary::frozen : asked;
+            const char* names[]{"periodic", "frozen", "free"};
+            const std::string choice = m_plan.curves.is_periodic[axis] ? "periodic"
+                                       : m_rim[axis] == Boundary::periodic ? "free"
+                                                                           : names[static_cast<int>(m_rim[axis])];
+            tell(axis == 0 ? "boundary x" : "boundary y", choice,
+                 m_request.region ? "a cut-out has frozen rims" : "as the scene says");
+        }
+    }
+
+    /// A yarn that is loose all along is only a placeholder: nothing holds it, and it would come to rest nowhere.
+    [[nodiscard]] static bool is_loose(const YarnCurve& curve) {
+        return std::ranges::all_of(curve.keys, &KeyPoint::loose);
+    }
+
+    void add_yarn(std::size_t c) {
+        const YarnCurve& curve = m_plan.curves.yarns[c];
+        if (is_loose(curve)) {
+            ++m_left_out;
+            return;
+        }
+        const bool warp = curve.system == System::warp;
+        const YarnType& type = warp ? m_design.warp.yarns[curve.type] : m_design.weft.yarns[curve.type];
+        const SystemScene& system = warp ? m_design.scene.warp : m_design.scene.weft;
+        const double stiffness = system.stiffness_scale.value_or(1);
+        SimYarn yarn;
+        yarn.is_periodic = curve.is_periodic;
+        yarn.shift = curve.shift;
+        yarn.turns = {curve.is_periodic && curve.shift.x() != 0 ? 1 : 0, curve.is_periodic && curve.shift.y() != 0 ? 1 : 0};
+        yarn.control = control_points(curve);
+        yarn.radius_mm = type.radius_mm * system.radius_scale.value_or(1);
+        yarn.stretch_N = type.stretch_stiffness_N * stiffness;
+        yarn.bending_N_mm2 = type.bending_stiffness_N_mm2 * stiffness;
+        yarn.contact_N_mm2 = type.contact_stiffness_N_mm2;
+        yarn.gram_per_mm = units::gram_per_mm(type.linear_density_tex);
+        yarn.is_fed = warp || system.strain.has_value();
+        yarn.strain = system.strain.value_or(usual_strain);
+        yarn.rest_mm = inserted_length(curve) * (1 + weft_excess);
+        yarn.frozen = frozen_points(curve, yarn.control.size());
+        m_plan.scene.yarns.push_back(std::move(yarn));
+        m_plan.curve_of.push_back(c);
+    }
+
+    [[nodiscard]] std::vector<Vec3> control_points(const YarnCurve& curve) const {
+        std::vector<Vec3> places;
+        for (const KeyPoint& key : curve.keys) places.push_back(key.place);
+        const Spline spline = interpolate(places, curve.is_periodic, curve.shift);
+        const auto segments = static_cast<double>(spline.segments());
+        const auto wanted = static_cast<std::size_t>(std::max(1.0, std::round(segments * m_plan.points_per_key)));
+        return resample(spline, curve.is_periodic ? wanted : wanted + 1).control;
+    }
+
+    [[nodiscard]] std::vector<std::uint8_t> frozen_points(const YarnCurve& curve, std::size_t points) const {
+        const bool pinned = std::ranges::any_of(m_design.scene.pins, [&](const Pin& pin) {
+            return pin.is_pick == (curve.system == System::weft) && pin.number == curve.number;
+        });
+        if (pinned) return std::vector<std::uint8_t>(points, 1);
+        const std::size_t axis = curve.system == System::warp ? 0 : 1;
+        if (curve.is_periodic || m_rim[axis] != Boundary::frozen) return {};
+        std::vector<std::uint8_t> frozen(points, 0);
+        for (std::size_t i = 0; i < std::min(rim_points, points); ++i) frozen[i] = frozen[points - 1 - i] = 1;
+        return frozen;
+    }
+
+    /// A yarn fed at constant tension needs something to pull against.
+    [[nodiscard]] Status check_balance() const {
+        for (std::size_t y = 0; y < m_plan.scene.yarns.size(); ++y) {
+            const SimYarn& yarn = m_plan.scene.yarns[y];
+            if (!yarn.is_fed || yarn.is_periodic || !yarn.frozen.empty()) continue;
+            const YarnCurve& curve = m_plan.curves.yarns[m_plan.curve_of[y]];
+            const bool warp = curve.system == System::warp;
+            return invalid(std::string(warp ? "end " : "pick ") + std::to_string(curve.number + 1) +
+                               " is fed at constant tension but its ends are free: it would shrink for ever; make the "
+                               "boundary " + (warp ? "x" : "y") + " periodic or frozen",
+                           warp ? "scene.boundary_x" : "scene.boundary_y");
+        }
+        return {};
+    }
+
+    void set_terms() {
+        const Scene& scene = m_design.scene;
+        m_plan.scene.fields = scene.fields;
+        m_plan.scene.gravity_mm_ms2 = scene.gravity ? units::standard_gravity : 0;
+        m_plan.scene.friction = scene.friction;
+        tell("yarns", std::to_string(m_plan.scene.yarns.size()) + " of " + std::to_string(m_plan.curves.yarns.size()),
+             m_left_out == 0 ? "every yarn binds somewhere" : counted(m_left_out, "yarn") + " loose all along left out");
+        std::set<double> radii;
+        for (const SimYarn& yarn : m_plan.scene.yarns) radii.insert(yarn.radius_mm);
+        tell("radii", std::to_string(radii.size()), radii.size() == 1 ? "one grid of contact samples" : "a grid for each class of radii");
+        tell("fields", scene.fields.empty() ? "off" : std::to_string(scene.fields.size()), scene.fields.empty() ? "the scene has none" : "as the scene says");
+        tell("gravity", scene.gravity ? "on" : "off", "as the scene says");
+        tell("friction", "off", "its coefficient is 0");
+    }
+
+    const Design& m_design;
+    const Block& m_block;
+    const SimulationRequest& m_request;
+    std::array<Boundary, 2> m_rim{};
+    std::size_t m_left_out = 0;
+    Plan m_plan;
+};
+
+}  // namespace
+
+Result<Fidelity> parse_fidelity(std::string_view text) {
+    for (const Fidelity fidelity : {Fidelity::draft, Fidelity::standard, Fidelity::reference}) {
+        if (text == name_of(fidelity)) return fidelity;
+    }
+    return Error{ErrorCode::usage, "fidelity is draft, standard or reference, not '" + std::string(text) + "'", {}};
+}
+
+std::string_view name_of(Fidelity fidelity) {
+    constexpr std::string_view names[]{"draft", "standard", "reference"};
+    return names[static_cast<std::size_t>(fidelity)];
+}
+
+Result<Plan> make_plan(const Design& design, const Block& block, const SimulationRequest& request) {
+    return Planner(design, block, request).run();
+}
+
+}  // namespace weave::sim

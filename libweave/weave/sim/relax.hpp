@@ -1,0 +1,54 @@
+#pragma once
+
+#include <weave/sim/energy.hpp>
+#include <weave/sim/hessian.hpp>
+
+#include <cstddef>
+#include <functional>
+#include <string>
+#include <vector>
+
+namespace weave::sim {
+
+/// How far a relaxation has come.
+struct Progress {
+    std::size_t iteration = 0;
+    double residual = 0;  ///< max |P∇E| / F_ref
+    double energy = 0;    ///< N·mm
+    double seconds = 0;
+};
+
+struct RelaxOptions {
+    double residual = 1e-3;  ///< goal
+    std::size_t most_iterations = 500;
+    double most_seconds = 1e30;
+    /// Called after every iteration; false stops with the last state kept.
+    std::function<bool(const Progress&)> watch;
+};
+
+enum class Ending : std::uint8_t { converged, stopped, iterations, time, stuck };
+
+struct RelaxResult {
+    Ending ending = Ending::converged;
+    double residual = 0, energy = 0, reference_N = 0;
+    std::size_t iterations = 0, evaluations = 0, cg_iterations = 0, builds = 0;
+    double seconds = 0;
+    bool curves_down = false;  ///< the last matrix had a direction of negative curvature: a saddle, not a minimum
+    std::vector<Progress> history;
+};
+
+/// The force that residuals are measured by: the greatest of warp tension, median contact force of the segments that
+/// touch, EI/L² and 1e-6·EA, in N; 0 for an empty scene.
+template <class Real>
+double reference_force(Energy<Real>& energy, const std::vector<Real>& state);
+
+/// Greatest |gradient| of a control point, N.
+template <class Real>
+double greatest_force(const Executor& executor, const std::vector<Real>& gradient);
+
+/// Relaxes to an equilibrium by damped Newton steps: the matrix is convex far from rest and exact near it,
+/// preconditioned conjugate gradients solve for the step, and no step lets yarns pass through one another.
+template <class Real>
+RelaxResult relax(Energy<Real>& energy, std::vector<Real>& state, const RelaxOptions& options);
+
+}  // namespace weave::sim

@@ -1,0 +1,42 @@
+#pragma once
+
+#include <weave/curve/vec3.hpp>
+#include <weave/design/scene.hpp>
+
+#include <array>
+#include <cstddef>
+#include <cstdint>
+#include <vector>
+
+namespace weave::sim {
+
+/// A yarn as the solvers see it; lengths mm, forces N.
+struct SimYarn {
+    std::vector<Vec3> control;  ///< control points of its uniform cubic B-spline (curve/spline.hpp)
+    bool is_periodic = false;
+    Vec3 shift{0, 0, 0};        ///< of a periodic yarn from its end to its next beginning
+    std::array<int, 2> turns{};  ///< how many periods in x and y `shift` is
+    std::vector<std::uint8_t> frozen;  ///< per control point: it does not move; empty: all move
+    double radius_mm = 0;
+    double stretch_N = 0;         ///< EA
+    double bending_N_mm2 = 0;     ///< EI
+    double contact_N_mm2 = 0;     ///< k
+    double gram_per_mm = 0;
+    bool is_fed = false;          ///< at constant tension (warp); else a fixed length
+    double strain = 1;            ///< target S of a fed yarn, at least 1
+    double rest_mm = 0;           ///< unstretched length of a yarn of fixed length, whole
+};
+
+/// Everything that is simulated: yarns in one repeat, or in a piece with rims.
+struct SimScene {
+    std::vector<SimYarn> yarns;
+    std::array<double, 2> period_mm{};
+    std::array<bool, 2> is_periodic{};
+    std::vector<ForceField> fields;
+    double gravity_mm_ms2 = 0;  ///< along -z
+    double friction = 0;
+    /// Greatest distance of contact samples, as a share of the smallest sum of two radii (1/4: see the accuracy notes).
+    double sample_spacing = 0.25;
+};
+
+}  // namespace weave::sim

@@ -1,0 +1,301 @@
+#include <weave/design/document.hpp>
+#include <weave/loom/pick_table.hpp>
+#include <weave/sim/order.hpp>
+#include <weave/sim/simulate.hpp>
+
+#include <algorithm>
+#include <cmath>
+#include <fstream>
+#include <string>
+
+namespace weave::sim {
+
+namespace {
+
+/// The process's greatest memory so far in bytes; 0 where the system does not say.
+std::uint64_t peak_bytes() {
+    std::ifstream status("/proc/self/status");
+    for (std::string line; std::getline(status, line);) {
+        if (line.rfind("VmHWM:", 0) == 0) return std::stoull(line.substr(6)) * 1024;
+    }
+    return 0;
+}
+
+std::string_view name_of(Ending ending) {
+    constexpr std::string_view names[]{"converged", "stopped", "iterations", "time", "stuck"};
+    return names[static_cast<std::size_t>(ending)];
+}
+
+struct Contacts {
+    std::size_t touching = 0;  ///< pairs of segments
+    double overlap = 0;        ///< greatest 1 - d/D
+};
+
+Contacts contacts_of(Energy<double>& energy, const std::vector<double>& state) {
+    const FabricView<double> fabric = energy.view(state);
+    Neighbours<double>& neighbours = energy.neighbours();
+    Contacts contacts;
+    std::vector<std::uint32_t> seen(energy.fabric().segments(), 0xffffffffU);
+    std::size_t from_both = 0;
+    for (std::uint32_t a = 0; a < energy.fabric().samples(); ++a) {
+        const std::uint32_t mine = neighbours.segment_of(a);
+        for (std::uint32_t e = fabric.first_neighbour[a]; e < fabric.first_neighbour[a + 1]; ++e) {
+            const std::uint32_t b = fabric.neighbours[e];
+            const double dx = fabric.samples.x[a] - fabric.samples.x[b], dy = fabric.samples.y[a] - fabric.samples.y[b],
+                         dz = fabric.samples.z[a] - fabric.samples.z[b];
+            const double share = std::sqrt(dx * dx + dy * dy + dz * dz) / (fabric.samples.radius[a] + fabric.samples.radius[b]);
+            if (share >= 1) continue;
+            contacts.overlap = std::max(contacts.overlap, 1 - share);
+            std::uint32_t& last = seen[neighbours.segment_of(neighbours.own(b))];
+            from_both += last == mine ? 0 : 1;
+            last = mine;
+        }
+    }
+    contacts.touching = from_both / 2;
+    return contacts;
+}
+
+/// The relaxed repeat becomes yarns with what is known of each.
+class Result {
+  public:
+    Result(const Design& design, const Plan& plan, Energy<double>& energy, const std::vector<double>& state)
+        : m_design(design), m_plan(plan), m_fabric(energy.fabric()), m_state(state) {
+        energy.evaluate(state, m_contact, {.elastic = false, .contact = true});
+    }
+
+    [[nodiscard]] Yarns yarns() const {
+        Yarns yarns;
+        yarns.title = m_design.title;
+        yarns.design_sha256 = weave::design_sha256(m_design);
+        yarns.scene_sha256 = weave::scene_sha256(m_design);
+        yarns.size_mm = m_plan.curves.size_mm;
+        yarns.is_periodic = m_plan.curves.is_periodic;
+        yarns.region = m_plan.curves.region;
+        yarns.cloth_rows = m_plan.cloth_rows;
+        yarns.cloth_columns = m_plan.cloth_columns;
+        std::vector<std::size_t> index_of_curve(m_plan.curves.yarns.size(), m_plan.curve_of.size());
+        for (std::size_t y = 0; y < m_plan.curve_of.size(); ++y) {
+            index_of_curve[m_plan.curve_of[y]] = y;
+            yarns.yarns.push_back(yarn(y));
+        }
+        for (Crossing crossing : m_plan.curves.crossings) {
+            crossing.weft = index_of_curve[crossing.weft];
+            crossing.warp = index_of_curve[crossing.warp];
+            if (crossing.weft < m_plan.curve_of.size() && crossing.warp < m_plan.curve_of.size())
+                yarns.crossings.push_back(crossing);
+        }
+        return yarns;
+    }
+
+    /// One spline a curve of the plan; empty for those that were left out.
+    [[nodiscard]] std::vector<Spline> splines() const {
+        std::vector<Spline> splines(m_plan.curves.yarns.size());
+        const std::vector<std::vector<Vec3>> control = m_fabric.control(m_state);
+        for (std::size_t y = 0; y < control.size(); ++y) splines[m_plan.curve_of[y]] = spline(y, control[y]);
+        return splines;
+    }
+
+  private:
+    [[nodiscard]] Spline spline(std::size_t y, std::vector<Vec3> control) const {
+        const SimYarn& yarn = m_plan.scene.yarns[y];
+        return {std::move(control), yarn.is_periodic, yarn.shift};
+    }
+
+    [[nodiscard]] SimulatedYarn yarn(std::size_t y) const {
+        const SimYarn& planned = m_plan.scene.yarns[y];
+        const YarnCurve& curve = m_plan.curves.yarns[m_plan.curve_of[y]];
+        const YarnPlace& place = m_fabric.yarns()[y];
+        const bool warp = curve.system == System::warp;
+        SimulatedYarn yarn;
+        yarn.system = curve.system;
+        yarn.number = curve.number;
+        yarn.beam = warp ? m_design.warp.beam_order.at(curve.number) : 0;
+        yarn.radius_mm = planned.radius_mm;
+        yarn.colour = warp ? colour_of_end(m_design, curve.number) : m_design.weft.yarns[curve.type].colour;
+        yarn.spline = spline(y, {});
+        for (std::size_t i = 0; i < place.points; ++i) {
+            const std::size_t at = 3 * (place.first_slot + 1 + i);
+            yarn.spline.control.push_back(load(&m_state[at]));
+            yarn.contact_N.push_back(load(&m_contact[at]).norm());
+        }
+        yarn.planned = planned.control;
+        measure(planned, place, yarn);
+        return yarn;
+    }
+
+    /// Lengths, and the strain at each control point: of a fed yarn its rest length is the length over S.
+    void measure(const SimYarn& planned, const YarnPlace& place, SimulatedYarn& yarn) const {
+        std::vector<double> rest;
+        for (std::size_t s = 0; s < place.segments; ++s) {
+            const Speeds<double> speeds(m_fabric.gauss(), &m_state[3 * (place.first_slot + s)]);
+            yarn.length_mm += speeds.length;
+            rest.push_back(planned.is_fed ? speeds.length / planned.strain
+                                          : planned.rest_mm / static_cast<double>(place.segments));
+        }
+        for (std::size_t i = 0; i < place.points; ++i) {
+            const double speed = yarn.spline.tangent(static_cast<double>(i)).norm();
+            yarn.strain.push_back(speed / rest[std::min(i, rest.size() - 1)] - 1);
+        }
+        yarn.rest_length_mm = planned.is_fed ? yarn.length_mm / planned.strain : planned.rest_mm;
+        yarn.planned_length_mm = planned.is_periodic ? planned.shift.norm()
+                                                     : (planned.control.back() - planned.control.front()).norm();
+    }
+
+    const Design& m_design;
+    const Plan& m_plan;
+    const Fabric<double>& m_fabric;
+    const std::vector<double>& m_state;
+    std::vector<double> m_contact;
+};
+
+/// Appends a copy of a list to itself, each element changed.
+template <class T, class Change>
+void append_copy(std::vector<T>& list, std::size_t count, Change change) {
+    for (std::size_t i = 0; i < count; ++i) list.push_back(change(list[i]));
+}
+
+/// A yarn of one repeat goes on through `times` repeats.
+void lengthen(SimulatedYarn& yarn, std::size_t times) {
+    const std::size_t points = yarn.spline.control.size();
+    const Vec3 shift = yarn.spline.shift;
+    for (std::size_t k = 1; k < times; ++k) {
+        const auto moved = [&](const Vec3& place) { return Vec3(place + static_cast<double>(k) * shift); };
+        append_copy(yarn.spline.control, points, moved);
+        append_copy(yarn.planned, points, moved);
+        append_copy(yarn.strain, points, [](double x) { return x; });
+        append_copy(yarn.contact_N, points, [](double x) { return x; });
+    }
+    const auto factor = static_cast<double>(times);
+    yarn.spline.shift = factor * shift;
+    yarn.length_mm *= factor;
+    yarn.rest_length_mm *= factor;
+    yarn.planned_length_mm *= factor;
+}
+
+
+/// Copies a repeat back over the whole cloth.
+Yarns copied_back(Yarns yarns, const Plan& plan, const Design& design) {
+    const std::array<std::size_t, 2>& times = plan.repeats;
+    if (times[0] * times[1] == 1) return yarns;
+    struct {
+        std::size_t picks = 0, ends = 0;
+    } count;
+    for (const Crossing& crossing : plan.curves.crossings) {
+        count.picks = std::max(count.picks, crossing.pick + 1);
+        count.ends = std::max(count.ends, crossing.end + 1);
+    }
+    std::vector<SimulatedYarn> wefts, warps;
+    for (std::size_t x = 0; x < times[0]; ++x) {
+        for (const SimulatedYarn& yarn : yarns.yarns) {
+            if (yarn.system != System::weft) continue;
+            SimulatedYarn copy = yarn;
+            copy.number += x * count.picks;
+            const Vec3 shift(static_cast<double>(x) * yarns.size_mm[0], 0, 0);
+            for (std::vector<Vec3>* places : {&copy.spline.control, &copy.planned}) {
+                for (Vec3& place : *places) place += shift;
+            }
+            lengthen(copy, times[1]);
+            wefts.push_back(std::move(copy));
+        }
+    }
+    for (std::size_t y = 0; y < times[1]; ++y) {
+        for (const SimulatedYarn& yarn : yarns.yarns) {
+            if (yarn.system != System::warp) continue;
+            SimulatedYarn copy = yarn;
+            copy.number += y * count.ends;
+            copy.beam = design.warp.beam_order.at(copy.number);
+            copy.colour = colour_of_end(design, copy.number);
+            const Vec3 shift(0, static_cast<double>(y) * yarns.size_mm[1], 0);
+            for (std::vector<Vec3>* places : {&copy.spline.control, &copy.planned}) {
+                for (Vec3& place : *places) place += shift;
+            }
+            lengthen(copy, times[0]);
+            warps.push_back(std::move(copy));
+        }
+    }
+    Yarns whole = yarns;
+    whole.region = {0, plan.cloth_rows - 1, 0, plan.cloth_columns - 1};
+    whole.yarns = wefts;
+    whole.yarns.insert(whole.yarns.end(), warps.begin(), warps.end());
+    whole.crossings.clear();
+    const std::size_t weft_yarns = wefts.size() / times[0], warp_yarns = warps.size() / times[1];
+    for (std::size_t x = 0; x < times[0]; ++x) {
+        for (std::size_t y = 0; y < times[1]; ++y) {
+            for (Crossing crossing : yarns.crossings) {
+                const YarnCurve &weft = plan.curves.yarns[plan.curve_of[crossing.weft]],
+                                &warp = plan.curves.yarns[plan.curve_of[crossing.warp]];
+                crossing.weft_key += y * weft.keys.size();
+                crossing.warp_key += x * warp.keys.size();
+                crossing.weft += x * weft_yarns;
+                crossing.warp = wefts.size() + y * warp_yarns + (crossing.warp - weft_yarns);
+                crossing.pick += x * count.picks;
+                crossing.end += y * count.ends;
+                whole.crossings.push_back(crossing);
+            }
+        }
+    }
+    whole.size_mm = {yarns.size_mm[0] * static_cast<double>(times[0]), yarns.size_mm[1] * static_cast<double>(times[1])};
+    return whole;
+}
+
+Json plan_json(const Plan& plan) {
+    Json lines = Json::array();
+    for (const PlanLine& line : plan.lines)
+        lines.push_back({{"term", line.term}, {"choice", line.choice}, {"reason", line.reason}});
+    return lines;
+}
+
+Json coverage_of(const Plan& plan) {
+    const Region& region = plan.curves.region;
+    return {{"rows", {region.first_row, region.last_row}},
+            {"columns", {region.first_column, region.last_column}},
+            {"repeats", {plan.repeats[0], plan.repeats[1]}}};
+}
+
+}  // namespace
+
+Yarns simulate(const Design& design, const Plan& plan, const SimulationOptions& options) {
+    const Executor executor(options.threads);
+    const Fabric<double> fabric(plan.scene);
+    Energy<double> energy(fabric, executor);
+    std::vector<double> state = fabric.state();
+    RelaxOptions relax_options;
+    relax_options.residual = options.residual.value_or(plan.goal);
+    relax_options.most_iterations = options.most_iterations;
+    relax_options.most_seconds = options.most_seconds;
+    relax_options.watch = options.watch;
+    const RelaxResult ended = relax(energy, state, relax_options);
+
+    const Result result(design, plan, energy, state);
+    const Contacts contacts = contacts_of(energy, state);
+    const std::vector<LostCrossing> lost = lost_crossings(plan.curves, result.splines());
+    Yarns yarns = copied_back(result.yarns(), plan, design);
+    yarns.report = {{"design_sha256", yarns.design_sha256},
+                    {"scene_sha256", yarns.scene_sha256},
+                    {"coverage", coverage_of(plan)},
+                    {"solver", "relax"},
+                    {"backend", "cpu"},
+                    {"fidelity", std::string(sim::name_of(plan.fidelity))},
+                    {"points_per_key", plan.points_per_key},
+                    {"converged", ended.ending == Ending::converged},
+                    {"ending", std::string(name_of(ended.ending))},
+                    {"goal", relax_options.residual},
+                    {"residual", ended.residual},
+                    {"reference_N", ended.reference_N},
+                    {"energy_N_mm", ended.energy},
+                    {"points", fabric.points()},
+                    {"contacts", contacts.touching},
+                    {"iterations", ended.iterations},
+                    {"evaluations", ended.evaluations},
+                    {"seconds", ended.seconds},
+                    {"curves_down", ended.curves_down},
+                    {"order_kept", lost.empty()},
+                    {"crossings", plan.curves.crossings.size()},
+                    {"lost_crossings", lost.size()},
+                    {"max_overlap", contacts.overlap},
+                    {"plan", plan_json(plan)},
+                    {"peak_bytes", peak_bytes()}};
+    return yarns;
+}
+
+}  // namespace weave::sim

@@ -1,0 +1,142 @@
+// How far yarns may be moved at once.
+
+#include "scenes.hpp"
+
+#include <catch2/catch.hpp>
+
+using namespace weave;
+using namespace weave::sim;
+using namespace weave::sim::testing;
+
+namespace {
+
+/// A change of state that moves what may move by up to `size`.
+std::vector<double> random_change(Random& random, const Bench<double>& bench, double size) {
+    std::vector<double> change(bench.state.size(), 0.0);
+    for (std::size_t slot = 0; slot < bench.fabric.slots(); ++slot) {
+        if (bench.fabric.moves()[slot] == 0) continue;
+        const Vec3 by = jitter(random, size);
+        for (std::size_t k = 0; k < 3; ++k) change[3 * slot + k] = by[static_cast<Eigen::Index>(k)];
+    }
+    bench.fabric.follow_change(change);
+    return change;
+}
+
+std::vector<Vec3> sample_places(Bench<double>& bench) {
+    const SamplesView<double> all = bench.energy.neighbours().samples();
+    std::vector<Vec3> places;
+    for (std::size_t s = 0; s < bench.fabric.samples() + bench.energy.neighbours().halo(); ++s)
+        places.emplace_back(all.x[s], all.y[s], all.z[s]);
+    return places;
+}
+
+/// Samples of another yarn: how far apart they are, and how far one moves towards the other.
+struct Worst {
+    double pair = 0;      ///< greatest change of a pair's difference, as a share of its distance
+    double movement = 0;  ///< of a sample, mm
+};
+
+/// What a change does to every pair of samples of two yarns that come within reach, images included.
+Worst worst_of(Bench<double>& bench, const std::vector<double>& change, double share) {
+    bench.evaluate();
+    Neighbours<double>& neighbours = bench.energy.neighbours();
+    const std::vector<Vec3> before = sample_places(bench);
+    std::vector<std::vector<std::uint32_t>> near(bench.fabric.samples());
+    for (std::size_t a = 0; a < near.size(); ++a)
+        near[a].assign(neighbours.others() + neighbours.first()[a],
+                       neighbours.others() + neighbours.first()[a + 1]);
+    std::vector<Vec3> moved(bench.fabric.samples());
+    for (std::size_t s = 0; s < bench.fabric.segments(); ++s) {
+        const SegmentPlace& place = bench.fabric.segment_places()[s];
+        const YarnConstants<double>& yarn = bench.fabric.constants()[place.yarn];
+        for (std::uint32_t k = 0; k < yarn.samples; ++k)
+            moved[place.sample + k] = share * combine(bench.fabric.bases()[yarn.basis + k].value,
+                                                      &change[3 * std::size_t(place.slot)]);
+    }
+    Worst worst;
+    for (std::size_t a = 0; a < near.size(); ++a) {
+        worst.movement = std::max(worst.movement, moved[a].norm());
+        for (const std::uint32_t b : near[a])
+            worst.pair = std::max(
+                worst.pair, (moved[a] - moved[neighbours.own(b)]).norm() / (before[a] - before[b]).norm());
+    }
+    return worst;
+}
+
+SimScene some_scene(Random& random) {
+    if (random.coin()) return heap(random, random.between(2, 4), 0.05);
+    SimScene scene = plain_weave({.count = 2, .points_a_crossing = random.between(2, 4), .swing = 0.7});
+    for (SimYarn& yarn : scene.yarns) shake(random, yarn, 0.03);
+    return scene;
+}
+
+}  // namespace
+
+TEST_CASE("a safe share of a change brings no pair nearer by half, and is not smaller than it must be") {
+    weave::testing::for_all(
+        [](Random& random) {
+            Bench bench(some_scene(random));
+            bench.evaluate();
+            const std::vector<double> change =
+                random_change(random, bench, std::pow(10, uniform(random, -3, 1)));
+            const double share = bench.energy.safe_share(bench.state, change, 2);
+            REQUIRE(share > 0);
+            REQUIRE(share <= 2);
+            const Worst worst = worst_of(bench, change, share);
+            const double reach = bench.fabric.least_reach();
+            CHECK(worst.pair <= 0.45 * (1 + 1e-9));
+            CHECK(worst.movement <= reach / 4 * (1 + 1e-9));
+            const bool binds =
+                share == 2 || worst.pair > 0.45 * (1 - 1e-9) || worst.movement > reach / 4 * (1 - 1e-9);
+            CHECK(binds);
+        },
+        200);
+}
+
+TEST_CASE("whole cloth moved at once is bounded by the samples' reach alone") {
+    Bench bench(plain_weave({}));
+    bench.evaluate();
+    std::vector<double> change(bench.state.size(), 0.0);
+    for (std::size_t i = 2; i < change.size(); i += 3) change[i] = 1;
+    CHECK(bench.energy.safe_share(bench.state, change, 10) == Approx(bench.fabric.least_reach() / 4));
+    const std::vector<double> nothing(bench.state.size(), 0.0);
+    CHECK(bench.energy.safe_share(bench.state, nothing, 10) == 10);
+}
+
+TEST_CASE("a shortened change is safe") {
+    std::size_t cases = 0, safe = 0;
+    weave::testing::for_all(
+        [&](Random& random) {
+            Bench bench(some_scene(random));
+            bench.evaluate();
+            std::vector<double> change = random_change(random, bench, std::pow(10, uniform(random, -3, 1)));
+            const std::vector<double> before = change;
+            bench.energy.shorten(bench.state, change);
+            for (std::size_t slot = 0; slot < bench.fabric.slots(); ++slot) {
+                if (bench.fabric.moves()[slot] == 0) continue;
+                const Vec3 now = load(&change[3 * slot]), was = load(&before[3 * slot]);
+                CHECK(now.norm() <= was.norm());
+                CHECK(now.cross(was).norm() <= 1e-12 * was.squaredNorm());
+            }
+            const Worst worst = worst_of(bench, change, 1);
+            CHECK(worst.pair < 1);
+            ++cases;
+            safe += worst.pair < 0.4501 ? 1 : 0;
+        },
+        200);
+    std::printf("%zu of %zu changes came within 0.45 of each distance\n", safe, cases);
+}
+
+TEST_CASE("a change that is safe is not shortened") {
+    weave::testing::for_all(
+        [](Random& random) {
+            Bench bench(some_scene(random));
+            bench.evaluate();
+            std::vector<double> change = random_change(random, bench, 1e-6);
+            if (bench.energy.safe_share(bench.state, change, 1) < 1) return;
+            const std::vector<double> before = change;
+            bench.energy.shorten(bench.state, change);
+            CHECK(change == before);
+        },
+        50);
+}
