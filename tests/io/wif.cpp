@@ -265,6 +265,7 @@ TEST_CASE("no damage to a WIF file brings the reader down") {
             REQUIRE(check(read->design));
             ++read_well;
         } else {
+            INFO(read.error().text());
             REQUIRE(read.error().where.find("line ") == 0);
             REQUIRE_FALSE(read.error().message.empty());
             ++refused;

@@ -122,6 +122,8 @@ Status apply_private(std::string_view text, const File& file, Design& design, Wa
         WEAVE_CHECK_OK(read_plans_of_ours(*section, design));
     }
     design.blocks[design.root] = std::make_shared<const Node>(Node{std::move(leaf), {}});
+    // What our section says is read as it stands; that it fits together shows only now.
+    if (const Status fits = check(design); !fits) return bad_input(fits.error().text(), place(section->line));
     return {};
 }
 
