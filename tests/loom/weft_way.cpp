@@ -192,14 +192,14 @@ constexpr std::uint64_t settled_seed = 1;
 TEST_CASE("several feeders: loops rest where the diagram reducer leaves them") {
     Tally tally;
     const std::uint64_t seed = std::getenv("WEAVE_SEED") != nullptr ? run_seed() : settled_seed;
-    for (std::size_t k = 0; k < property_cases(); ++k) {
-        INFO("WEAVE_SEED=" << seed << ", case " << k);
-        Random random(seed + k * 0x9e3779b97f4a7c15);
-        std::vector<std::uint32_t> feeders(random.between(2, 6));
-        for (auto& feeder : feeders) feeder = static_cast<std::uint32_t>(random.between(0, 2));
-        const CardImage card = random_card(random, feeders, random.between(1, 4));
-        compare(card, picks_of(feeders, {random.coin(), random.coin(), random.coin()}), 3, tally);
-    }
+    for_all(
+        [&](Random& random) {
+            std::vector<std::uint32_t> feeders(random.between(2, 6));
+            for (auto& feeder : feeders) feeder = static_cast<std::uint32_t>(random.between(0, 2));
+            const CardImage card = random_card(random, feeders, random.between(1, 4));
+            compare(card, picks_of(feeders, {random.coin(), random.coin(), random.coin()}), 3, tally);
+        },
+        property_cases(), seed);
     std::printf("compared %zu, crossed %zu (%zu compared in part), given up %zu, caught by picks %zu\n",
                 tally.compared, tally.crossed, tally.crossed_compared, tally.gave_up, tally.by_pick);
     CHECK(tally.gave_up * 20 <= tally.compared);

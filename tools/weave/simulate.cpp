@@ -138,10 +138,7 @@ Status run_simulation(Program& program, const Wish& wish) {
     if (!planned) return std::move(planned).error().in(wish.file);
     const sim::Plan& plan = *planned;
     if (wish.explain) {
-        Json lines = Json::array();
-        for (const sim::PlanLine& line : plan.lines)
-            lines.push_back({{"term", line.term}, {"choice", line.choice}, {"reason", line.reason}});
-        program.answer({{"plan", lines}, {"yarns", plan.scene.yarns.size()}}, in_words(plan));
+        program.answer({{"plan", sim::lines_json(plan)}, {"yarns", plan.scene.yarns.size()}}, in_words(plan));
         return {};
     }
     if (wish.out.empty()) return usage_error("say where the yarns go: -o OUT.yarns", "");

@@ -11,7 +11,6 @@ namespace {
 
 using ConstBlock = Eigen::Map<const BlockMatrix::Block>;
 
-
 Eigen::Map<BlockMatrix::Block> block_of(std::vector<float>& values, std::size_t at) {
     return Eigen::Map<BlockMatrix::Block>(values.data() + 9 * at);
 }
@@ -63,7 +62,6 @@ void IncompleteCholesky::factor(const BlockMatrix& matrix) {
         m_first.push_back(static_cast<std::uint32_t>(m_columns.size()));
     }
     m_lower.resize(9 * m_columns.size());
-    m_pivot.resize(9 * matrix.rows());
     m_inverse.resize(9 * matrix.rows());
     std::vector<std::int32_t> place(matrix.rows(), -1);
     for (std::size_t row = 0; row < matrix.rows(); ++row) factor_row(matrix, row, place);

@@ -62,7 +62,7 @@ class IncompleteCholesky : public Preconditioner {
 
     std::vector<std::uint32_t> m_first, m_columns;  ///< strictly lower half
     std::vector<float> m_lower;                     ///< L, 9 a block
-    std::vector<float> m_pivot, m_inverse;          ///< D and its inverse
+    std::vector<float> m_inverse;                   ///< of D, 9 a row
     std::size_t m_lifted = 0;
 };
 

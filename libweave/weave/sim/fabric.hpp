@@ -27,7 +27,7 @@ struct FollowSlot {
     int turns = 0;  ///< times the yarn's shift
 };
 
-/// One number for each yarn of the piece, its halo image, and where it came from.
+/// An image of an own contact sample, some periods away.
 struct HaloSample {
     std::uint32_t of = 0;                ///< own sample
     std::array<std::int16_t, 2> image{};  ///< periods in x and y
@@ -53,7 +53,7 @@ class Fabric {
     [[nodiscard]] const std::vector<FollowSlot>& follows() const { return m_follows; }
     /// Whether a slot is a control point that may move.
     [[nodiscard]] const std::vector<std::uint8_t>& moves() const { return m_moves; }
-    /// The first segment among those that reach a slot, in 4 contributions: segment s adds to slots s.slot + 0 … 3.
+    /// Index of the yarn that each slot belongs to.
     [[nodiscard]] const std::vector<std::uint32_t>& yarn_of_slot() const { return m_yarn_of_slot; }
     /// Smallest sum of two radii, and the greatest radius, mm.
     [[nodiscard]] double least_reach() const { return m_least_reach; }
@@ -61,7 +61,7 @@ class Fabric {
 
     /// The state of the scene's control points.
     [[nodiscard]] std::vector<Real> state() const;
-    /// Puts a state's control points back into the scene's yarns.
+    /// The control points of a state, yarn by yarn.
     [[nodiscard]] std::vector<std::vector<Vec3>> control(const std::vector<Real>& state) const;
     /// Places the following slots of a state.
     void follow(std::vector<Real>& state) const;
@@ -74,7 +74,6 @@ class Fabric {
     void add_yarn(const SimYarn& yarn);
     void add_follows(const SimYarn& yarn, const YarnPlace& place);
     std::uint32_t basis_for(std::uint32_t samples);
-    void set_constants();
 
     SimScene m_scene;
     std::vector<YarnPlace> m_places;

@@ -280,6 +280,13 @@ std::string_view name_of(Fidelity fidelity) {
     return names[static_cast<std::size_t>(fidelity)];
 }
 
+Json lines_json(const Plan& plan) {
+    Json lines = Json::array();
+    for (const PlanLine& line : plan.lines)
+        lines.push_back({{"term", line.term}, {"choice", line.choice}, {"reason", line.reason}});
+    return lines;
+}
+
 Result<Plan> make_plan(const Design& design, const Block& block, const SimulationRequest& request) {
     return Planner(design, block, request).run();
 }

@@ -52,6 +52,9 @@ struct Plan {
     double goal = 0;  ///< residual
 };
 
+/// The lines of a plan as `plan[]` of `weave simulate --json`: term, choice, reason.
+Json lines_json(const Plan& plan);
+
 /// Derives the plan from a design's scene. Errors: nothing to simulate; yarns fed at constant tension whose ends are
 /// free, which would shrink for ever; a region outside the cloth; overrides out of range.
 Result<Plan> make_plan(const Design& design, const Block& block, const SimulationRequest& request);

@@ -56,9 +56,9 @@ Contacts contacts_of(Energy<double>& energy, const std::vector<double>& state) {
 }
 
 /// The relaxed repeat becomes yarns with what is known of each.
-class Result {
+class RelaxedRepeat {
   public:
-    Result(const Design& design, const Plan& plan, Energy<double>& energy, const std::vector<double>& state)
+    RelaxedRepeat(const Design& design, const Plan& plan, Energy<double>& energy, const std::vector<double>& state)
         : m_design(design), m_plan(plan), m_fabric(energy.fabric()), m_state(state) {
         energy.evaluate(state, m_contact, {.elastic = false, .contact = true});
     }
@@ -148,30 +148,56 @@ class Result {
     std::vector<double> m_contact;
 };
 
-/// Appends a copy of a list to itself, each element changed.
-template <class T, class Change>
-void append_copy(std::vector<T>& list, std::size_t count, Change change) {
-    for (std::size_t i = 0; i < count; ++i) list.push_back(change(list[i]));
+/// Appends copies of a list to itself until it is `times` as long.
+void repeat(std::vector<double>& list, std::size_t times) {
+    const std::size_t once = list.size();
+    for (std::size_t i = 0; i < once * (times - 1); ++i) list.push_back(list[i]);
+}
+
+/// The same for places, each copy a `shift` further.
+void repeat(std::vector<Vec3>& places, std::size_t times, const Vec3& shift) {
+    const std::size_t once = places.size();
+    for (std::size_t i = 0; i < once * (times - 1); ++i) places.push_back(places[i] + shift);
 }
 
 /// A yarn of one repeat goes on through `times` repeats.
 void lengthen(SimulatedYarn& yarn, std::size_t times) {
-    const std::size_t points = yarn.spline.control.size();
-    const Vec3 shift = yarn.spline.shift;
-    for (std::size_t k = 1; k < times; ++k) {
-        const auto moved = [&](const Vec3& place) { return Vec3(place + static_cast<double>(k) * shift); };
-        append_copy(yarn.spline.control, points, moved);
-        append_copy(yarn.planned, points, moved);
-        append_copy(yarn.strain, points, [](double x) { return x; });
-        append_copy(yarn.contact_N, points, [](double x) { return x; });
-    }
+    repeat(yarn.spline.control, times, yarn.spline.shift);
+    repeat(yarn.planned, times, yarn.spline.shift);
+    repeat(yarn.strain, times);
+    repeat(yarn.contact_N, times);
     const auto factor = static_cast<double>(times);
-    yarn.spline.shift = factor * shift;
+    yarn.spline.shift *= factor;
     yarn.length_mm *= factor;
     yarn.rest_length_mm *= factor;
     yarn.planned_length_mm *= factor;
 }
 
+void move(SimulatedYarn& yarn, const Vec3& by) {
+    for (std::vector<Vec3>* places : {&yarn.spline.control, &yarn.planned}) {
+        for (Vec3& place : *places) place += by;
+    }
+}
+
+/// The yarns of one system over the whole cloth: `across` times side by side, each through `along` repeats.
+std::vector<SimulatedYarn> copies_of(const Yarns& repeat, System system, std::size_t across, std::size_t along,
+                                     std::size_t numbers, const Vec3& step, const Design& design) {
+    std::vector<SimulatedYarn> copies;
+    for (std::size_t k = 0; k < across; ++k) {
+        for (SimulatedYarn copy : repeat.yarns) {
+            if (copy.system != system) continue;
+            copy.number += k * numbers;
+            if (system == System::warp) {
+                copy.beam = design.warp.beam_order.at(copy.number);
+                copy.colour = colour_of_end(design, copy.number);
+            }
+            move(copy, static_cast<double>(k) * step);
+            lengthen(copy, along);
+            copies.push_back(std::move(copy));
+        }
+    }
+    return copies;
+}
 
 /// Copies a repeat back over the whole cloth.
 Yarns copied_back(Yarns yarns, const Plan& plan, const Design& design) {
@@ -184,35 +210,10 @@ Yarns copied_back(Yarns yarns, const Plan& plan, const Design& design) {
         count.picks = std::max(count.picks, crossing.pick + 1);
         count.ends = std::max(count.ends, crossing.end + 1);
     }
-    std::vector<SimulatedYarn> wefts, warps;
-    for (std::size_t x = 0; x < times[0]; ++x) {
-        for (const SimulatedYarn& yarn : yarns.yarns) {
-            if (yarn.system != System::weft) continue;
-            SimulatedYarn copy = yarn;
-            copy.number += x * count.picks;
-            const Vec3 shift(static_cast<double>(x) * yarns.size_mm[0], 0, 0);
-            for (std::vector<Vec3>* places : {&copy.spline.control, &copy.planned}) {
-                for (Vec3& place : *places) place += shift;
-            }
-            lengthen(copy, times[1]);
-            wefts.push_back(std::move(copy));
-        }
-    }
-    for (std::size_t y = 0; y < times[1]; ++y) {
-        for (const SimulatedYarn& yarn : yarns.yarns) {
-            if (yarn.system != System::warp) continue;
-            SimulatedYarn copy = yarn;
-            copy.number += y * count.ends;
-            copy.beam = design.warp.beam_order.at(copy.number);
-            copy.colour = colour_of_end(design, copy.number);
-            const Vec3 shift(0, static_cast<double>(y) * yarns.size_mm[1], 0);
-            for (std::vector<Vec3>* places : {&copy.spline.control, &copy.planned}) {
-                for (Vec3& place : *places) place += shift;
-            }
-            lengthen(copy, times[0]);
-            warps.push_back(std::move(copy));
-        }
-    }
+    const std::vector<SimulatedYarn> wefts = copies_of(yarns, System::weft, times[0], times[1], count.picks,
+                                                       Vec3(yarns.size_mm[0], 0, 0), design),
+                                     warps = copies_of(yarns, System::warp, times[1], times[0], count.ends,
+                                                       Vec3(0, yarns.size_mm[1], 0), design);
     Yarns whole = yarns;
     whole.region = {0, plan.cloth_rows - 1, 0, plan.cloth_columns - 1};
     whole.yarns = wefts;
@@ -238,13 +239,6 @@ Yarns copied_back(Yarns yarns, const Plan& plan, const Design& design) {
     return whole;
 }
 
-Json plan_json(const Plan& plan) {
-    Json lines = Json::array();
-    for (const PlanLine& line : plan.lines)
-        lines.push_back({{"term", line.term}, {"choice", line.choice}, {"reason", line.reason}});
-    return lines;
-}
-
 Json coverage_of(const Plan& plan) {
     const Region& region = plan.curves.region;
     return {{"rows", {region.first_row, region.last_row}},
@@ -266,7 +260,7 @@ Yarns simulate(const Design& design, const Plan& plan, const SimulationOptions& 
     relax_options.watch = options.watch;
     const RelaxResult ended = relax(energy, state, relax_options);
 
-    const Result result(design, plan, energy, state);
+    const RelaxedRepeat result(design, plan, energy, state);
     const Contacts contacts = contacts_of(energy, state);
     const std::vector<LostCrossing> lost = lost_crossings(plan.curves, result.splines());
     Yarns yarns = copied_back(result.yarns(), plan, design);
@@ -293,7 +287,7 @@ Yarns simulate(const Design& design, const Plan& plan, const SimulationOptions& 
                     {"crossings", plan.curves.crossings.size()},
                     {"lost_crossings", lost.size()},
                     {"max_overlap", contacts.overlap},
-                    {"plan", plan_json(plan)},
+                    {"plan", lines_json(plan)},
                     {"peak_bytes", peak_bytes()}};
     return yarns;
 }
