@@ -122,7 +122,7 @@ TEST_CASE("a block that claims a great height cannot be piled up into endless me
     REQUIRE_THAT(block_of_height(most_height + 1).error().message, Catch::Contains("higher than the limit"));
     const Block tall = block_of_height(most_height).value(), small = block_of_height(2).value();
     REQUIRE(tile(tall, 2, 2, 1).value().height() == most_height);
-    for (const std::size_t times : {2, 1000, 32768}) {
+    for (const std::size_t times : {2, 1000, 16384}) {
         REQUIRE_THAT(tile(tall, 1, 1, times).error().message, Catch::Contains("higher than the limit"));
     }
     REQUIRE_THAT(attach(tall, small, Face::plus_z).error().message, Catch::Contains("higher than the limit"));
@@ -138,11 +138,11 @@ TEST_CASE("a stack tiled to the greatest height takes no time to pile up") {
     const Block block = make_block({1}, {1}, [](auto, auto) {
                             return Stack({Slot::warp(0), Slot(), Slot::weft(0, true)});
                         }).value();
-    const Block high = tile(block, 1, 1, 32768).value();
-    REQUIRE(high.height() == 3 * 32768);
+    const Block high = tile(block, 1, 1, 16384).value();
+    REQUIRE(high.height() == 3 * 16384);
     REQUIRE(high.stack(0, 0).check());
-    REQUIRE(high.stack(0, 0).slots()[3 * 32767] == Slot::warp(32767));
-    REQUIRE(high.stack(0, 0).slots()[3 * 32767 + 2] == Slot::weft(32767, true));
+    REQUIRE(high.stack(0, 0).slots()[3 * 16383] == Slot::warp(16383));
+    REQUIRE(high.stack(0, 0).slots()[3 * 16383 + 2] == Slot::weft(16383, true));
 }
 
 TEST_CASE("attaching puts both blocks side by side on all six faces") {

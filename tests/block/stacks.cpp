@@ -81,9 +81,12 @@ TEST_CASE("an empty block and one beyond the crossing limit are refused") {
     REQUIRE_FALSE(Block::make({0}, {1}, {Stack({Slot::warp(0)})}, {0}));
     REQUIRE_FALSE(check_card_size(0, 5));
     REQUIRE_FALSE(check_card_size(UINT64_MAX, UINT64_MAX));
-    REQUIRE(check_card_size(1 << 15, 1 << 15));
-    REQUIRE_THAT(check_card_size((1 << 15) + 1, 1 << 15).error().message,
-                 Catch::Contains("larger than the limit"));
+    REQUIRE(check_card_size(20000, 20000));
+    REQUIRE(check_card_size(1 << 15, 1 << 14));
+    REQUIRE_THAT(check_card_size((1 << 15) + 1, 1 << 14).error().message, Catch::Contains("crossings"));
+    REQUIRE(check_card_size(1, most_yarns));
+    REQUIRE_THAT(check_card_size(1, most_yarns + 1).error().message, Catch::Contains("picks or ends"));
+    REQUIRE_THAT(check_card_size(most_yarns + 1, 1).error().message, Catch::Contains("picks or ends"));
 }
 
 TEST_CASE("a card's bits are packed from the left, first pick first, and its hash is theirs") {

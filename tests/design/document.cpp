@@ -285,7 +285,7 @@ TEST_CASE("a wrong card, map or slice is named by its row") {
         {"/blocks/card/card/0", "\"5\"", "blocks.card.card[0]", "two hexadecimal digits for each 8 ends"});
     refuses({"/blocks/card/card/1", "\"A0\"", "blocks.card.card[1]", "lower-case"});
     refuses({"/blocks/card/card/1", "\"a8\"", "blocks.card.card[1]", "the padding 0"});
-    refuses({"/blocks/card/ends", "268435455", "blocks.card.card[0]", "hexadecimal digits"});
+    refuses({"/blocks/card/ends", "16777216", "blocks.card.card[0]", "hexadecimal digits"});
     refuses({"/blocks/card/ends", "0", "blocks.card.ends", "whole number from 1"});
     refuses({"/blocks/cloth/map/1", "\"0 1\"", "blocks.cloth.map[1]", "has 2 stacks, but row 0 has 4"});
     refuses(

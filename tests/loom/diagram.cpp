@@ -246,7 +246,7 @@ std::optional<Diagram> slipped(const Diagram& start, std::size_t ends, const Dia
     while (!waiting.empty()) {
         const auto [diagram, pushed] = std::move(waiting.front());
         waiting.pop_front();
-        auto next = diagram.slides();
+        auto next = diagram.slides(loop);
         if (Diagram simpler = diagram; simpler.simplify()) next.push_back(std::move(simpler));
         const std::size_t slides = next.size();
         if (pushed < most_pushes) {

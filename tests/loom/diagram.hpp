@@ -57,7 +57,7 @@ class Diagram {
     /// A loop under tension crosses the picks between its own straight across. So where a third move brings a
     /// crossing of two wefts past an end, the loop's pick and the crossed pick are those at which it was
     /// laid; it does not climb round the turn of the crossed pick at the other side.
-    [[nodiscard]] bool is_straight(const std::set<int>& triangle) const {
+    [[nodiscard]] bool is_straight(const std::set<int>& triangle, const Loop& pulled) const {
         std::set<int> picks;
         const std::set<std::set<int>>* straight = nullptr;
         for (const int crossing : triangle) {
@@ -66,7 +66,8 @@ class Diagram {
             else
                 picks.insert(of.at(crossing).first);
         }
-        return picks.empty() || straight == nullptr || straight->contains(picks);
+        if (picks.empty() || straight == nullptr) return true;
+        return straight->contains(picks) && (picks.contains(pulled.first) || picks.contains(pulled.second));
     }
 
     void remove(const std::set<int>& crossings) {
@@ -106,8 +107,9 @@ class Diagram {
         return {};
     }
 
-    /// All diagrams that one third move makes of this one.
-    [[nodiscard]] std::vector<Diagram> slides() const {
+    /// All diagrams that one third move makes of this one while a loop is pulled. Past an end, crossings of wefts come
+    /// only with that loop: other picks stay beside each other as they were beaten up.
+    [[nodiscard]] std::vector<Diagram> slides(const Loop& pulled) const {
         std::vector<Diagram> made;
         const auto where = spots();
         struct Edge {
@@ -138,7 +140,7 @@ class Diagram {
             std::set<int> corners;
             for (const Edge& side : sides) corners.insert(yarns[side.yarn][side.place].crossing);
             for (const Edge& side : sides) corners.insert(yarns[side.yarn][side.place + 1].crossing);
-            if (!is_straight(corners)) return;
+            if (!is_straight(corners, pulled)) return;
             for (const Edge& side : sides) {
                 used.insert({side.yarn, side.place});
                 used.insert({side.yarn, side.place + 1});

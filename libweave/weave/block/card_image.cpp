@@ -50,11 +50,10 @@ CardImage CardImage::transposed() const {
 
 Status check_card_size(std::uint64_t picks, std::uint64_t ends) {
     if (picks == 0 || ends == 0) return bad_input("a card image needs at least one pick and one end");
-    if (picks > most_crossings / ends) {
-        return bad_input("a card image of " + std::to_string(picks) + " picks and " + std::to_string(ends) +
-                         " ends is larger than the limit of " + std::to_string(most_crossings) +
-                         " crossings");
-    }
+    const std::string size =
+        "a card image of " + std::to_string(picks) + " picks and " + std::to_string(ends) + " ends is larger than the limit of ";
+    if (picks > most_yarns || ends > most_yarns) return bad_input(size + std::to_string(most_yarns) + " picks or ends");
+    if (picks > most_crossings / ends) return bad_input(size + std::to_string(most_crossings) + " crossings");
     return {};
 }
 

@@ -10,8 +10,9 @@
 
 namespace weave {
 
-/// No card image, from a file or from an operation, may have more crossings than this.
-inline constexpr std::uint64_t most_crossings = std::uint64_t{1} << 30;
+/// No card image, from a file or from an operation, may have more crossings, or more picks or ends, than this: a few
+/// bytes of a design can ask for any size, and what is allowed has to fit into a desk's memory (20,000 × 20,000 do).
+inline constexpr std::uint64_t most_crossings = std::uint64_t{1} << 29, most_yarns = std::uint64_t{1} << 24;
 
 /// The card image I of a weave (paper, section 4.1): one row per pick, one column per end.
 /// A pixel is true (1, white) where the weft lies over the warp, false (0, black) where the end is lifted
@@ -20,7 +21,7 @@ inline constexpr std::uint64_t most_crossings = std::uint64_t{1} << 30;
 class CardImage {
   public:
     CardImage() = default;
-    /// All pixels false. `picks * ends` must not exceed most_crossings.
+    /// All pixels false. The size must pass check_card_size.
     CardImage(std::size_t picks, std::size_t ends);
 
     [[nodiscard]] std::size_t picks() const { return m_picks; }
@@ -59,7 +60,7 @@ class CardImage {
     std::vector<std::uint8_t> m_bytes;
 };
 
-/// An error where a card of this size is empty or larger than most_crossings.
+/// An error where a card of this size is empty or larger than the limits.
 Status check_card_size(std::uint64_t picks, std::uint64_t ends);
 
 }  // namespace weave

@@ -237,14 +237,8 @@ Result<Block> renumbered(const Block& block, System system, std::size_t line,
 
 Result<Block> tile(const Block& block, std::size_t x, std::size_t y, std::size_t z) {
     if (x == 0 || y == 0 || z == 0) return bad_input("a block is tiled at least once in each direction");
-    constexpr std::size_t most = std::size_t{1} << 31;
-    if (x > most || y > most || z > most)
-        return bad_input("a block is tiled at most 2^31 times in a direction");
-    const auto too_long = [&](std::size_t yarns, std::size_t times) {
-        return yarns > most_crossings / times / z;
-    };
-    if (too_long(block.picks(), x) || too_long(block.ends(), y))
-        return check_card_size(most_crossings, 2).error();
+    if (x > most_yarns || y > most_yarns || z > most_yarns / std::max(x, y))
+        return bad_input("a block is tiled at most " + std::to_string(most_yarns) + " times in a direction");
     WEAVE_CHECK_OK(check_card_size(block.picks() * x * z, block.ends() * y * z));
     WEAVE_CHECK_OK(check_slots(block.stacks().size(), block.height() * z));
     StackTable table;

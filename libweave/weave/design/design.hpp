@@ -100,7 +100,7 @@ inline constexpr std::size_t most_blocks = 4096;
 inline constexpr std::size_t longest_title = 1000, longest_notes = 65536, longest_yarn_name = 200,
                              longest_family = 100;                  ///< bytes
 inline constexpr std::size_t most_stencilled = 65535;               ///< blocks that one stencil numbers
-inline constexpr std::size_t most_times = std::size_t{1} << 30;     ///< of a tile in each direction
+inline constexpr std::size_t most_times = most_yarns;                ///< of a tile in each direction
 inline constexpr std::int64_t most_option = std::int64_t{1} << 40;  ///< of a preset, either side of 0
 
 /// Block names: 1 to 64 letters, digits, '-', '_' or '.', the first a letter or digit.

@@ -56,8 +56,7 @@ Status take_row(CardImage& card, const BitmapReading& reading, std::size_t row_f
 }
 
 Status check_picture_size(std::size_t width, std::size_t height) {
-    WEAVE_CHECK_OK(check_card_size(height, width));
-    if (width <= longest_side && height <= longest_side) return {};
+    if (width <= longest_side && height <= longest_side) return check_card_size(height, width);
     return bad_input("a picture of " + std::to_string(width) + " by " + std::to_string(height) +
                      " pixels is longer on a side than the limit of " + std::to_string(longest_side));
 }

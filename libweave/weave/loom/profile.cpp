@@ -1,6 +1,8 @@
 #include <weave/core/file.hpp>
 #include <weave/core/json_reader.hpp>
 #include <weave/core/sha256.hpp>
+#include <weave/core/text.hpp>
+#include <weave/design/plan_json.hpp>
 #include <weave/loom/check.hpp>
 #include <weave/loom/profile.hpp>
 
@@ -17,15 +19,10 @@ constexpr std::int64_t last_function_bit = 31;  // four function bytes, as obser
 constexpr std::size_t most_ranges = 4096, most_selvedge_rows = 4096;
 constexpr std::int64_t most_limit = 1'000'000'000;
 
-const std::vector<std::string> insertion_names{"shuttle", "rapier", "air-jet"};
 const std::vector<std::string> rule_names{"straight", "point", "repeats", "list"};
 const std::vector<std::string> output_names{"tiff", "png", "bmp", "jc5", "ep", "raw"};
 const std::vector<std::string> encoding_names{"none", "one-hot", "binary", "hooks"};
 const std::vector<std::string> severity_names{"off", "info", "warning", "error"};
-
-std::string numbered(const std::string& key, std::size_t i) {
-    return key + "[" + std::to_string(i) + "]";
-}
 
 template <class Choice>
 Choice choice(JsonReader& reader, const std::string& key, const std::vector<std::string>& names,
@@ -38,11 +35,6 @@ Choice choice(JsonReader& reader, const std::string& key, const std::vector<std:
 std::size_t count(JsonReader& reader, const std::string& key, std::int64_t low, std::int64_t high,
                   std::optional<std::int64_t> fallback = {}) {
     return static_cast<std::size_t>(reader.integer(key, low, high, fallback));
-}
-
-std::optional<double> optional_number(JsonReader& reader, const std::string& key, Range range) {
-    if (!reader.has(key)) return {};
-    return reader.number(key, range);
 }
 
 std::vector<std::size_t> numbers(JsonReader& reader, const std::string& key, std::int64_t high) {
@@ -76,7 +68,7 @@ std::vector<HookRange> ranges(JsonReader& reader, const std::string& key) {
         if (!pair.is_array() || pair.size() != 2 || !is_hook(pair[0]) || !is_hook(pair[1]) ||
             pair[0] > pair[1]) {
             reader.fail("must be a pair [first, last] of hooks from 0 to " + std::to_string(last_hook),
-                        numbered(key, i));
+                        indexed(key, i));
             return {};
         }
         found.push_back({pair[0].get<std::size_t>(), pair[1].get<std::size_t>()});
@@ -97,11 +89,11 @@ std::vector<std::string> selvedge_weave(JsonReader& reader) {
     for (std::size_t i = 0; i < list.size(); ++i) {
         const std::string row = list[i].is_string() ? list[i].get<std::string>() : std::string();
         if (row.empty() || row.size() > most_hooks || row.find_first_not_of("01") != std::string::npos) {
-            reader.fail("must be a text of 0 and 1, one for each selvedge hook", numbered(key, i));
+            reader.fail("must be a text of 0 and 1, one for each selvedge hook", indexed(key, i));
             return {};
         }
         if (!rows.empty() && row.size() != rows.front().size()) {
-            reader.fail("is not as long as the first row", numbered(key, i));
+            reader.fail("is not as long as the first row", indexed(key, i));
             return {};
         }
         rows.push_back(row);
@@ -206,11 +198,11 @@ void read_limits(JsonReader limits, LoomProfile& profile) {
     LoomLimits& read = profile.limits;
     read.float_face = count(limits, "float_face", 0, most_limit, 0);
     read.float_back = count(limits, "float_back", 0, most_limit, 0);
-    read.lift_difference = optional_number(limits, "lift_difference", {0, 1});
-    read.lift_share = optional_number(limits, "lift_share", {0, 1});
+    read.lift_difference = limits.optional_number("lift_difference", {0, 1});
+    read.lift_share = limits.optional_number("lift_share", {0, 1});
     read.picks = count(limits, "picks", 0, most_limit, 0);
-    read.take_up_difference = optional_number(limits, "take_up_difference", {0, 100});
-    read.reed_width_mm = optional_number(limits, "reed_width_mm", {1, 1e5});
+    read.take_up_difference = limits.optional_number("take_up_difference", {0, 100});
+    read.reed_width_mm = limits.optional_number("reed_width_mm", {1, 1e5});
     limits.no_others();
 }
 
@@ -289,8 +281,8 @@ void read_heading(JsonReader& reader, LoomProfile& profile) {
     profile.maker = reader.text("maker", "", 256);
     profile.version = reader.text("revision", "1", 64);
     profile.notes = reader.text("notes", "");
-    profile.insertion = choice<Insertion>(reader, "insertion", insertion_names);
-    profile.density_ends_per_cm = optional_number(reader, "density_ends_per_cm", {0.01, 1000});
+    profile.insertion = choice<Insertion>(reader, "insertion", insertion_kinds());
+    profile.density_ends_per_cm = reader.optional_number("density_ends_per_cm", {0.01, 1000});
 }
 
 }  // namespace

@@ -337,11 +337,7 @@ class Loops {
                               from_there = side == loop.turn.side ? depth : m_ends - depth;
             if (turn == nowhere || strand.depth[index(side)] < from_there) continue;
             if (strand.depth[index(side)] > from_there) return false;
-            for (const Loop* bight : {&loop, &other}) {
-                const bool new_here = bight == &loop && bight->depth != depth;
-                if (bight->turn.side == side && (new_here || bight->arrival > m_loops[turn].arrival))
-                    return false;
-            }
+            if (other.turn.side == side && other.arrival > m_loops[turn].arrival) return false;
         }
         return true;
     }

@@ -49,7 +49,8 @@ struct WeftWay {
 ///  tails;
 ///  - a loop laid round another turn passes it on the side on which it lies itself at the end that catches
 ///    that turn: above where both its picks lie over this end, below where both lie under, else above;
-///  - a bight crosses the picks between its own straight: no loop climbs round another's turn;
+///  - a bight crosses the picks between its own straight: no loop climbs round another's turn, and picks stay
+///  beside each other in the order in which they were beaten up;
 ///  - of the loops that can still move the one laid first is pulled next, as far as it comes. The order tells
 ///    only where loops from both sides hook each other.
 /// A loop hooked by another is caught by a pick of that other; `end` is the next end that it cannot pass.
