@@ -88,6 +88,7 @@ struct MergedTables {
 
 Result<Block> attach_x(const Block& first, const Block& second, const Pair& names) {
     WEAVE_CHECK_OK(check_same(first.p(), second.p(), "column", "end", names));
+    WEAVE_CHECK_OK(check_card_size(first.picks() + second.picks(), first.ends()));
     MergedTables merged;
     std::vector<std::uint32_t> cells;
     cells.reserve(first.cells().size() + second.cells().size());
@@ -103,6 +104,7 @@ Result<Block> attach_x(const Block& first, const Block& second, const Pair& name
 
 Result<Block> attach_y(const Block& first, const Block& second, const Pair& names) {
     WEAVE_CHECK_OK(check_same(first.t(), second.t(), "row", "pick", names));
+    WEAVE_CHECK_OK(check_card_size(first.picks(), first.ends() + second.ends()));
     MergedTables merged;
     merged.add(first);
     merged.add(second);
@@ -127,6 +129,7 @@ Result<Block> attach_z(const Block& lower, const Block& upper, const Pair& names
                          "; on top of each other they must be equal");
     }
     WEAVE_CHECK_OK(check_height(lower.height() + upper.height()));
+    WEAVE_CHECK_OK(check_card_size(lower.picks() + upper.picks(), lower.ends() + upper.ends()));
     StackTable table;
     std::map<std::pair<std::uint32_t, std::uint32_t>, std::uint32_t> known;
     std::vector<std::uint32_t> cells(lower.cells().size());
