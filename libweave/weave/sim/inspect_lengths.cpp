@@ -1,8 +1,10 @@
 // How much yarn goes into the cloth: take-up and crimp.
 
 #include <weave/sim/inspect_detail.hpp>
+#include <weave/sim/take_up.hpp>
 
 #include <algorithm>
+#include <cmath>
 #include <map>
 #include <tuple>
 
@@ -22,12 +24,12 @@ double length_from_above(const Spline& spline) {
     return length;
 }
 
-/// Length of the cloth along a yarn: its repeat, or from end to end; a yarn of several picks goes there and
-/// back, so of that one the planned way as seen from above counts.
-double cloth_length(const SimulatedYarn& yarn, bool several_picks) {
-    if (yarn.spline.is_periodic) return yarn.spline.shift.norm();
-    if (several_picks) return length_from_above({yarn.planned, false, {}});
-    return (yarn.spline.control.back() - yarn.spline.control.front()).norm();
+/// Crimp of a yarn. One of several picks goes there and back, so of that the planned way as seen from above
+/// counts.
+double crimp_of(const SimulatedYarn& yarn, bool several_picks) {
+    if (!several_picks || yarn.spline.is_periodic) return take_up_of(yarn);
+    const double way = length_from_above({yarn.planned, false, {}});
+    return way > 0 ? (yarn.length_mm - way) / way : 0;
 }
 
 class SpreadMaker {
@@ -128,9 +130,7 @@ void find_lengths(const InspectionSubject& subject, Inspection& inspection) {
     Courses courses(subject);
     for (std::size_t y = 0; y < subject.yarns.yarns.size(); ++y) {
         const SimulatedYarn& yarn = subject.yarns.yarns[y];
-        const double length = cloth_length(yarn, yarn.system == System::weft && picks_in[y] > 1);
-        if (!(length > 0)) continue;
-        const double crimp = (yarn.length_mm - length) / length;
+        const double crimp = crimp_of(yarn, yarn.system == System::weft && picks_in[y] > 1);
         (yarn.system == System::warp ? warp : weft).add(crimp, yarn.number);
         if (yarn.system != System::warp) continue;
         inspection.take_up.push_back({yarn.number, yarn.beam, crimp});

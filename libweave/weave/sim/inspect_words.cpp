@@ -156,7 +156,7 @@ std::string leaning_text(const Inspection& inspection, System system) {
         const std::string name = ordinal(layer.layer + 1) + " " + name_of(system),
                           far = mm(std::abs(layer.mm)) + " " + way_of(system, layer.mm);
         if (!text.empty()) {
-            text += "; so does the " + name + ", " + far;
+            text += "; with it the " + name + ", " + far;
             continue;
         }
         text = "LEANS: the " + name + " from below in each " + row + " (" +
