@@ -11,7 +11,7 @@ namespace weave::sim {
 
 namespace {
 
-constexpr std::size_t looks_a_segment = 4, places_a_box = 16;
+constexpr std::size_t looks_a_segment = 4, places_a_box = 16, boxes_a_group = 32;
 constexpr int newton_rounds = 12;
 
 }  // namespace
@@ -49,6 +49,28 @@ CurveFinder::CurveFinder(Spline spline) : m_spline(std::move(spline)) {
         for (std::size_t k = box.first; k <= box.last; ++k) box.bounds.extend(m_places[k]);
         m_boxes.push_back(box);
     }
+    for (std::size_t first = 0; first < m_boxes.size(); first += boxes_a_group) {
+        Box group{{}, first, std::min(first + boxes_a_group, m_boxes.size()) - 1};
+        for (std::size_t k = group.first; k <= group.last; ++k) group.bounds.extend(m_boxes[k].bounds);
+        m_groups.push_back(group);
+    }
+}
+
+/// Lowers `best`, a squared distance, and moves `at` there. `from`: the parameter of the first place.
+void CurveFinder::search(const Vec3& place, double from, double& best, double& at) const {
+    for (const Box& group : m_groups) {
+        if (group.bounds.squaredExteriorDistance(place) >= best) continue;
+        for (std::size_t b = group.first; b <= group.last; ++b) {
+            const Box& box = m_boxes[b];
+            if (box.bounds.squaredExteriorDistance(place) >= best) continue;
+            for (std::size_t k = box.first; k <= box.last; ++k) {
+                const double distance = (m_places[k] - place).squaredNorm();
+                if (distance >= best) continue;
+                best = distance;
+                at = from + static_cast<double>(k) / static_cast<double>(looks_a_segment);
+            }
+        }
+    }
 }
 
 OnCurve CurveFinder::refined(const Vec3& place, double t) const {
@@ -82,17 +104,8 @@ OnCurve CurveFinder::nearest(const Vec3& place) const {
     }
     double best = std::numeric_limits<double>::max(), at = 0;
     for (long turn = middle - beside; turn <= middle + beside; ++turn) {
-        const Vec3 own = place - static_cast<double>(turn) * m_spline.shift;
-        for (const Box& box : m_boxes) {
-            if (box.bounds.squaredExteriorDistance(own) >= best) continue;
-            for (std::size_t k = box.first; k <= box.last; ++k) {
-                const double distance = (m_places[k] - own).squaredNorm();
-                if (distance >= best) continue;
-                best = distance;
-                at = static_cast<double>(k) / static_cast<double>(looks_a_segment) +
-                     static_cast<double>(turn) * static_cast<double>(m_spline.segments());
-            }
-        }
+        const auto turns = static_cast<double>(turn);
+        search(place - turns * m_spline.shift, turns * static_cast<double>(m_spline.segments()), best, at);
     }
     if (!m_spline.is_periodic) at = std::min(at, static_cast<double>(m_spline.segments()));
     return refined(place, at);

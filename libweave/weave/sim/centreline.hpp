@@ -46,13 +46,14 @@ class CurveFinder {
   private:
     struct Box {
         Eigen::AlignedBox3d bounds;
-        std::size_t first = 0, last = 0;  ///< of the places, both included
+        std::size_t first = 0, last = 0;  ///< of the places, or of the boxes, both included
     };
+    void search(const Vec3& place, double from, double& best, double& at) const;
     [[nodiscard]] OnCurve refined(const Vec3& place, double t) const;
 
     Spline m_spline;
-    std::vector<Vec3> m_places;  ///< along the spline at even parameters
-    std::vector<Box> m_boxes;
+    std::vector<Vec3> m_places;          ///< along the spline at even parameters
+    std::vector<Box> m_boxes, m_groups;  ///< of places, and of boxes
     Vec3 m_middle{0, 0, 0};
 };
 

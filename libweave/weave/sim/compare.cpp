@@ -10,6 +10,7 @@
 #include <map>
 #include <numeric>
 #include <optional>
+#include <string>
 #include <tuple>
 
 namespace weave {
@@ -22,9 +23,10 @@ using sim::OnCurve;
 
 constexpr std::size_t looks_a_segment =
     4;  ///< places taken from each segment of a yarn that stands for a measured one
-constexpr std::size_t most_samples = 4096;   ///< of one yarn
-constexpr std::size_t first_samples = 32;    ///< of one yarn, for the first guess
-constexpr std::size_t most_candidates = 32;  ///< simulated yarns that are tried on a measured one
+constexpr std::size_t most_samples = 4096;     ///< of one yarn
+constexpr std::size_t first_samples = 32;      ///< of one yarn, for the first guess
+constexpr std::size_t most_candidates = 32;    ///< simulated yarns that are tried on a measured one
+constexpr std::size_t most_tries = 1'000'000;  ///< pairs of yarns that matching by nearness looks at
 constexpr int fitting_rounds = 60, matching_rounds = 8;
 /// The other handedness must fit so much better before it is believed: most cloth is nearly its own mirror
 /// image.
@@ -351,6 +353,10 @@ Result<Comparison> compare(const Yarns& yarns, const MeasuredCloth& measured) {
         comparison.matched_by = MatchedBy::name;
     } else if (yarns.yarns.size() == measured.yarns.size()) {
         for (std::size_t k = 0; k < yarns.yarns.size(); ++k) pairs.push_back({k, k});
+    } else if (yarns.yarns.size() > most_tries / measured.yarns.size()) {
+        return bad_input(
+            std::to_string(measured.yarns.size()) + " measured and " + std::to_string(yarns.yarns.size()) +
+            " simulated yarns are too many to match by nearness: give equally many, in order, or a part");
     } else {
         comparison.matched_by = MatchedBy::nearness;
     }

@@ -42,7 +42,8 @@ std::map<std::size_t, Rows> rows_by_size(const InspectionSubject& subject, Syste
     Rows rows;
     for (const Strand& strand : subject.strands) {
         if (strand.system == system)
-            rows[std::lround(strand.planned[across(system)] / spacing)].push_back(&strand);
+            rows[std::lround(std::clamp(strand.planned[across(system)] / spacing, -1e9, 1e9))].push_back(
+                &strand);
     }
     for (auto& [at, row] : rows) {
         std::ranges::stable_sort(row, {}, [](const Strand* strand) { return strand->planned.z(); });
