@@ -105,7 +105,7 @@ TEST_CASE("a known displacement gives that deviation, yarn by yarn") {
                 CHECK(yarn.measured == yarn.simulated);
                 CHECK(yarn.rms_mm ==
                       Approx(yarns.yarns[yarn.simulated].system == System::weft ? by : 0).margin(0.12 * by));
-                CHECK(yarn.max_mm >= yarn.rms_mm);
+                CHECK(yarn.max_mm >= yarn.rms_mm * (1 - 1e-9));
             }
         },
         40);
