@@ -310,7 +310,9 @@ TEST_CASE("TL013: the wrong version leans in its upper section, the corrected on
         request.fidelity = sim::Fidelity::draft;
         auto plan = sim::make_plan(design, *cloth->block, request);
         REQUIRE(plan);
-        const Yarns yarns = sim::simulate(design, *plan, {});
+        sim::SimulationOptions options;
+        options.threads = 1;
+        const Yarns yarns = sim::simulate(design, *plan, options);
         const Inspection found = looked_over(yarns);
         CHECK(found.changed.empty());
         INFO(inspection_text(yarns, found));
