@@ -2,6 +2,7 @@
 // read as themselves.
 #include "support/must.hpp"
 
+#include <weave/sim/inspect.hpp>
 #include <weave/sim/measured.hpp>
 #include <weave/sim/yarns_file.hpp>
 
@@ -23,6 +24,17 @@ void try_measured(std::string_view text) {
     }
 }
 
+/// Whatever places and crossings a file has, looking them over ends, and what it says can be told.
+void try_inspection(const Yarns& yarns) {
+    if (yarns.crossings.size() > 100 || yarns.yarns.size() > 100) return;
+    const auto found = inspect(yarns);
+    if (!found) {
+        must(!found.error().message.empty(), "a refusal says why");
+        return;
+    }
+    must(!inspection_json(yarns, *found).empty() && !inspection_text(yarns, *found).empty(), "there is something to tell");
+}
+
 void check(const Yarns& yarns) {
     for (const SimulatedYarn& yarn : yarns.yarns) {
         const std::size_t points = yarn.spline.control.size();
@@ -36,6 +48,7 @@ void check(const Yarns& yarns) {
         must(crossing.weft < yarns.yarns.size() && crossing.warp < yarns.yarns.size(),
              "yarns that cross are there");
     }
+    try_inspection(yarns);
 }
 
 }  // namespace

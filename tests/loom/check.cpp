@@ -2,6 +2,7 @@
 
 #include "check_case.hpp"
 
+#include <limits>
 #include <set>
 
 using namespace weave;
@@ -176,6 +177,8 @@ TEST_CASE("take-up: stops, regulator, beams") {
     c.design.warp.beams = {{"a"}, {"b"}};
     c.design.warp.beam_order.once = {0, 0, 0, 1};
     CHECK(c.passes("take-up.beam"));
+    c.take_ups->at(2) = std::numeric_limits<double>::quiet_NaN();
+    CHECK(c.lacks("take-up.beam"));  // end 3 binds, so it should have a take-up
     c.take_ups->pop_back();
     CHECK(c.lacks("take-up.beam"));
 }

@@ -5,8 +5,10 @@
 
 #include <weave/core/file.hpp>
 #include <weave/core/text.hpp>
+#include <weave/design/document.hpp>
 #include <weave/io/sample_export.hpp>
 #include <weave/loom/check.hpp>
+#include <weave/sim/take_up.hpp>
 
 #include <memory>
 
@@ -51,23 +53,43 @@ std::string in_words(const CheckReport& report, const std::string& loom) {
            " not evaluated\n";
 }
 
+struct CheckWish {
+    std::string file, loom, yarns;
+};
+
+/// Take-ups from relaxed yarns. Those of the design in another scene are taken, and it is said.
+Result<TakeUps> load_take_ups(const Program& program, const std::string& file, const Cloth& cloth) {
+    WEAVE_TRY(const Yarns yarns, load_yarns(file));
+    Result<TakeUps> take_ups = take_ups_of(yarns, cloth.design, cloth.evaluation.block->ends());
+    if (!take_ups) return std::move(take_ups).error().in(file);
+    if (yarns.scene_sha256 != scene_sha256(cloth.design))
+        program.note(on_one_line(file) + " was simulated with another scene than the design's");
+    return take_ups;
+}
+
+Status run_check(Program& program, const CheckWish& wish) {
+    WEAVE_TRY(const LoomProfile profile, load_profile(wish.loom));
+    WEAVE_TRY(const Cloth cloth, load_cloth(program, wish.file));
+    std::optional<TakeUps> take_ups;
+    if (!wish.yarns.empty()) {
+        WEAVE_TRY(take_ups, load_take_ups(program, wish.yarns, cloth));
+    }
+    const Progress progress("checking " + wish.file);
+    const CheckReport report = check_for_loom(cloth.design, cloth.evaluation, profile, take_ups);
+    program.answer(to_json(report), in_words(report, profile.name));
+    if (report.count(Severity::error) > 0) program.exit_code = findings;
+    return {};
+}
+
 void add_check(CLI::App& app, Program& program) {
     CLI::App* command =
         add_command(app, program, "check",
                     "Hold a design to a loom, rule by rule; exit status 1 where a rule finds an error");
-    const auto file = std::make_shared<std::string>();
-    const auto loom = std::make_shared<std::string>();
-    command->add_option("FILE", *file, "the .weave file")->required();
-    command->add_option("--loom", *loom, "the loom's profile, a .json file")->type_name("FILE")->required();
-    on_run(command, program, [=, &program]() -> Status {
-        WEAVE_TRY(const LoomProfile profile, load_profile(*loom));
-        WEAVE_TRY(const Cloth cloth, load_cloth(program, *file));
-        const Progress progress("checking " + *file);
-        const CheckReport report = check_for_loom(cloth.design, cloth.evaluation, profile);
-        program.answer(to_json(report), in_words(report, profile.name));
-        if (report.count(Severity::error) > 0) program.exit_code = findings;
-        return {};
-    });
+    const auto wish = std::make_shared<CheckWish>();
+    command->add_option("FILE", wish->file, "the .weave file")->required();
+    command->add_option("--loom", wish->loom, "the loom's profile, a .json file")->type_name("FILE")->required();
+    command->add_option("--yarns", wish->yarns, "its relaxed yarns, a .yarns file: take-up is judged as well")->type_name("FILE");
+    on_run(command, program, [=, &program] { return run_check(program, *wish); });
 }
 
 Status export_sample(Program& program, const std::string& file, const std::string& loom,

@@ -27,7 +27,8 @@ struct NotEvaluated {
     std::string reason;
 };
 
-/// Take-up of each end from a relaxed simulation, as plain data: (yarn length - cloth length) / cloth length.
+/// Take-up of each end from a relaxed simulation, as plain data: (yarn length - cloth length) / cloth length. NaN of an
+/// end that is loose all along and takes up nothing.
 using TakeUps = std::vector<double>;
 
 struct CheckReport {

@@ -48,6 +48,19 @@ struct Spread {
     bool seen = false;
 };
 
+/// The first end without a take-up that is not loose all along, on purpose: those take up nothing.
+std::optional<std::size_t> missing_end(const Subject& subject, const TakeUps& take_ups) {
+    if (std::none_of(take_ups.begin(), take_ups.end(), [](double t) { return std::isnan(t); })) return {};
+    const CardImage loose = loose_ends(subject.block);
+    for (std::size_t end = 0; end < take_ups.size(); ++end) {
+        if (!std::isnan(take_ups[end])) continue;
+        for (std::size_t pick = 0; pick < loose.picks(); ++pick) {
+            if (!loose.weft_over(pick, end)) return end;
+        }
+    }
+    return {};
+}
+
 void check_beams(const Subject& subject, CheckReport& report) {
     RuleReport rule(report, subject.profile, "take-up.beam");
     const auto limit = subject.profile.limits.take_up_difference;
@@ -60,12 +73,15 @@ void check_beams(const Subject& subject, CheckReport& report) {
         return rule.not_evaluated("the take-ups are of " + counted(take_ups.size(), "end") +
                                   ", the design has " + std::to_string(subject.block.ends()));
     }
-    if (!std::all_of(take_ups.begin(), take_ups.end(), [](double t) { return std::isfinite(t); })) {
+    if (std::any_of(take_ups.begin(), take_ups.end(), [](double t) { return std::isinf(t); })) {
         return rule.not_evaluated("the take-ups are not all numbers");
     }
+    if (const auto end = missing_end(subject, take_ups))
+        return rule.not_evaluated("the take-up of end " + person(*end) + " is missing");
     const WarpPlan& warp = subject.design.warp;
     std::vector<Spread> spreads(warp.beams.size());
     for (std::size_t end = 0; end < take_ups.size(); ++end) {
+        if (std::isnan(take_ups[end])) continue;
         Spread& spread = spreads.at(warp.beam_order.at(end));
         if (!spread.seen) spread = {end, end, true};
         if (take_ups[end] < take_ups[spread.least]) spread.least = end;

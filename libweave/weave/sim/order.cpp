@@ -12,26 +12,21 @@ namespace {
 /// How many planned crossings a crossing may have slid along its yarns.
 constexpr double farthest_keys = 3;
 
-/// A yarn with the parameter of its planned key points.
-struct Thread {
-    const Spline& spline;
-    double per_key;
+double clamped(const Thread& thread, double t) {
+    return thread.spline.is_periodic ? t : std::clamp(t, 0.0, static_cast<double>(thread.spline.segments()));
+}
 
-    Thread(const Spline& of, const YarnCurve& curve) : spline(of) {
-        const double keys = static_cast<double>(curve.is_periodic ? curve.keys.size() : curve.keys.size() - 1);
-        per_key = keys > 0 ? static_cast<double>(of.segments()) / keys : 0;
-    }
-    [[nodiscard]] double clamped(double t) const {
-        return spline.is_periodic ? t : std::clamp(t, 0.0, static_cast<double>(spline.segments()));
-    }
-};
+Thread thread_of(const Spline& spline, const YarnCurve& curve) {
+    const double keys = static_cast<double>(curve.is_periodic ? curve.keys.size() : curve.keys.size() - 1);
+    return {spline, keys > 0 ? static_cast<double>(spline.segments()) / keys : 0};
+}
 
 /// Newton's method for the parameters at which two yarns cross, seen from above.
-std::optional<double> height_by_newton(const Thread& weft, const Thread& warp, double t, double s) {
+std::optional<CrossingSpot> spot_by_newton(const Thread& weft, const Thread& warp, double t, double s) {
     const double t0 = t, s0 = s;
     for (int round = 0; round < 30; ++round) {
         const Vec3 apart = weft.spline.place(t) - warp.spline.place(s);
-        if (std::hypot(apart.x(), apart.y()) < 1e-9) return apart.z();
+        if (std::hypot(apart.x(), apart.y()) < 1e-9) return CrossingSpot{t, s, apart.z()};
         const Vec3 a = weft.spline.tangent(t), b = warp.spline.tangent(s);
         const double det = -a.x() * b.y() + a.y() * b.x();
         if (std::abs(det) < 1e-12 * (1 + a.squaredNorm() + b.squaredNorm())) return {};
@@ -39,23 +34,26 @@ std::optional<double> height_by_newton(const Thread& weft, const Thread& warp, d
                      ds = (apart.x() * a.y() - apart.y() * a.x()) / det;
         const double size = std::max(std::abs(dt) / weft.per_key, std::abs(ds) / warp.per_key);
         const double share = size > 0.5 ? 0.5 / size : 1;
-        t = weft.clamped(t + share * dt);
-        s = warp.clamped(s + share * ds);
+        t = clamped(weft, t + share * dt);
+        s = clamped(warp, s + share * ds);
         if (std::abs(t - t0) > farthest_keys * weft.per_key || std::abs(s - s0) > farthest_keys * warp.per_key) return {};
     }
     return {};
 }
 
 /// The crossing nearest to the planned place among those of two polylines along the yarns.
-std::optional<double> height_by_search(const Thread& weft, const Thread& warp, double t0, double s0) {
+std::optional<CrossingSpot> spot_by_search(const Thread& weft, const Thread& warp, double t0, double s0) {
     constexpr int pieces = 96;
     std::array<Vec3, pieces + 1> a, b;
     for (int i = 0; i <= pieces; ++i) {
         const double share = (2.0 * i / pieces - 1) * farthest_keys;
-        a[static_cast<std::size_t>(i)] = weft.spline.place(weft.clamped(t0 + share * weft.per_key));
-        b[static_cast<std::size_t>(i)] = warp.spline.place(warp.clamped(s0 + share * warp.per_key));
+        a[static_cast<std::size_t>(i)] = weft.spline.place(clamped(weft, t0 + share * weft.per_key));
+        b[static_cast<std::size_t>(i)] = warp.spline.place(clamped(warp, s0 + share * warp.per_key));
     }
-    std::optional<double> height;
+    std::optional<CrossingSpot> spot;
+    const auto parameter = [](const Thread& thread, double from, double piece) {
+        return clamped(thread, from + (2 * piece / pieces - 1) * farthest_keys * thread.per_key);
+    };
     int nearest = 4 * pieces;
     for (int i = 0; i < pieces; ++i) {
         for (int j = 0; j < pieces; ++j) {
@@ -68,25 +66,29 @@ std::optional<double> height_by_search(const Thread& weft, const Thread& warp, d
             const int far = std::abs(2 * i - pieces) + std::abs(2 * j - pieces);
             if (far >= nearest) continue;
             nearest = far;
-            height = p.z() + along * u.z() - q.z() - other * v.z();
+            spot = CrossingSpot{parameter(weft, t0, i + along), parameter(warp, s0, j + other),
+                                p.z() + along * u.z() - q.z() - other * v.z()};
         }
     }
-    return height;
+    return spot;
 }
 
 }  // namespace
+
+std::optional<CrossingSpot> find_crossing(const Thread& weft, const Thread& warp, std::size_t weft_key, std::size_t warp_key) {
+    const double t = weft.per_key * static_cast<double>(weft_key), s = warp.per_key * static_cast<double>(warp_key);
+    const std::optional<CrossingSpot> spot = spot_by_newton(weft, warp, t, s);
+    return spot ? spot : spot_by_search(weft, warp, t, s);
+}
 
 std::vector<LostCrossing> lost_crossings(const ClothCurves& curves, const std::vector<Spline>& splines) {
     std::vector<LostCrossing> lost;
     for (const Crossing& crossing : curves.crossings) {
         const Spline &weft_spline = splines[crossing.weft], &warp_spline = splines[crossing.warp];
         if (weft_spline.control.empty() || warp_spline.control.empty()) continue;
-        const Thread weft(weft_spline, curves.yarns[crossing.weft]), warp(warp_spline, curves.yarns[crossing.warp]);
-        const double t = weft.per_key * static_cast<double>(crossing.weft_key),
-                     s = warp.per_key * static_cast<double>(crossing.warp_key);
-        std::optional<double> height = height_by_newton(weft, warp, t, s);
-        if (!height) height = height_by_search(weft, warp, t, s);
-        if (!height || (*height > 0) != crossing.weft_over) lost.push_back({crossing, height.has_value()});
+        const auto spot = find_crossing(thread_of(weft_spline, curves.yarns[crossing.weft]),
+                                        thread_of(warp_spline, curves.yarns[crossing.warp]), crossing.weft_key, crossing.warp_key);
+        if (!spot || (spot->height_mm > 0) != crossing.weft_over) lost.push_back({crossing, spot.has_value()});
     }
     return lost;
 }

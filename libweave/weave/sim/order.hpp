@@ -4,9 +4,26 @@
 #include <weave/curve/spline.hpp>
 
 #include <cstddef>
+#include <optional>
 #include <vector>
 
 namespace weave::sim {
+
+/// A yarn's centreline with what finds its key points again.
+struct Thread {
+    const Spline& spline;
+    double per_key = 1;  ///< parameter from one key point to the next
+};
+
+/// Where two yarns cross, seen from above.
+struct CrossingSpot {
+    double weft_at = 0, warp_at = 0;  ///< parameters of the two splines
+    double height_mm = 0;             ///< of the weft above the warp
+};
+
+/// The crossing of two yarns nearest to their key points, at most three key points away; nothing where they do not
+/// cross there.
+std::optional<CrossingSpot> find_crossing(const Thread& weft, const Thread& warp, std::size_t weft_key, std::size_t warp_key);
 
 /// A crossing that does not lie as the card image says, or that was not found again.
 struct LostCrossing {

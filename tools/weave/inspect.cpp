@@ -1,0 +1,165 @@
+// Looking relaxed cloth over, and comparing it with what was measured.
+
+#include "command.hpp"
+
+#include <weave/core/file.hpp>
+#include <weave/core/text.hpp>
+#include <weave/sim/compare.hpp>
+#include <weave/sim/inspect.hpp>
+
+#include <algorithm>
+#include <cstdio>
+#include <memory>
+
+namespace weave::program {
+
+namespace {
+
+bool is_at_rest(const Yarns& yarns) {
+    const auto found = yarns.report.find("converged");
+    return found != yarns.report.end() && found->is_boolean() && found->get<bool>();
+}
+
+Status run_inspection(Program& program, const std::string& file) {
+    WEAVE_TRY(const Yarns yarns, load_yarns(file));
+    Result<Inspection> inspection = inspect(yarns);
+    if (!inspection) return std::move(inspection).error().in(file);
+    program.answer(inspection_json(yarns, *inspection), inspection_text(yarns, *inspection));
+    if (!is_at_rest(yarns) || !inspection->changed.empty() || !inspection->leaning.empty())
+        program.exit_code = findings;
+    return {};
+}
+
+void add_inspect(CLI::App& app, Program& program) {
+    CLI::App* command = add_command(
+        app, program, "inspect",
+        "Look relaxed cloth over: take-up, crimp, thickness, what leans, bunches, jams or has moved "
+        "(exit 1: not at rest, a crossing changed, or a layer leans)");
+    const auto file = std::make_shared<std::string>();
+    command->add_option("FILE", *file, "the .yarns file of `weave simulate`")->required();
+    on_run(command, program, [=, &program] { return run_inspection(program, *file); });
+}
+
+std::string yarn_name(const SimulatedYarn& yarn) {
+    return (yarn.system == System::warp ? "end " : "pick ") + std::to_string(yarn.number + 1);
+}
+
+std::string way_of_matching(MatchedBy matched_by) {
+    const char* const words[]{"name", "order", "nearness"};
+    return words[static_cast<std::size_t>(matched_by)];
+}
+
+Json alignment_json(const sim::Alignment& alignment) {
+    Json rotation = Json::array();
+    for (int row = 0; row < 3; ++row)
+        rotation.push_back(
+            {alignment.rotation(row, 0), alignment.rotation(row, 1), alignment.rotation(row, 2)});
+    const Vec3& by = alignment.translation;
+    return {{"mirrored", alignment.mirrored},
+            {"rotation", std::move(rotation)},
+            {"translation_mm", {by.x(), by.y(), by.z()}}};
+}
+
+Json comparison_json(const Yarns& yarns, const MeasuredCloth& measured, const Comparison& comparison) {
+    Json per_yarn = Json::array(), measured_alone = Json::array(), simulated_alone = Json::array();
+    for (const YarnDeviation& deviation : comparison.per_yarn) {
+        const SimulatedYarn& yarn = yarns.yarns[deviation.simulated];
+        per_yarn.push_back({{"kind", yarn.system == System::warp ? "end" : "pick"},
+                            {"number", yarn.number + 1},
+                            {"measured", deviation.measured + 1},
+                            {"rms_mm", deviation.rms_mm},
+                            {"max_mm", deviation.max_mm},
+                            {"max_at_mm", {deviation.worst.x(), deviation.worst.y(), deviation.worst.z()}},
+                            {"radius_mm", yarn.radius_mm}});
+        if (const std::size_t line = measured.yarns[deviation.measured].line; line > 0)
+            per_yarn.back()["line"] = line;
+    }
+    for (const std::size_t m : comparison.measured_alone) measured_alone.push_back(m + 1);
+    for (const std::size_t s : comparison.simulated_alone)
+        simulated_alone.push_back(yarn_name(yarns.yarns[s]));
+    return {{"rms_mm", comparison.rms_mm},
+            {"max_mm", comparison.max_mm},
+            {"matched_by", way_of_matching(comparison.matched_by)},
+            {"alignment", alignment_json(comparison.alignment)},
+            {"per_yarn", std::move(per_yarn)},
+            {"measured_without_partner", std::move(measured_alone)},
+            {"simulated_without_partner", std::move(simulated_alone)}};
+}
+
+std::string millimetres(double length) {
+    char text[64];
+    std::snprintf(text, sizeof text, "%.3f mm", length);
+    return text;
+}
+
+std::string matching_text(const Comparison& comparison) {
+    switch (comparison.matched_by) {
+        case MatchedBy::name:
+            return "matched by pick and end";
+        case MatchedBy::order:
+            return "matched in the order of the files, as there are equally many";
+        case MatchedBy::nearness:
+            break;
+    }
+    return "matched by nearness, as there are not equally many";
+}
+
+std::string comparison_text(const Yarns& yarns, const MeasuredCloth& measured, const Comparison& comparison) {
+    std::string text = counted(comparison.per_yarn.size(), "yarn") + " " + matching_text(comparison) + "\n";
+    if (comparison.alignment.mirrored)
+        text +=
+            "The measured axes are right-handed, those of the cloth left-handed: x and y were exchanged\n";
+    text += "Deviation " + millimetres(comparison.rms_mm) + " on the mean (rms), " +
+            millimetres(comparison.max_mm) + " at most\n";
+    std::vector<YarnDeviation> worst = comparison.per_yarn;
+    std::ranges::stable_sort(worst, std::greater{}, &YarnDeviation::rms_mm);
+    worst.resize(std::min<std::size_t>(worst.size(), 5));
+    for (const YarnDeviation& deviation : worst)
+        text += "  " + yarn_name(yarns.yarns[deviation.simulated]) + ": " + millimetres(deviation.rms_mm) +
+                ", at most " + millimetres(deviation.max_mm) + "\n";
+    if (comparison.per_yarn.size() > worst.size()) text += "  the others less; --json has all\n";
+    if (!comparison.measured_alone.empty())
+        text += counted(comparison.measured_alone.size(), "measured yarn") +
+                " without a partner, such as the " + std::to_string(comparison.measured_alone.front() + 1) +
+                ". of " + std::to_string(measured.yarns.size()) + "\n";
+    if (!comparison.simulated_alone.empty())
+        text += counted(comparison.simulated_alone.size(), "simulated yarn") +
+                " without a partner, such as " + yarn_name(yarns.yarns[comparison.simulated_alone.front()]) +
+                "\n";
+    return text;
+}
+
+Status run_comparison(Program& program, const std::string& file, const std::string& measured_file) {
+    WEAVE_TRY(const Yarns yarns, load_yarns(file));
+    WEAVE_TRY(const std::string bytes, read_file(measured_file, std::uint64_t{8} << 30));
+    Result<MeasuredCloth> measured = read_measured_cloth(bytes);
+    if (!measured) return std::move(measured).error().in(measured_file);
+    Result<Comparison> comparison = compare(yarns, *measured);
+    if (!comparison) return std::move(comparison).error().in(file);
+    program.answer(comparison_json(yarns, *measured, *comparison),
+                   comparison_text(yarns, *measured, *comparison));
+    return {};
+}
+
+void add_compare(CLI::App& app, Program& program) {
+    CLI::App* command =
+        add_command(app, program, "compare",
+                    "Tell how far relaxed yarns lie from measured ones, once these are laid on them");
+    const auto file = std::make_shared<std::string>(), measured = std::make_shared<std::string>();
+    command->add_option("FILE", *file, "the .yarns file of `weave simulate`")->required();
+    command
+        ->add_option("MEASURED", *measured,
+                     "centrelines in mm as text (for each yarn a line with the number of its points, then "
+                     "lines x y z), or a .yarns file")
+        ->required();
+    on_run(command, program, [=, &program] { return run_comparison(program, *file, *measured); });
+}
+
+}  // namespace
+
+void add_inspection_commands(CLI::App& app, Program& program) {
+    add_inspect(app, program);
+    add_compare(app, program);
+}
+
+}  // namespace weave::program
