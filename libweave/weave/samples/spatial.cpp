@@ -78,10 +78,11 @@ constexpr std::size_t zigzag_step(std::size_t row, std::size_t column) {
 
 Stack tl013_stack(std::size_t i, std::size_t j) {
     const bool up = (i + j) % 2 == 0;
-    // On a few points the inner ply of a double cloth binds the outer ply's weft: the plies are stitched.
-    const bool stitch = (3 * i + j) % 8 == 3;
-    return cell(6, {at(up ? 1 : 0), at(up ? (stitch ? 0 : 1) : 2), at(leaning_zigzag[zigzag_step(i, j)]),
-                    at(up ? 4 : (stitch ? 6 : 5)), at(up ? 6 : 5)});
+    // On a few points the inner ply of a double cloth binds the outer ply's weft: the plies are stitched. 3i + j is
+    // even where i + j is.
+    const auto stitched = [&](std::size_t point) { return (3 * i + j) % 8 == point; };
+    return cell(6, {at(up ? 1 : 0), at(up ? (stitched(4) ? 0 : 1) : 2), at(leaning_zigzag[zigzag_step(i, j)]),
+                    at(up ? 4 : (stitched(3) ? 6 : 5)), at(up ? 6 : 5)});
 }
 
 Design tl013(std::string title, std::string notes) {
