@@ -47,25 +47,6 @@ class Preconditioner {
     virtual void apply(const std::vector<double>& residual, std::vector<double>& step) = 0;
 };
 
-/// Incomplete block Cholesky without fill: L·D·Lᵀ on the shape of A. Along each yarn the matrix is a band, which it
-/// solves exactly; contacts are met as far as the shape goes.
-class IncompleteCholesky : public Preconditioner {
-  public:
-    /// Factors A; a pivot that is not positive definite is lifted until it is.
-    void factor(const BlockMatrix& matrix);
-    void apply(const std::vector<double>& residual, std::vector<double>& step) override;
-    [[nodiscard]] std::size_t lifted() const { return m_lifted; }
-
-  private:
-    void factor_row(const BlockMatrix& matrix, std::size_t row, std::vector<std::int32_t>& place);
-    void invert_pivot(std::size_t row, Eigen::Matrix3d pivot);
-
-    std::vector<std::uint32_t> m_first, m_columns;  ///< strictly lower half
-    std::vector<float> m_lower;                     ///< L, 9 a block
-    std::vector<float> m_inverse;                   ///< of D, 9 a row
-    std::size_t m_lifted = 0;
-};
-
 /// How a run of conjugate gradients ended.
 struct CgResult {
     std::size_t iterations = 0;

@@ -41,30 +41,46 @@ struct Neighbours<Real>::Grid {
     std::vector<std::uint32_t> first;  ///< per bucket, and one more
     std::vector<std::uint32_t> samples;
     std::vector<std::uint64_t> keys;  ///< cell of each entry: buckets may be shared
+    std::vector<Real> x, y, z, radii;  ///< of each entry
 
-    [[nodiscard]] std::int32_t cell(double x) const {
-        return static_cast<std::int32_t>(std::clamp(std::floor(x / width), -1e9, 1e9));
+    [[nodiscard]] std::int32_t cell(double at) const {
+        return static_cast<std::int32_t>(std::clamp(std::floor(at / width), -1e9, 1e9));
     }
 
-    void fill(const std::vector<std::uint32_t>& members, const std::vector<Real>& x, const std::vector<Real>& y,
-              const std::vector<Real>& z) {
+    /// found(entry) for each entry of a cell.
+    template <class Found>
+    void visit(const Cell& at, const Found& found) const {
+        const std::uint64_t key = key_of(at);
+        const std::size_t bucket = mixed(key) & mask;
+        for (std::uint32_t e = first[bucket]; e < first[bucket + 1]; ++e) {
+            if (keys[e] == key) found(e);
+        }
+    }
+
+    void fill(const std::vector<std::uint32_t>& members, const Neighbours& of) {
         const std::size_t buckets = std::bit_ceil(std::max<std::size_t>(16, members.size()));
         mask = buckets - 1;
         first.assign(buckets + 1, 0);
         std::vector<std::uint64_t> key(members.size());
         for (std::size_t i = 0; i < members.size(); ++i) {
             const std::uint32_t s = members[i];
-            key[i] = key_of({cell(x[s]), cell(y[s]), cell(z[s])});
+            key[i] = key_of({cell(of.m_x[s]), cell(of.m_y[s]), cell(of.m_z[s])});
             ++first[(mixed(key[i]) & mask) + 1];
         }
         for (std::size_t b = 0; b < buckets; ++b) first[b + 1] += first[b];
         samples.resize(members.size());
         keys.resize(members.size());
+        for (std::vector<Real>* array : {&x, &y, &z, &radii}) array->resize(members.size());
         std::vector<std::uint32_t> next(first.begin(), first.end() - 1);
         for (std::size_t i = 0; i < members.size(); ++i) {
             const std::uint32_t at = next[mixed(key[i]) & mask]++;
-            samples[at] = members[i];
+            const std::uint32_t sample = members[i];
+            samples[at] = sample;
             keys[at] = key[i];
+            x[at] = of.m_x[sample];
+            y[at] = of.m_y[sample];
+            z[at] = of.m_z[sample];
+            radii[at] = of.m_radius[sample];
         }
     }
 };
@@ -147,9 +163,8 @@ void Neighbours<Real>::build() {
         members[m_class_of_yarn[m_fabric.segment_places()[m_segment_of[own(s)]].yarn]].push_back(s);
     for (std::size_t c = 0; c < grids.size(); ++c) {
         grids[c].radius = m_classes[c];
-        // Half the reach within the class: 5 cells a side hold little that is not near.
-        grids[c].width = std::max(1e-9, (2 * m_classes[c] + m_skin) / 2);
-        grids[c].fill(members[c], m_x, m_y, m_z);
+        grids[c].width = std::max(1e-9, 2 * m_classes[c] + m_skin);
+        grids[c].fill(members[c], *this);
     }
     list_neighbours(grids);
     m_built.resize(3 * m_own);
@@ -223,33 +238,58 @@ bool Neighbours<Real>::same_stretch(std::size_t sample, std::uint32_t other) con
     return std::abs(static_cast<double>(apart)) * step < std::numbers::pi * static_cast<double>(constants.radius_mm);
 }
 
+/// Samples that may be near those of one segment, and where they are: what a thread needs while it lists.
 template <class Real>
-template <class Found>
-void Neighbours<Real>::near(const std::vector<Grid>& grids, std::size_t sample, const Found& found) const {
-    const double x = m_x[sample], y = m_y[sample], z = m_z[sample], radius = m_radius[sample];
-    const auto look_at = [&](std::uint32_t b) {
-        const double dx = m_x[b] - x, dy = m_y[b] - y, dz = m_z[b] - z, limit = radius + m_radius[b] + m_skin;
-        if (dx * dx + dy * dy + dz * dz < limit * limit && b != sample && !same_stretch(sample, b)) found(b);
-    };
+struct Neighbours<Real>::Candidates {
+    std::vector<std::uint32_t> samples;
+    std::vector<Real> x, y, z, radius;
+
+    void clear() {
+        samples.clear();
+        x.clear(), y.clear(), z.clear(), radius.clear();
+    }
+    void add(const Grid& grid, std::size_t at) {
+        samples.push_back(grid.samples[at]);
+        x.push_back(grid.x[at]);
+        y.push_back(grid.y[at]);
+        z.push_back(grid.z[at]);
+        radius.push_back(grid.radii[at]);
+    }
+};
+
+/// The samples of a segment lie close together, so cells are looked up once for all of them.
+template <class Real>
+void Neighbours<Real>::find_candidates(const std::vector<Grid>& grids, std::size_t segment, Candidates& found) const {
+    const SegmentPlace& place = m_fabric.segment_places()[segment];
+    const std::size_t begin = place.sample, end = begin + m_fabric.constants()[place.yarn].samples;
+    std::array<double, 3> low{}, high{};
+    const std::array<const std::vector<Real>*, 3> axis{&m_x, &m_y, &m_z};
+    for (std::size_t k = 0; k < 3; ++k) {
+        const auto [least, most] = std::minmax_element(axis[k]->begin() + static_cast<std::ptrdiff_t>(begin),
+                                                       axis[k]->begin() + static_cast<std::ptrdiff_t>(end));
+        low[k] = static_cast<double>(*least);
+        high[k] = static_cast<double>(*most);
+    }
+    found.clear();
     for (const Grid& grid : grids) {
-        const double reach = radius + grid.radius + m_skin;
-        const Cell low{grid.cell(x - reach), grid.cell(y - reach), grid.cell(z - reach)},
-            high{grid.cell(x + reach), grid.cell(y + reach), grid.cell(z + reach)};
+        const double reach = static_cast<double>(m_radius[begin]) + grid.radius + m_skin;
+        const auto add = [&](std::size_t at) {
+            const double x = grid.x[at], y = grid.y[at], z = grid.z[at];
+            if (x >= low[0] - reach && x <= high[0] + reach && y >= low[1] - reach && y <= high[1] + reach &&
+                z >= low[2] - reach && z <= high[2] + reach)
+                found.add(grid, at);
+        };
+        const Cell first{grid.cell(low[0] - reach), grid.cell(low[1] - reach), grid.cell(low[2] - reach)},
+            last{grid.cell(high[0] + reach), grid.cell(high[1] + reach), grid.cell(high[2] + reach)};
         // A thick yarn spans more cells of thin ones than there are thin samples: then each of these is looked at.
-        const double cells = double(high[0] - low[0] + 1) * double(high[1] - low[1] + 1) * double(high[2] - low[2] + 1);
+        const double cells = double(last[0] - first[0] + 1) * double(last[1] - first[1] + 1) * double(last[2] - first[2] + 1);
         if (cells > static_cast<double>(grid.samples.size())) {
-            for (const std::uint32_t b : grid.samples) look_at(b);
+            for (std::size_t at = 0; at < grid.samples.size(); ++at) add(at);
             continue;
         }
-        for (std::int32_t i = low[0]; i <= high[0]; ++i) {
-            for (std::int32_t j = low[1]; j <= high[1]; ++j) {
-                for (std::int32_t k = low[2]; k <= high[2]; ++k) {
-                    const std::uint64_t key = key_of({i, j, k});
-                    const std::size_t bucket = mixed(key) & grid.mask;
-                    for (std::uint32_t e = grid.first[bucket]; e < grid.first[bucket + 1]; ++e) {
-                        if (grid.keys[e] == key) look_at(grid.samples[e]);
-                    }
-                }
+        for (std::int32_t i = first[0]; i <= last[0]; ++i) {
+            for (std::int32_t j = first[1]; j <= last[1]; ++j) {
+                for (std::int32_t k = first[2]; k <= last[2]; ++k) grid.visit({i, j, k}, add);
             }
         }
     }
@@ -257,18 +297,40 @@ void Neighbours<Real>::near(const std::vector<Grid>& grids, std::size_t sample, 
 
 template <class Real>
 void Neighbours<Real>::list_neighbours(const std::vector<Grid>& grids) {
+    constexpr std::size_t at_once = 64;
+    const std::vector<SegmentPlace>& segments = m_fabric.segment_places();
+    std::vector<std::vector<std::uint32_t>> parts((segments.size() + at_once - 1) / at_once);
     m_first.assign(m_own + 1, 0);
-    m_executor.each(m_own, [&](std::size_t s) {
-        std::uint32_t count = 0;
-        near(grids, s, [&](std::uint32_t) { ++count; });
-        m_first[s + 1] = count;
+    m_executor.each(parts.size(), [&](std::size_t part) {
+        Candidates candidates;
+        for (std::size_t s = part * at_once; s < std::min(segments.size(), (part + 1) * at_once); ++s) {
+            find_candidates(grids, s, candidates);
+            const std::uint32_t samples = m_fabric.constants()[segments[s].yarn].samples;
+            for (std::uint32_t a = segments[s].sample; a < segments[s].sample + samples; ++a) {
+                const std::size_t before = parts[part].size();
+                list_near(a, candidates, parts[part]);
+                m_first[a + 1] = static_cast<std::uint32_t>(parts[part].size() - before);
+            }
+        }
     });
     for (std::size_t s = 0; s < m_own; ++s) m_first[s + 1] += m_first[s];
     m_others.resize(m_first.back());
-    m_executor.each(m_own, [&](std::size_t s) {
-        std::uint32_t at = m_first[s];
-        near(grids, s, [&](std::uint32_t b) { m_others[at++] = b; });
+    m_executor.each(parts.size(), [&](std::size_t part) {
+        std::ranges::copy(parts[part], m_others.begin() + m_first[segments[part * at_once].sample]);
     });
+}
+
+template <class Real>
+void Neighbours<Real>::list_near(std::uint32_t sample, const Candidates& candidates,
+                                 std::vector<std::uint32_t>& list) const {
+    const double x = m_x[sample], y = m_y[sample], z = m_z[sample], reach = m_radius[sample] + m_skin;
+    for (std::size_t i = 0; i < candidates.samples.size(); ++i) {
+        const double dx = candidates.x[i] - x, dy = candidates.y[i] - y, dz = candidates.z[i] - z,
+                     limit = reach + candidates.radius[i];
+        if (dx * dx + dy * dy + dz * dz >= limit * limit) continue;
+        const std::uint32_t b = candidates.samples[i];
+        if (b != sample && !same_stretch(sample, b)) list.push_back(b);
+    }
 }
 
 template <class Real>

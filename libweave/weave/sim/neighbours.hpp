@@ -44,11 +44,12 @@ class Neighbours {
 
   private:
     struct Grid;
+    struct Candidates;
     void build();
     void find_halo();
     void list_neighbours(const std::vector<Grid>& grids);
-    template <class Found>
-    void near(const std::vector<Grid>& grids, std::size_t sample, const Found& found) const;
+    void find_candidates(const std::vector<Grid>& grids, std::size_t segment, Candidates& found) const;
+    void list_near(std::uint32_t sample, const Candidates& candidates, std::vector<std::uint32_t>& list) const;
     [[nodiscard]] bool same_stretch(std::size_t sample, std::uint32_t other) const;
 
     const Fabric<Real>& m_fabric;

@@ -1,3 +1,4 @@
+#include <weave/sim/multigrid.hpp>
 #include <weave/sim/relax.hpp>
 
 #include <algorithm>
@@ -56,7 +57,11 @@ template <class Real>
 class Newton {
   public:
     Newton(Energy<Real>& energy, std::vector<Real>& state, const RelaxOptions& options)
-        : m_energy(energy), m_state(state), m_options(options), m_hessian(energy.fabric()) {}
+        : m_energy(energy),
+          m_state(state),
+          m_options(options),
+          m_hessian(energy.fabric()),
+          m_preconditioner(energy.executor(), strands_of(energy.fabric())) {}
 
     RelaxResult run() {
         m_value = m_energy.evaluate(m_state, m_gradient);
@@ -129,7 +134,8 @@ class Newton {
         for (int attempt = 0; attempt < 20; ++attempt) {
             if (curvature == Curvature::exact && damping > most_exact_damping) break;
             damp(damping);
-            m_preconditioner.factor(m_matrix);
+            // More damping changes little of what the preconditioner sees.
+            if (attempt == 0) m_preconditioner.factor(m_matrix);
             const double tolerance = std::clamp(std::sqrt(m_result.residual), 1e-3, 0.1);
             const CgResult cg = conjugate_gradients(m_energy.executor(), m_matrix, m_preconditioner, m_force, tolerance,
                                                     most_cg, m_change_rows);
@@ -244,7 +250,7 @@ class Newton {
     const RelaxOptions& m_options;
     Hessian<Real> m_hessian;
     BlockMatrix m_matrix;
-    IncompleteCholesky m_preconditioner;
+    Multigrid m_preconditioner;
     std::vector<Real> m_gradient, m_trial, m_change, m_before;
     double m_slope = 0;
     std::vector<double> m_force, m_change_rows, m_product;
