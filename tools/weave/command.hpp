@@ -80,5 +80,6 @@ void add_import_command(CLI::App& app, Program& program);  // import
 void add_look_commands(CLI::App& app, Program& program);   // info, card, render
 void add_loom_commands(CLI::App& app, Program& program);   // check, export
 void add_simulation_commands(CLI::App& app, Program& program);  // simulate, export-yarns
+void add_bench_commands(CLI::App& app, Program& program);  // bench
 
 }  // namespace weave::program
