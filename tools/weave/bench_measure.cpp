@@ -91,8 +91,8 @@ constexpr Printed table_1[]{{"satin-e", 692, 3.16},           {"twill-g", 711, 5
                             {"tl013-corrected", 4491, 62.49}, {"pocket", 12751, 15.5}};
 constexpr const char* pinned_plain = "plain-pinned";
 
-/// Plain weave of 8×8 yarns held at their ends, 7.5 radii apart, laid 7.5 % too shallow: the scene on which other
-/// simulators were measured (512 points).
+/// Plain weave of 8×8 yarns held at their ends, the outermost all along, 7.5 radii apart, laid 7.5 % too shallow: the scene
+/// on which other simulators were measured.
 Structure make_pinned_plain() {
     Structure structure;
     structure.name = pinned_plain;
@@ -102,6 +102,11 @@ Structure make_pinned_plain() {
     scene.boundary_x = scene.boundary_y = Boundary::frozen;
     scene.dx_mm = scene.dy_mm = 7.5 * (warp + weft) / 2;
     scene.dz_mm = 0.925 * (warp + weft);
+    // The others end on the outermost, which must not slip off them.
+    for (const bool is_pick : {true, false}) {
+        scene.pins.push_back({is_pick, 0});
+        scene.pins.push_back({is_pick, 7});
+    }
     structure.tiles = {4, 4};
     return structure;
 }

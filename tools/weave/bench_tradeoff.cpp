@@ -168,13 +168,16 @@ class Tradeoff {
         return ratios;
     }
 
-    /// Whether both solvers came from the same raw start to the same rest; if not, how they differ.
+    /// Whether both solvers came from the same raw start to the same rest, as far as residuals of 1e-3 tell; if not, how
+    /// they differ.
     [[nodiscard]] Json basins() const {
         const Shape fast = shape_of(m_plans[1], m_raw[1].control), slow = shape_of(m_plans[1], m_paper[1].control);
         Json basins = error_json(m_plans[1], slow, fast);
         const bool both = m_raw[1].result.residual <= 1e-3 && m_paper[1].result.residual <= 1e-3;
         basins["comparable"] = both;
-        basins["same"] = both && basins.at("place_max_radii").get<double>() < 0.2;
+        basins["same"] = both && std::abs(basins.at("crimp_warp_pp").get<double>()) < 0.1 &&
+                         std::abs(basins.at("crimp_weft_pp").get<double>()) < 0.1 &&
+                         basins.at("place_max_radii").get<double>() < 0.5;
         basins["energy_relax_N_mm"] = m_raw[1].result.energy;
         basins["energy_paper_N_mm"] = m_paper[1].result.energy;
         return basins;

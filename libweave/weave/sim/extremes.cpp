@@ -144,6 +144,22 @@ bool all_finite(const std::vector<Real>& numbers) {
     return std::all_of(numbers.begin(), numbers.end(), [](Real number) { return std::isfinite(number); });
 }
 
+/// Yarns of fixed length that lie far shorter than they are, in words.
+template <class Real>
+std::string crushed_words(const Fabric<Real>& fabric, const std::vector<Real>& state) {
+    for (std::size_t y = 0; y < fabric.yarns().size(); ++y) {
+        const SimYarn& yarn = fabric.scene().yarns[y];
+        const YarnPlace& place = fabric.yarns()[y];
+        if (yarn.is_fed || yarn.rest_mm <= 0) continue;
+        double length = 0;
+        for (std::size_t s = 0; s < place.segments; ++s)
+            length += double(Speeds<Real>(fabric.gauss(), &state[3 * (place.first_slot + s)]).length);
+        if (length < 0.5 * yarn.rest_mm)
+            return words(", yarn %.0f lies in %.0f %% of its length", static_cast<double>(y + 1), 100 * length / yarn.rest_mm);
+    }
+    return "";
+}
+
 /// How one relaxation is run.
 struct Way {
     double goal = 1e-3;
@@ -157,7 +173,7 @@ std::string report_of(const ExtremeEnd& end, Ending ending, const std::string& w
     report += words(": residual %.1e", end.residual);
     if (!end.converged && !where.empty()) report += ", " + where;
     if (end.overlap > 0.5) report += words(", yarns overlap by %.0f %%", 100 * end.overlap);
-    if (end.converged && end.curves_down) report += ", and the least push leads on from there";
+    if (end.converged && end.curves_down) report += ", though its last matrix curves down in some direction";
     if (!end.finite) report += ", NOT ALL NUMBERS ARE FINITE";
     return report + passed;
 }
@@ -199,7 +215,7 @@ ExtremeEnd relaxed(const SimScene& scene, const ExtremeLimits& limits, const Way
     end.seconds = result.seconds;
     const std::string passed = end.finite ? passed_words(before, linking_of(scene, fabric.control(state))) : "";
     end.passed_through = !passed.empty();
-    end.report = report_of(end, result.ending, worst_place(fabric, gradient), passed);
+    end.report = report_of(end, result.ending, worst_place(fabric, gradient), crushed_words(fabric, state) + passed);
     if (control != nullptr) *control = fabric.control(state);
     return end;
 }

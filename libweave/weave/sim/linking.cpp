@@ -61,6 +61,11 @@ std::array<int, 2> images(const SimScene& scene, std::size_t axis, const Polylin
             static_cast<int>(std::floor((first.high[at] - second.low[at]) / scene.period_mm[axis]))};
 }
 
+/// A yarn's own way on is no other strand: a loop that it lays in itself comes and goes freely.
+bool is_same_strand(const SimYarn& yarn, int x, int y) {
+    return (x == 0 && y == 0) || (yarn.is_periodic && x * yarn.turns[1] == y * yarn.turns[0]);
+}
+
 }  // namespace
 
 std::vector<std::vector<int>> linking_of(const SimScene& scene, const std::vector<std::vector<Vec3>>& control) {
@@ -74,7 +79,7 @@ std::vector<std::vector<int>> linking_of(const SimScene& scene, const std::vecto
             const std::array<int, 2> x = images(scene, 0, lines[i], lines[j]), y = images(scene, 1, lines[i], lines[j]);
             for (int a = x[0]; a <= x[1]; ++a) {
                 for (int b = y[0]; b <= y[1]; ++b) {
-                    if (i == j && a == 0 && b == 0) continue;
+                    if (i == j && is_same_strand(scene.yarns[i], a, b)) continue;
                     linking[i][j] += crossings(lines[i], lines[j], Vec3(a * scene.period_mm[0], b * scene.period_mm[1], 0));
                 }
             }
