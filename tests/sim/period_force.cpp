@@ -70,13 +70,14 @@ TEST_CASE("what passes through a periodic boundary is the change of energy with 
         20);
 }
 
-TEST_CASE("at rest that force is also the change of the energy at rest, and all of the warps' tension") {
+TEST_CASE("at rest that force is also the change of the energy at rest") {
     Random random(weave::testing::run_seed());
     INFO("WEAVE_SEED=" << weave::testing::run_seed());
     SimScene scene = plain_weave({.swing = 0.7});
     for (SimYarn& yarn : scene.yarns) shake(random, yarn, 0.01);
     const double period = scene.period_mm[0], step = 1e-3 * period;
-    const auto at_rest = [&](double at, double& pull) {
+    double pull = 0;
+    const auto at_rest = [&](double at) {  // goes on from the rest before, so that it stays in one basin
         SimScene changed = with_period(scene, at);
         for (SimYarn& yarn : changed.yarns) {
             for (Vec3& point : yarn.control) point.x() *= at / period;
@@ -85,11 +86,16 @@ TEST_CASE("at rest that force is also the change of the energy at rest, and all 
         const RelaxResult result = relax(bench.energy, bench.state, {.residual = 1e-8, .watch = {}});
         CHECK(result.ending == Ending::converged);
         pull = pull_through_boundary(bench);
+        if (at == period) {
+            const std::vector<std::vector<Vec3>> control = bench.fabric.control(bench.state);
+            for (std::size_t y = 0; y < control.size(); ++y) scene.yarns[y].control = control[y];
+        }
         return result.energy;
     };
-    double pull = 0, unused = 0;
-    at_rest(period, pull);
-    const double more = at_rest(period + step, unused), less = at_rest(period - step, unused);
+    at_rest(period);
+    at_rest(period);  // once more: samples follow from the lengths at the start
+    const double wanted = pull, more = at_rest(period + step), less = at_rest(period - step);
+    pull = wanted;
     CHECK(pull == Approx((more - less) / (2 * step)).epsilon(1e-3));
     CHECK(pull > 0);
     CHECK(pull < 2 * 40 * 0.02);  // two warps pull with 0.8 N each along their slopes; wefts push them apart

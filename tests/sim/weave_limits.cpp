@@ -85,7 +85,7 @@ TEST_CASE("a plain weave converges under refinement, and its order is told") {
     const double first = std::abs(crimp[1] - crimp[0]), second = std::abs(crimp[2] - crimp[1]), third = std::abs(crimp[3] - crimp[2]);
     std::printf("plain weave, 2, 4, 8, 16 points a crossing: crimp %.6f %.6f %.6f %.6f, orders %.1f %.1f\n", crimp[0], crimp[1],
                 crimp[2], crimp[3], std::log2(first / second), std::log2(second / third));
-    CHECK(second < first / 2);
-    CHECK(third < second / 2);
+    // Two points a crossing are too few for an order; from four on halving the segments takes more than three quarters off.
+    CHECK(third < second / 4);
     CHECK(third < 1e-3 * crimp[3]);
 }
