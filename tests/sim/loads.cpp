@@ -22,7 +22,8 @@ double tension_at(const Bench<double>& bench, std::size_t yarn, std::size_t segm
     return constants.stretch_N * (speeds.length / constants.rest_mm - 1);
 }
 
-/// A yarn hung over a thick rod that lies along y, held at both ends; more of it lies on the left at the start.
+/// A yarn hung over a thick rod that lies along y, held at both ends; more of it lies on the left at the
+/// start.
 SimScene wrap() {
     SimScene scene;
     SimYarn rod = usual_yarn(0.5);
@@ -38,8 +39,10 @@ SimScene wrap() {
     for (std::size_t i = 0; i <= segments; ++i) {
         double share = static_cast<double>(i) / segments;
         share += 0.02 * std::sin(std::numbers::pi * share);  // uneven: the left is stretched, the right slack
-        const double along = (share - 0.5) * whole, bent = std::clamp(along / radius, -turn, turn), rest = along - bent * radius;
-        yarn.control.emplace_back(radius * std::sin(bent) + rest * std::cos(bent), 0, radius * std::cos(bent) - rest * std::sin(bent));
+        const double along = (share - 0.5) * whole, bent = std::clamp(along / radius, -turn, turn),
+                     rest = along - bent * radius;
+        yarn.control.emplace_back(radius * std::sin(bent) + rest * std::cos(bent), 0,
+                                  radius * std::cos(bent) - rest * std::sin(bent));
     }
     yarn.rest_mm = whole / 1.02;
     yarn.frozen.assign(segments + 1, 0);
@@ -55,7 +58,8 @@ TEST_CASE("a yarn slides round a rod without friction: its tension is the same o
     Bench bench(wrap());
     const double left = tension_at(bench, 0, 5), right = tension_at(bench, 0, 54);
     REQUIRE(std::abs(left - right) > 0.5);
-    const RelaxResult result = relax(bench.energy, bench.state, {.residual = 1e-6, .most_iterations = 2000, .watch = {}});
+    const RelaxResult result =
+        relax(bench.energy, bench.state, {.residual = 1e-6, .most_iterations = 2000, .watch = {}});
     CHECK(result.ending == Ending::converged);
     const double now_left = tension_at(bench, 0, 5), now_right = tension_at(bench, 0, 54);
     std::printf("wrap: tension %.4f and %.4f N\n", now_left, now_right);
@@ -66,7 +70,8 @@ TEST_CASE("a yarn slides round a rod without friction: its tension is the same o
     CHECK(bench.pull_on(0).norm() > 0.5 * now_left);
 }
 
-TEST_CASE("weight does not curve: the matrix and the differences of forces are the same with it and without") {
+TEST_CASE(
+    "weight does not curve: the matrix and the differences of forces are the same with it and without") {
     weave::testing::for_all(
         [](Random& random) {
             SimScene light = heap(random, 3), heavy = light;

@@ -24,7 +24,8 @@ double energy_at(const SimScene& scene, double period) {
     return Bench(with_period(scene, period)).evaluate();
 }
 
-/// What the bodies say passes through the boundary: the forces on the points beyond it, and those of contact with images.
+/// What the bodies say passes through the boundary: the forces on the points beyond it, and those of contact
+/// with images.
 double pull_through_boundary(Bench<double>& bench) {
     bench.evaluate();
     const FabricView<double> view = bench.energy.view(bench.state);
@@ -38,18 +39,22 @@ double pull_through_boundary(Bench<double>& bench) {
     double pull = 0;
     for (std::size_t s = 0; s < bench.fabric.segments(); ++s) {
         forces(s);
-        for (std::size_t c = 0; c < 4; ++c) pull += turns[view.segments[s].slot + c] * gradient[12 * s + 3 * c];
+        for (std::size_t c = 0; c < 4; ++c)
+            pull += turns[view.segments[s].slot + c] * gradient[12 * s + 3 * c];
     }
     const Neighbours<double>& neighbours = bench.energy.neighbours();
     const SamplesView<double>& all = view.samples;
     for (std::size_t a = 0; a < bench.fabric.samples(); ++a) {
         for (std::uint32_t e = view.first_neighbour[a]; e < view.first_neighbour[a + 1]; ++e) {
             const std::uint32_t b = view.neighbours[e];
-            const double image = std::round((all.x[b] - all.x[neighbours.own(b)]) / bench.fabric.scene().period_mm[0]);
+            const double image =
+                std::round((all.x[b] - all.x[neighbours.own(b)]) / bench.fabric.scene().period_mm[0]);
             const Vec3 apart(all.x[b] - all.x[a], all.y[b] - all.y[a], all.z[b] - all.z[a]);
             const double reach = all.radius[a] + all.radius[b];
-            const ContactLaw<double> law = ContactLaw<double>::at(apart.squaredNorm() / (reach * reach), view.floor);
-            pull += image * all.weight[a] * all.weight[b] * law.slope * apart.x() / (reach * reach);  // half: both sides tell it
+            const ContactLaw<double> law =
+                ContactLaw<double>::at(apart.squaredNorm() / (reach * reach), view.floor);
+            pull += image * all.weight[a] * all.weight[b] * law.slope * apart.x() /
+                    (reach * reach);  // half: both sides tell it
         }
     }
     return pull;
@@ -60,11 +65,14 @@ double pull_through_boundary(Bench<double>& bench) {
 TEST_CASE("what passes through a periodic boundary is the change of energy with the period") {
     weave::testing::for_all(
         [](Random& random) {
-            SimScene scene = plain_weave({.points_a_crossing = random.between(2, 4), .pitch_mm = uniform(random, 0.3, 0.6), .swing = 0.7});
+            SimScene scene = plain_weave({.points_a_crossing = random.between(2, 4),
+                                          .pitch_mm = uniform(random, 0.3, 0.6),
+                                          .swing = 0.7});
             for (SimYarn& yarn : scene.yarns) shake(random, yarn, 0.02);
             Bench bench(scene);
             const double period = scene.period_mm[0], step = 1e-7 * period;
-            const double wanted = (energy_at(scene, period + step) - energy_at(scene, period - step)) / (2 * step);
+            const double wanted =
+                (energy_at(scene, period + step) - energy_at(scene, period - step)) / (2 * step);
             CHECK(pull_through_boundary(bench) == Approx(wanted).epsilon(1e-5).margin(1e-6));
         },
         20);

@@ -1,5 +1,4 @@
 #include "bench_measure.hpp"
-
 #include "interrupt.hpp"
 
 #include <weave/block/operations.hpp>
@@ -33,10 +32,12 @@ std::string line_after(const char* file, const std::string& name) {
 
 double length_of(const Spline& spline) {
     constexpr double places[]{0.0694318442029737, 0.3300094782075719, 0.6699905217924281, 0.9305681557970263};
-    constexpr double weights[]{0.1739274225687269, 0.3260725774312731, 0.3260725774312731, 0.1739274225687269};
+    constexpr double weights[]{0.1739274225687269, 0.3260725774312731, 0.3260725774312731,
+                               0.1739274225687269};
     double length = 0;
     for (std::size_t s = 0; s < spline.segments(); ++s) {
-        for (std::size_t g = 0; g < 4; ++g) length += weights[g] * spline.tangent(static_cast<double>(s) + places[g]).norm();
+        for (std::size_t g = 0; g < 4; ++g)
+            length += weights[g] * spline.tangent(static_cast<double>(s) + places[g]).norm();
     }
     return length;
 }
@@ -62,13 +63,15 @@ class Looker {
     /// A residual by an older reference force is taken as a hint; what counts is that of this very state.
     void look(const sim::Progress& progress) {
         std::vector<Snapshot>& snapshots = m_measured.snapshots;
-        if (snapshots.size() == told_residuals.size() || progress.residual > told_residuals[snapshots.size()]) return;
+        if (snapshots.size() == told_residuals.size() || progress.residual > told_residuals[snapshots.size()])
+            return;
         m_energy.evaluate(m_state, m_gradient);
         const double force = sim::greatest_force(m_energy.executor(), m_gradient);
-        const double reference = sim::reference_force(m_energy, m_state), residual = reference > 0 ? force / reference : 0;
+        const double reference = sim::reference_force(m_energy, m_state),
+                     residual = reference > 0 ? force / reference : 0;
         while (snapshots.size() < told_residuals.size() && residual <= told_residuals[snapshots.size()])
-            snapshots.push_back({told_residuals[snapshots.size()], residual, progress.seconds - m_away, progress.energy,
-                                 progress.iteration, m_energy.fabric().control(m_state)});
+            snapshots.push_back({told_residuals[snapshots.size()], residual, progress.seconds - m_away,
+                                 progress.energy, progress.iteration, m_energy.fabric().control(m_state)});
         m_next = progress.iteration + 1 + progress.iteration / 50;
     }
 
@@ -85,19 +88,24 @@ struct Printed {
     std::size_t points;
     double seconds;
 };
-constexpr Printed table_1[]{{"satin-e", 692, 3.16},           {"twill-g", 711, 5.1},
-                            {"layer-to-layer", 3075, 10.5},   {"angle-interlock-a", 1867, 29.54},
-                            {"angle-interlock-b", 1444, 60.49}, {"hexagon-tubes", 2127, 81.13},
-                            {"tl013-corrected", 4491, 62.49}, {"pocket", 12751, 15.5}};
+constexpr Printed table_1[]{{"satin-e", 692, 3.16},
+                            {"twill-g", 711, 5.1},
+                            {"layer-to-layer", 3075, 10.5},
+                            {"angle-interlock-a", 1867, 29.54},
+                            {"angle-interlock-b", 1444, 60.49},
+                            {"hexagon-tubes", 2127, 81.13},
+                            {"tl013-corrected", 4491, 62.49},
+                            {"pocket", 12751, 15.5}};
 constexpr const char* pinned_plain = "plain-pinned";
 
-/// Plain weave of 8×8 yarns held at their ends, the outermost all along, 7.5 radii apart, laid 7.5 % too shallow: the scene
-/// on which other simulators were measured.
+/// Plain weave of 8×8 yarns held at their ends, the outermost all along, 7.5 radii apart, laid 7.5 % too
+/// shallow: the scene on which other simulators were measured.
 Structure make_pinned_plain() {
     Structure structure;
     structure.name = pinned_plain;
     structure.design = find_sample("plain")->make();
-    const double warp = structure.design.warp.yarns[0].radius_mm, weft = structure.design.weft.yarns[0].radius_mm;
+    const double warp = structure.design.warp.yarns[0].radius_mm,
+                 weft = structure.design.weft.yarns[0].radius_mm;
     Scene& scene = structure.design.scene;
     scene.boundary_x = scene.boundary_y = Boundary::frozen;
     scene.dx_mm = scene.dy_mm = 7.5 * (warp + weft) / 2;
@@ -159,7 +167,8 @@ std::uint64_t peak_memory() {
 
 void reset_peak_memory() {
     ::malloc_trim(0);
-    std::ofstream("/proc/self/clear_refs") << "5\n";  // where that is not allowed, the peak is that of the process
+    std::ofstream("/proc/self/clear_refs")
+        << "5\n";  // where that is not allowed, the peak is that of the process
 }
 
 Control control_of(const sim::SimScene& scene) {
@@ -194,7 +203,8 @@ Shape shape_of(const sim::Plan& plan, const Control& control) {
         of_curves[plan.curve_of[y]] = spline;
         shape.splines.push_back(spline);
     }
-    for (const std::size_t system : {0, 1}) shape.crimp_pc[system] = counts[system] > 0 ? sums[system] / counts[system] : 0;
+    for (const std::size_t system : {0, 1})
+        shape.crimp_pc[system] = counts[system] > 0 ? sums[system] / counts[system] : 0;
     shape.thickness_mm = control.empty() ? 0 : high - low;
     shape.lost = sim::lost_crossings(plan.curves, of_curves).size();
     return shape;
@@ -203,8 +213,9 @@ Shape shape_of(const sim::Plan& plan, const Control& control) {
 Json error_json(const sim::Plan& plan, const Shape& shape, const Shape& right) {
     double radius = std::numeric_limits<double>::infinity();
     for (const sim::SimYarn& yarn : plan.scene.yarns) radius = std::min(radius, yarn.radius_mm);
-    const bool drifts = plan.scene.is_periodic[0] && plan.scene.is_periodic[1] && plan.scene.fields.empty() &&
-                        std::ranges::all_of(plan.scene.yarns, [](const sim::SimYarn& yarn) { return yarn.frozen.empty(); });
+    const bool drifts =
+        plan.scene.is_periodic[0] && plan.scene.is_periodic[1] && plan.scene.fields.empty() &&
+        std::ranges::all_of(plan.scene.yarns, [](const sim::SimYarn& yarn) { return yarn.frozen.empty(); });
     const sim::Deviation places = sim::deviation_of(shape.splines, right.splines, drifts);
     return {{"crimp_warp_pp", shape.crimp_pc[0] - right.crimp_pc[0]},
             {"crimp_weft_pp", shape.crimp_pc[1] - right.crimp_pc[1]},
@@ -249,12 +260,13 @@ Json Measured::json() const {
             {"peak_bytes", peak_bytes}};
 }
 
-Measured measure(const sim::Plan& plan, sim::Solver solver, const sim::PaperOptions& paper, const RunLimits& limits,
-                 const Control* start) {
+Measured measure(const sim::Plan& plan, sim::Solver solver, const sim::PaperOptions& paper,
+                 const RunLimits& limits, const Control* start) {
     reset_peak_memory();
     Measured measured;
     sim::SimScene scene = plan.scene;
-    for (std::size_t y = 0; start != nullptr && y < scene.yarns.size(); ++y) scene.yarns[y].control = (*start)[y];
+    for (std::size_t y = 0; start != nullptr && y < scene.yarns.size(); ++y)
+        scene.yarns[y].control = (*start)[y];
     const sim::Executor executor(limits.threads);
     const sim::Fabric<double> fabric(scene);
     sim::Energy<double> energy(fabric, executor);

@@ -34,10 +34,11 @@ std::size_t points_of(const sim::SimScene& scene);
 
 /// One state of a plan's yarns as a weaver measures it.
 struct Shape {
-    std::vector<Spline> splines;         ///< one a yarn of the scene
-    std::array<double, 2> crimp_pc{};    ///< mean over the warps, over the wefts: length over planned length less 1, %
-    double thickness_mm = 0;             ///< from the lowest to the highest place of any yarn
-    std::size_t lost = 0;                ///< crossings that do not lie as the card says
+    std::vector<Spline> splines;  ///< one a yarn of the scene
+    std::array<double, 2>
+        crimp_pc{};           ///< mean over the warps, over the wefts: length over planned length less 1, %
+    double thickness_mm = 0;  ///< from the lowest to the highest place of any yarn
+    std::size_t lost = 0;     ///< crossings that do not lie as the card says
 };
 Shape shape_of(const sim::Plan& plan, const Control& control);
 
@@ -71,10 +72,10 @@ struct Measured {
     [[nodiscard]] Json json() const;
 };
 
-/// Relaxes a plan, from its own start or another, and looks on: at each of told_residuals the state is kept, its
-/// residual measured anew with the reference force of that very state. Looking is not counted as time.
-Measured measure(const sim::Plan& plan, sim::Solver solver, const sim::PaperOptions& paper, const RunLimits& limits,
-                 const Control* start = nullptr);
+/// Relaxes a plan, from its own start or another, and looks on: at each of told_residuals the state is kept,
+/// its residual measured anew with the reference force of that very state. Looking is not counted as time.
+Measured measure(const sim::Plan& plan, sim::Solver solver, const sim::PaperOptions& paper,
+                 const RunLimits& limits, const Control* start = nullptr);
 
 /// The same curves with `times` as many segments (exact), or with as many control points as those of `scene`.
 Control refined(const sim::SimScene& scene, const Control& control, std::size_t times);
@@ -85,15 +86,17 @@ struct Structure {
     std::string name;
     Design design;
     BlockPtr block;
-    std::optional<std::size_t> paper_points;   ///< Table 1
+    std::optional<std::size_t> paper_points;  ///< Table 1
     std::optional<double> paper_seconds;
-    std::array<std::size_t, 2> tiles{1, 1};    ///< side by side, unreduced; 1, 1: reduced to the smallest repeat
-    double points_per_key = 4;  ///< of `standard`
+    std::array<std::size_t, 2> tiles{1,
+                                     1};  ///< side by side, unreduced; 1, 1: reduced to the smallest repeat
+    double points_per_key = 4;            ///< of `standard`
 };
 
 /// The eight structures of the paper's Table 1, and a plain weave of pinned yarns.
 std::vector<std::string> structure_names();
-/// One of them, tiled and with points for each crossing so that `standard` has about the paper's number of points.
+/// One of them, tiled and with points for each crossing so that `standard` has about the paper's number of
+/// points.
 Result<Structure> make_structure(const std::string& name);
 
 /// Options of `weave bench` that all its parts have.

@@ -1,7 +1,6 @@
 // How time and memory grow with the cloth.
 
 #include "bench_scale.hpp"
-
 #include "interrupt.hpp"
 
 #include <weave/block/operations.hpp>
@@ -22,7 +21,8 @@ void add_noise(sim::SimScene& scene, double size) {
         for (std::size_t i = 0; i < yarn.control.size(); ++i) {
             for (Eigen::Index k = 0; k < 3; ++k) {
                 number = number * 6364136223846793005U + 1442695040888963407U;
-                const double share = static_cast<double>(number >> 11) / static_cast<double>(std::uint64_t{1} << 52) - 1;
+                const double share =
+                    static_cast<double>(number >> 11) / static_cast<double>(std::uint64_t{1} << 52) - 1;
                 if (yarn.frozen.empty() || yarn.frozen[i] == 0) yarn.control[i][k] += size * share;
             }
         }
@@ -74,9 +74,12 @@ Result<Json> measure_scale(const BenchOptions& options, const ScaleOptions& scal
     const double radius = cell.scene.yarns.front().radius_mm;
     Json sizes = Json::array();
     std::size_t tried = 0;
-    for (double wanted = static_cast<double>(scale.least); wanted <= 1.01 * static_cast<double>(scale.most); wanted *= std::sqrt(10.0)) {
-        const auto cells = static_cast<std::size_t>(std::max(1.0, std::round(wanted / static_cast<double>(cell_points))));
-        const auto x = static_cast<std::size_t>(std::max(1.0, std::round(std::sqrt(static_cast<double>(cells)))));
+    for (double wanted = static_cast<double>(scale.least); wanted <= 1.01 * static_cast<double>(scale.most);
+         wanted *= std::sqrt(10.0)) {
+        const auto cells =
+            static_cast<std::size_t>(std::max(1.0, std::round(wanted / static_cast<double>(cell_points))));
+        const auto x =
+            static_cast<std::size_t>(std::max(1.0, std::round(std::sqrt(static_cast<double>(cells)))));
         const std::size_t y = std::max<std::size_t>(1, cells / x);
         if (x * y == tried) continue;
         tried = x * y;
@@ -84,12 +87,13 @@ Result<Json> measure_scale(const BenchOptions& options, const ScaleOptions& scal
         WEAVE_TRY(sim::Plan plan, plan_of(design, *evaluation.block, x, y));
         add_noise(plan.scene, 0.05 * radius);
         const double planned = now() - began;
-        const Measured run = measure(plan, sim::Solver::relax, {}, {scale.residual, options.seconds, options.threads});
+        const Measured run =
+            measure(plan, sim::Solver::relax, {}, {scale.residual, options.seconds, options.threads});
         if (interrupted()) break;
         Json size = size_json(run, scale.residual, planned);
         size["lost_crossings"] = shape_of(plan, run.control).lost;
-        tell("scale: " + in_words("%.0f points: ", static_cast<double>(run.points)) + in_words("%.2f s, ", run.result.seconds) +
-             in_words("residual %.1e", run.result.residual));
+        tell("scale: " + in_words("%.0f points: ", static_cast<double>(run.points)) +
+             in_words("%.2f s, ", run.result.seconds) + in_words("residual %.1e", run.result.residual));
         const bool converged = size.at("converged").get<bool>();
         sizes.push_back(std::move(size));
         if (!converged) break;
@@ -109,21 +113,28 @@ Result<Json> measure_scale(const BenchOptions& options, const ScaleOptions& scal
 
 std::string scale_table(const Json& result) {
     const Json& machine = result.at("machine");
-    std::string text = "# How time and memory grow\n\nWritten by `weave bench scale`. Machine: " + machine.at("processor").get<std::string>() +
-                       ", " + std::to_string(machine.at("cores").get<std::size_t>()) + " cores, " +
+    std::string text = "# How time and memory grow\n\nWritten by `weave bench scale`. Machine: " +
+                       machine.at("processor").get<std::string>() + ", " +
+                       std::to_string(machine.at("cores").get<std::size_t>()) + " cores, " +
                        std::to_string(machine.at("threads").get<std::size_t>()) + " threads. " +
-                       result.at("structure").get<std::string>() + ", `relax` to " + in_words("%.0e", result.at("goal")) + ".\n\n" +
-                       "| Points | At rest | s | µs a point | Steps | CG steps | Evaluations | Memory, MB | Bytes a point | Lost |\n"
+                       result.at("structure").get<std::string>() + ", `relax` to " +
+                       in_words("%.0e", result.at("goal")) + ".\n\n" +
+                       "| Points | At rest | s | µs a point | Steps | CG steps | Evaluations | Memory, MB | "
+                       "Bytes a point | Lost |\n"
                        "|---|---|---|---|---|---|---|---|---|---|\n";
     for (const Json& size : result.at("sizes"))
-        text += "| " + in_words("%.0f", size.at("points")) + " | " + (size.at("converged").get<bool>() ? "yes" : "no") + " | " +
-                in_words("%.2f", size.at("seconds")) + " | " + in_words("%.0f", size.at("us_a_point")) + " | " +
-                in_words("%.0f", size.at("steps")) + " | " + in_words("%.0f", size.at("cg_steps")) + " | " +
-                in_words("%.0f", size.at("evaluations")) + " | " + in_words("%.0f", size.at("peak_bytes").get<double>() / 1e6) +
-                " | " + in_words("%.0f", size.at("bytes_a_point")) + " | " + in_words("%.0f", size.at("lost_crossings")) + " |\n";
+        text += "| " + in_words("%.0f", size.at("points")) + " | " +
+                (size.at("converged").get<bool>() ? "yes" : "no") + " | " +
+                in_words("%.2f", size.at("seconds")) + " | " + in_words("%.0f", size.at("us_a_point")) +
+                " | " + in_words("%.0f", size.at("steps")) + " | " + in_words("%.0f", size.at("cg_steps")) +
+                " | " + in_words("%.0f", size.at("evaluations")) + " | " +
+                in_words("%.0f", size.at("peak_bytes").get<double>() / 1e6) + " | " +
+                in_words("%.0f", size.at("bytes_a_point")) + " | " +
+                in_words("%.0f", size.at("lost_crossings")) + " |\n";
     if (result.at("exponent_time").is_number())
         text += "\nTime grows as n^" + in_words("%.2f", result.at("exponent_time")) + ", memory as n^" +
-                in_words("%.2f", result.at("exponent_memory")) + ", steps as n^" + in_words("%.2f", result.at("exponent_steps")) + ".\n";
+                in_words("%.2f", result.at("exponent_memory")) + ", steps as n^" +
+                in_words("%.2f", result.at("exponent_steps")) + ".\n";
     return text;
 }
 

@@ -1,7 +1,6 @@
 // Speed against accuracy: every solver and fidelity on one structure, against a reference on the same branch.
 
 #include "bench_tradeoff.hpp"
-
 #include "interrupt.hpp"
 
 #include <algorithm>
@@ -17,7 +16,8 @@ struct Grade {
     const char* name;
     double points, spacing, goal;
 };
-constexpr Grade grades[]{{"draft", 0.5, 0.25, 1e-2}, {"standard", 1, 0.25, 1e-3}, {"reference", 2, 0.125, 1e-8}};
+constexpr Grade grades[]{
+    {"draft", 0.5, 0.25, 1e-2}, {"standard", 1, 0.25, 1e-3}, {"reference", 2, 0.125, 1e-8}};
 /// Four times the points of `standard`, and four times its samples.
 constexpr Grade truth{"truth", 4, 0.0625, 1e-8};
 constexpr std::size_t truth_times = 4;
@@ -34,14 +34,16 @@ std::string told(const Measured& run) {
     std::string text = in_words("%.0f points, ", static_cast<double>(run.points));
     for (const Snapshot& snapshot : run.snapshots)
         text += in_words("%.0e ", snapshot.wanted) + in_words("%.2f s, ", snapshot.seconds);
-    return text + in_words("ended at %.1e", run.result.residual) + in_words(" after %.1f s", run.result.seconds) +
+    return text + in_words("ended at %.1e", run.result.residual) +
+           in_words(" after %.1f s", run.result.seconds) +
            in_words(", %.0f steps", static_cast<double>(run.result.iterations));
 }
 
 /// One structure under measurement.
 class Tradeoff {
   public:
-    Tradeoff(const Structure& structure, const BenchOptions& options) : m_structure(structure), m_options(options) {}
+    Tradeoff(const Structure& structure, const BenchOptions& options)
+        : m_structure(structure), m_options(options) {}
 
     Result<Json> run() {
         const HeldInterrupt held;
@@ -61,19 +63,23 @@ class Tradeoff {
             m_paper.push_back(measured(g, sim::Solver::paper, m_best, 1e-8, m_options.seconds, nullptr));
             say(std::string(grades[g].name) + ", paper: " + told(m_paper.back()));
         }
-        if (interrupted()) return Error{ErrorCode::system, "interrupted; what was measured of it is not kept", m_structure.name};
+        if (interrupted())
+            return Error{ErrorCode::system, "interrupted; what was measured of it is not kept",
+                         m_structure.name};
         return result();
     }
 
   private:
     void say(const std::string& line) const { tell(m_structure.name + ": " + line); }
 
-    [[nodiscard]] Measured measured(std::size_t grade, sim::Solver solver, const sim::PaperOptions& paper, double residual,
-                                    double seconds, const Control* start) const {
-        return measure(m_plans[grade], solver, paper, {residual, interrupted() ? 0 : seconds, m_options.threads}, start);
+    [[nodiscard]] Measured measured(std::size_t grade, sim::Solver solver, const sim::PaperOptions& paper,
+                                    double residual, double seconds, const Control* start) const {
+        return measure(m_plans[grade], solver, paper,
+                       {residual, interrupted() ? 0 : seconds, m_options.threads}, start);
     }
 
-    /// The reference goes on from `standard` at rest: the same curves with four times the segments, so the same basin.
+    /// The reference goes on from `standard` at rest: the same curves with four times the segments, so the
+    /// same basin.
     void find_truth() {
         const Control start = refined(m_plans[1].scene, m_raw[1].control, truth_times);
         for (std::size_t y = 0; y < start.size(); ++y) {
@@ -81,7 +87,8 @@ class Tradeoff {
             yarn.control = start[y];
             if (!yarn.frozen.empty()) yarn.frozen = frozen_as(m_plans[1].scene.yarns[y], start[y].size());
         }
-        m_true_run = measure(m_truth, sim::Solver::relax, {}, {1e-8, interrupted() ? 0 : 3 * m_options.seconds, m_options.threads});
+        m_true_run = measure(m_truth, sim::Solver::relax, {},
+                             {1e-8, interrupted() ? 0 : 3 * m_options.seconds, m_options.threads});
         m_true_shape = shape_of(m_truth, m_true_run.control);
         say("four times the points: " + told(m_true_run));
     }
@@ -105,15 +112,17 @@ class Tradeoff {
         say(std::string(grades[g].name) + ", on the reference's branch: " + told(m_continued.back()));
     }
 
-    /// Step and damping with which `paper` needs the fewest evaluations to 1e-3 on `standard`, each tried for a tenth of
-    /// the cap; among those that do not arrive, the one that came nearest.
+    /// Step and damping with which `paper` needs the fewest evaluations to 1e-3 on `standard`, each tried for
+    /// a tenth of the cap; among those that do not arrive, the one that came nearest.
     void sweep() {
         double best = std::numeric_limits<double>::infinity();
         const auto attempt = [&](double step, double damping) {
             const sim::PaperOptions paper{.step = step, .damping = damping};
-            const Measured run = measured(1, sim::Solver::paper, paper, 1e-3, m_options.seconds / 10, nullptr);
+            const Measured run =
+                measured(1, sim::Solver::paper, paper, 1e-3, m_options.seconds / 10, nullptr);
             const bool arrived = run.result.ending == sim::Ending::converged;
-            const double cost = arrived ? static_cast<double>(run.result.evaluations) : 1e12 * (1 + run.result.residual);
+            const double cost =
+                arrived ? static_cast<double>(run.result.evaluations) : 1e12 * (1 + run.result.residual);
             m_sweep.push_back({{"step", step},
                                {"damping", damping},
                                {"converged", arrived},
@@ -127,10 +136,12 @@ class Tradeoff {
         for (const double damping : {0.3, 0.1, 0.05, 0.03, 0.02, 0.01, 0.003}) attempt(0.9, damping);
         const double damping = m_best.damping;
         for (const double step : {0.7, 0.97}) attempt(step, damping);
-        say("paper runs best with a step of " + in_words("%g", m_best.step) + " and damping " + in_words("%g", m_best.damping));
+        say("paper runs best with a step of " + in_words("%g", m_best.step) + " and damping " +
+            in_words("%g", m_best.damping));
     }
 
-    [[nodiscard]] Json run_json(std::size_t g, const char* solver, const char* start, const Measured& run) const {
+    [[nodiscard]] Json run_json(std::size_t g, const char* solver, const char* start,
+                                const Measured& run) const {
         Json json = run.json();
         json["fidelity"] = grades[g].name;
         json["solver"] = solver;
@@ -157,8 +168,11 @@ class Tradeoff {
     [[nodiscard]] Json ratios() const {
         Json ratios = Json::object();
         for (const double residual : told_residuals) {
-            const std::optional<double> fast = m_raw[1].seconds_to(residual), slow = m_paper[1].seconds_to(residual);
-            Json ratio = {{"relax_s", fast ? Json(*fast) : Json()}, {"paper_s", slow ? Json(*slow) : Json()}, {"ratio", nullptr}};
+            const std::optional<double> fast = m_raw[1].seconds_to(residual),
+                                        slow = m_paper[1].seconds_to(residual);
+            Json ratio = {{"relax_s", fast ? Json(*fast) : Json()},
+                          {"paper_s", slow ? Json(*slow) : Json()},
+                          {"ratio", nullptr}};
             if (fast && *fast > 0) {
                 ratio["ratio"] = slow.value_or(m_paper[1].result.seconds) / *fast;
                 ratio["is_lower_bound"] = !slow;
@@ -168,10 +182,11 @@ class Tradeoff {
         return ratios;
     }
 
-    /// Whether both solvers came from the same raw start to the same rest, as far as residuals of 1e-3 tell; if not, how
-    /// they differ.
+    /// Whether both solvers came from the same raw start to the same rest, as far as residuals of 1e-3 tell;
+    /// if not, how they differ.
     [[nodiscard]] Json basins() const {
-        const Shape fast = shape_of(m_plans[1], m_raw[1].control), slow = shape_of(m_plans[1], m_paper[1].control);
+        const Shape fast = shape_of(m_plans[1], m_raw[1].control),
+                    slow = shape_of(m_plans[1], m_paper[1].control);
         Json basins = error_json(m_plans[1], slow, fast);
         const bool both = m_raw[1].result.residual <= 1e-3 && m_paper[1].result.residual <= 1e-3;
         basins["comparable"] = both;

@@ -11,7 +11,8 @@ namespace {
 
 constexpr int places_a_segment = 4;
 
-/// From a place to the nearest of a spline, looked for from parameter `t` on; the part along the yarn is left out.
+/// From a place to the nearest of a spline, looked for from parameter `t` on; the part along the yarn is left
+/// out.
 Vec3 across(const Spline& spline, const Vec3& place, double t) {
     const auto last = static_cast<double>(spline.segments());
     const double start = t;
@@ -43,8 +44,8 @@ void each_place(const std::vector<Spline>& from, const std::vector<Spline>& to, 
 }  // namespace
 
 Deviation deviation_of(const std::vector<Spline>& from, const std::vector<Spline>& to, bool may_drift) {
-    // Along a yarn nothing holds its points, so the drift is that which leaves least across the yarns; a few rounds of
-    // taking the mean off find it.
+    // Along a yarn nothing holds its points, so the drift is that which leaves least across the yarns; a few
+    // rounds of taking the mean off find it.
     Vec3 drift(0, 0, 0);
     for (int round = 0; may_drift && round < 8; ++round) {
         Vec3 sum(0, 0, 0);

@@ -1,7 +1,6 @@
-#include <weave/sim/extremes.hpp>
-
 #include <weave/block/operations.hpp>
 #include <weave/design/evaluate.hpp>
+#include <weave/sim/extremes.hpp>
 #include <weave/sim/linking.hpp>
 #include <weave/sim/order.hpp>
 #include <weave/sim/paper.hpp>
@@ -60,15 +59,18 @@ struct Plain {
                 const Vec3 from = is_warp ? Vec3(0, across, 0) : Vec3(across, 0, 0);
                 SimYarn yarn = is_warp ? warp : weft;
                 yarn.is_fed = is_warp;
-                yarn = laid(yarn, from, from + (is_warp ? Vec3(size, 0, 0) : Vec3(0, size, 0)), count * points_a_crossing, true);
+                yarn = laid(yarn, from, from + (is_warp ? Vec3(size, 0, 0) : Vec3(0, size, 0)),
+                            count * points_a_crossing, true);
                 yarn.turns = {is_warp ? 1 : 0, is_warp ? 0 : 1};
                 yarn.rest_mm = 1.05 * size;
                 const double side = (y % 2 == 0 ? 1 : -1) * (is_warp ? 1 : -1);
                 for (std::size_t i = 0; i < yarn.control.size(); ++i) {
                     Vec3& point = yarn.control[i];
-                    point.z() = side * swing * std::sin(std::numbers::pi * (is_warp ? point.x() : point.y()) / pitch_mm);
+                    point.z() = side * swing *
+                                std::sin(std::numbers::pi * (is_warp ? point.x() : point.y()) / pitch_mm);
                     const auto phase = static_cast<double>(7 * i + 13 * y + (is_warp ? 0 : 5));
-                    point += 0.05 * swing * Vec3(std::sin(phase), std::sin(2.3 * phase), std::cos(1.7 * phase));
+                    point +=
+                        0.05 * swing * Vec3(std::sin(phase), std::sin(2.3 * phase), std::cos(1.7 * phase));
                     point += Vec3(origin_mm, origin_mm, 0);
                 }
                 scene.yarns.push_back(yarn);
@@ -84,7 +86,8 @@ SimScene two_yarns(double turn, const Vec3& moved) {
     for (const bool first : {true, false}) {
         SimYarn yarn = usual_yarn();
         yarn.is_fed = false;
-        const Vec3 along = first ? Vec3(1, 0, 0) : Vec3(std::cos(turn), std::sin(turn), 0), middle = first ? Vec3(0, 0, 0) : moved;
+        const Vec3 along = first ? Vec3(1, 0, 0) : Vec3(std::cos(turn), std::sin(turn), 0),
+                   middle = first ? Vec3(0, 0, 0) : moved;
         scene.yarns.push_back(laid(yarn, middle - along, middle + along, 9, false));
     }
     return scene;
@@ -131,9 +134,11 @@ double overlap_of(Energy<Real>& energy, const std::vector<Real>& state) {
         double overlap = 0;
         for (std::uint32_t e = fabric.first_neighbour[a]; e < fabric.first_neighbour[a + 1]; ++e) {
             const std::uint32_t b = fabric.neighbours[e];
-            const double dx = double(fabric.samples.x[a] - fabric.samples.x[b]), dy = double(fabric.samples.y[a] - fabric.samples.y[b]),
+            const double dx = double(fabric.samples.x[a] - fabric.samples.x[b]),
+                         dy = double(fabric.samples.y[a] - fabric.samples.y[b]),
                          dz = double(fabric.samples.z[a] - fabric.samples.z[b]);
-            overlap = std::max(overlap, 1 - std::sqrt(dx * dx + dy * dy + dz * dz) / double(fabric.samples.radius[a] + fabric.samples.radius[b]));
+            overlap = std::max(overlap, 1 - std::sqrt(dx * dx + dy * dy + dz * dz) /
+                                                double(fabric.samples.radius[a] + fabric.samples.radius[b]));
         }
         return overlap;
     });
@@ -155,7 +160,8 @@ std::string crushed_words(const Fabric<Real>& fabric, const std::vector<Real>& s
         for (std::size_t s = 0; s < place.segments; ++s)
             length += double(Speeds<Real>(fabric.gauss(), &state[3 * (place.first_slot + s)]).length);
         if (length < 0.5 * yarn.rest_mm)
-            return words(", yarn %.0f lies in %.0f %% of its length", static_cast<double>(y + 1), 100 * length / yarn.rest_mm);
+            return words(", yarn %.0f lies in %.0f %% of its length", static_cast<double>(y + 1),
+                         100 * length / yarn.rest_mm);
     }
     return "";
 }
@@ -167,8 +173,10 @@ struct Way {
     PaperOptions paper{};
 };
 
-std::string report_of(const ExtremeEnd& end, Ending ending, const std::string& where, const std::string& passed) {
-    constexpr const char* endings[]{"", "stopped", "given up after its steps", "given up after its time", "stuck"};
+std::string report_of(const ExtremeEnd& end, Ending ending, const std::string& where,
+                      const std::string& passed) {
+    constexpr const char* endings[]{"", "stopped", "given up after its steps", "given up after its time",
+                                    "stuck"};
     std::string report = end.converged ? "at rest" : endings[static_cast<std::size_t>(ending)];
     report += words(": residual %.1e", end.residual);
     if (!end.converged && !where.empty()) report += ", " + where;
@@ -179,11 +187,13 @@ std::string report_of(const ExtremeEnd& end, Ending ending, const std::string& w
 }
 
 /// Yarns whose linking changed, in words.
-std::string passed_words(const std::vector<std::vector<int>>& before, const std::vector<std::vector<int>>& after) {
+std::string passed_words(const std::vector<std::vector<int>>& before,
+                         const std::vector<std::vector<int>>& after) {
     for (std::size_t i = 0; i < before.size(); ++i) {
         for (std::size_t j = 0; j <= i; ++j) {
             if (before[i][j] != after[i][j])
-                return words(", yarns %.0f and %.0f passed through one another", static_cast<double>(j + 1), static_cast<double>(i + 1));
+                return words(", yarns %.0f and %.0f passed through one another", static_cast<double>(j + 1),
+                             static_cast<double>(i + 1));
         }
     }
     return "";
@@ -202,30 +212,37 @@ ExtremeEnd relaxed(const SimScene& scene, const ExtremeLimits& limits, const Way
     options.residual = way.goal;
     options.most_iterations = limits.most_iterations * (way.in_time ? 3 : 1);
     options.most_seconds = limits.most_seconds;
-    const RelaxResult result = way.in_time ? relax_in_time(energy, state, options, way.paper) : relax(energy, state, options);
+    const RelaxResult result =
+        way.in_time ? relax_in_time(energy, state, options, way.paper) : relax(energy, state, options);
     const double value = energy.evaluate(state, gradient);
     ExtremeEnd end;
     end.converged = result.ending == Ending::converged;
-    end.finite = all_finite(state) && all_finite(gradient) && std::isfinite(value) && std::isfinite(result.residual);
+    end.finite =
+        all_finite(state) && all_finite(gradient) && std::isfinite(value) && std::isfinite(result.residual);
     end.residual = result.residual;
     end.overlap = overlap_of(energy, state);
     end.curves_down = result.curves_down;
     end.points = fabric.points();
     end.iterations = result.iterations;
     end.seconds = result.seconds;
-    const std::string passed = end.finite ? passed_words(before, linking_of(scene, fabric.control(state))) : "";
+    const std::string passed =
+        end.finite ? passed_words(before, linking_of(scene, fabric.control(state))) : "";
     end.passed_through = !passed.empty();
-    end.report = report_of(end, result.ending, worst_place(fabric, gradient), crushed_words(fabric, state) + passed);
+    end.report =
+        report_of(end, result.ending, worst_place(fabric, gradient), crushed_words(fabric, state) + passed);
     if (control != nullptr) *control = fabric.control(state);
     return end;
 }
 
 std::function<ExtremeEnd(const ExtremeLimits&)> scene_case(SimScene scene, Way way = {}) {
-    return [scene = std::move(scene), way](const ExtremeLimits& limits) { return relaxed<double>(scene, limits, way); };
+    return [scene = std::move(scene), way](const ExtremeLimits& limits) {
+        return relaxed<double>(scene, limits, way);
+    };
 }
 
 /// Comes to rest, then every yarn changes at once, and it relaxes again from there.
-std::function<ExtremeEnd(const ExtremeLimits&)> jump_case(const Plain& plain, std::function<void(SimYarn&)> jump) {
+std::function<ExtremeEnd(const ExtremeLimits&)> jump_case(const Plain& plain,
+                                                          std::function<void(SimYarn&)> jump) {
     return [plain, jump = std::move(jump)](const ExtremeLimits& limits) {
         SimScene scene = plain.scene();
         std::vector<std::vector<Vec3>> control;
@@ -242,7 +259,8 @@ std::function<ExtremeEnd(const ExtremeLimits&)> jump_case(const Plain& plain, st
 
 using List = std::vector<Extreme>;
 
-void add(List& list, std::string name, std::function<ExtremeEnd(const ExtremeLimits&)> run, Expected expected = Expected::rest) {
+void add(List& list, std::string name, std::function<ExtremeEnd(const ExtremeLimits&)> run,
+         Expected expected = Expected::rest) {
     list.push_back({std::move(name), expected, false, std::move(run)});
 }
 
@@ -251,7 +269,9 @@ void add_ratios(List& list) {
     thin.weft = usual_yarn(0.0012);
     thin.weft.stretch_N *= 1e-4;      // as the radius squared
     thin.weft.bending_N_mm2 *= 1e-8;  // and to the fourth power
-    add(list, "radius ratio 1:100", scene_case(thin.scene()));
+    SimScene thin_scene = thin.scene();
+    thin_scene.sample_spacing = 0.45;  // thin yarns have many samples
+    add(list, "radius ratio 1:100", scene_case(std::move(thin_scene)));
     Plain stretch, bending, contact;
     stretch.warp.stretch_N *= 1e3, stretch.weft.stretch_N *= 1e-3;
     bending.warp.bending_N_mm2 *= 1e3, bending.weft.bending_N_mm2 *= 1e-3;
@@ -267,29 +287,35 @@ void add_strains(List& list) {
         plain.warp.strain = strain;
         add(list, words("S = %.7g", strain), scene_case(plain.scene()));
     }
-    add(list, "S = 0.999999", [](const ExtremeLimits&) {
-        Design design = plain_design();
-        design.scene.warp.strain = 1 - 1e-6;
-        ExtremeEnd end;
-        const Status checked = check(design);
-        end.refused = !checked;
-        end.report = checked ? "not refused" : "refused: " + checked.error().text();
-        return end;
-    }, Expected::refused);
+    add(
+        list, "S = 0.999999",
+        [](const ExtremeLimits&) {
+            Design design = plain_design();
+            design.scene.warp.strain = 1 - 1e-6;
+            ExtremeEnd end;
+            const Status checked = check(design);
+            end.refused = !checked;
+            end.report = checked ? "not refused" : "refused: " + checked.error().text();
+            return end;
+        },
+        Expected::refused);
 }
 
 void add_jumps(List& list) {
     for (const double factor : {0.5, 1.5})
-        add(list, words("live jump: radius × %g", factor), jump_case({}, [=](SimYarn& yarn) { yarn.radius_mm *= factor; }));
+        add(list, words("live jump: radius × %g", factor),
+            jump_case({}, [=](SimYarn& yarn) { yarn.radius_mm *= factor; }));
     for (const double factor : {1e-3, 1e3}) {
         add(list, words("live jump: EA and EI × %g", factor), jump_case({}, [=](SimYarn& yarn) {
-            yarn.stretch_N *= factor;
-            yarn.bending_N_mm2 *= factor;
-        }));
-        add(list, words("live jump: k × %g", factor), jump_case({}, [=](SimYarn& yarn) { yarn.contact_N_mm2 *= factor; }));
+                yarn.stretch_N *= factor;
+                yarn.bending_N_mm2 *= factor;
+            }));
+        add(list, words("live jump: k × %g", factor),
+            jump_case({}, [=](SimYarn& yarn) { yarn.contact_N_mm2 *= factor; }));
     }
     for (const double strain : {1.0, 1.5})
-        add(list, words("live jump: S to %g", strain), jump_case({}, [=](SimYarn& yarn) { yarn.strain = strain; }));
+        add(list, words("live jump: S to %g", strain),
+            jump_case({}, [=](SimYarn& yarn) { yarn.strain = strain; }));
 }
 
 void add_degenerate_places(List& list) {
@@ -304,7 +330,8 @@ void add_degenerate_places(List& list) {
         add(list, name, scene_case(scene));
     };
     spoilt("duplicate points", [](std::vector<Vec3>& control) { control[3] = control[2]; });
-    spoilt("a segment of no length", [](std::vector<Vec3>& control) { control[5] = control[4] = control[3] = control[2]; });
+    spoilt("a segment of no length",
+           [](std::vector<Vec3>& control) { control[5] = control[4] = control[3] = control[2]; });
     spoilt("a reversed segment", [](std::vector<Vec3>& control) { std::swap(control[2], control[3]); });
     SimScene point;
     point.yarns = {laid(usual_yarn(), {0, 0, 0}, {0, 0, 0}, 4, false)};
@@ -319,7 +346,8 @@ void add_periods(List& list) {
     narrow.period_mm = {1.2, 0.1};
     narrow.yarns = {laid(usual_yarn(), {0, 0, 0}, {1.2, 0, 0}, 8, true)};
     narrow.yarns[0].turns = {1, 0};
-    for (std::size_t i = 0; i < 8; ++i) narrow.yarns[0].control[i].z() = 0.02 * std::sin(2.0 * static_cast<double>(i));
+    for (std::size_t i = 0; i < 8; ++i)
+        narrow.yarns[0].control[i].z() = 0.02 * std::sin(2.0 * static_cast<double>(i));
     add(list, "period below 2D: a yarn in its own images", scene_case(narrow), Expected::told);
     SimScene beside = narrow;
     beside.period_mm = {1.2, 0.22};
@@ -338,8 +366,11 @@ void add_resolutions(List& list) {
     add(list, "one point a crossing", scene_case(coarse.scene()), Expected::told);
     for (const double step : {0.9, 1.0, 1.1})
         add(list, words("paper: step %.1f of the stability limit", step),
-            scene_case(Plain().scene(), {.goal = 1e-3, .in_time = true, .paper = {.step = step, .damping = 0.01}}),
-            step < 1 ? Expected::rest : step > 1 ? Expected::no_rest : Expected::told);
+            scene_case(Plain().scene(),
+                       {.goal = 1e-3, .in_time = true, .paper = {.step = step, .damping = 0.01}}),
+            step < 1   ? Expected::rest
+            : step > 1 ? Expected::no_rest
+                       : Expected::told);
     for (const bool in_float : {true, false}) {
         Plain far;
         far.origin_mm = 1e6;  // two cells a millimetre
@@ -424,7 +455,8 @@ bool is_good(const Extreme& extreme, const ExtremeEnd& end, std::string& why) {
     fault(end.passed_through && end.report.find("passed through") == std::string::npos &&
               end.report.find("lost") == std::string::npos,
           "a yarn passed through another and it does not say so");
-    fault((extreme.expected == Expected::refused) != end.refused, end.refused ? "it was refused" : "it was not refused");
+    fault((extreme.expected == Expected::refused) != end.refused,
+          end.refused ? "it was refused" : "it was not refused");
     fault(extreme.expected == Expected::rest && !end.converged, "it did not come to rest");
     fault(extreme.expected == Expected::rest && end.passed_through, "a yarn passed through another");
     fault(extreme.expected == Expected::no_rest && end.converged, "it claims to be at rest");

@@ -1,6 +1,5 @@
-#include <weave/sim/linking.hpp>
-
 #include <weave/curve/spline.hpp>
+#include <weave/sim/linking.hpp>
 
 #include <algorithm>
 #include <cmath>
@@ -19,10 +18,12 @@ struct Polyline {
 Polyline polyline_of(const Spline& spline) {
     Polyline line;
     const std::size_t pieces = pieces_a_segment * spline.segments();
-    // Off the knots, so that a vertex on another yarn's straight line, which would count twice or not at all, is rare.
+    // Off the knots, so that a vertex on another yarn's straight line, which would count twice or not at all,
+    // is rare.
     for (std::size_t k = 0; k <= pieces; ++k)
-        line.places.push_back(spline.place(std::min(static_cast<double>(spline.segments()),
-                                                    (static_cast<double>(k) + (spline.is_periodic ? 0.382 : 0)) / pieces_a_segment)));
+        line.places.push_back(spline.place(
+            std::min(static_cast<double>(spline.segments()),
+                     (static_cast<double>(k) + (spline.is_periodic ? 0.382 : 0)) / pieces_a_segment)));
     line.low = line.high = line.places.front();
     for (const Vec3& place : line.places) {
         line.low = line.low.cwiseMin(place);
@@ -54,7 +55,8 @@ int crossings(const Polyline& first, const Polyline& second, const Vec3& moved) 
 }
 
 /// How many periods the second line may lie away and still overlap the first.
-std::array<int, 2> images(const SimScene& scene, std::size_t axis, const Polyline& first, const Polyline& second) {
+std::array<int, 2> images(const SimScene& scene, std::size_t axis, const Polyline& first,
+                          const Polyline& second) {
     if (!scene.is_periodic[axis]) return {0, 0};
     const auto at = static_cast<Eigen::Index>(axis);
     return {static_cast<int>(std::ceil((first.low[at] - second.high[at]) / scene.period_mm[axis])),
@@ -68,7 +70,8 @@ bool is_same_strand(const SimYarn& yarn, int x, int y) {
 
 }  // namespace
 
-std::vector<std::vector<int>> linking_of(const SimScene& scene, const std::vector<std::vector<Vec3>>& control) {
+std::vector<std::vector<int>> linking_of(const SimScene& scene,
+                                         const std::vector<std::vector<Vec3>>& control) {
     std::vector<Polyline> lines;
     for (std::size_t y = 0; y < control.size(); ++y)
         lines.push_back(polyline_of({control[y], scene.yarns[y].is_periodic, scene.yarns[y].shift}));
@@ -76,11 +79,13 @@ std::vector<std::vector<int>> linking_of(const SimScene& scene, const std::vecto
     for (std::size_t i = 0; i < lines.size(); ++i) {
         linking[i].assign(i + 1, 0);
         for (std::size_t j = 0; j <= i; ++j) {
-            const std::array<int, 2> x = images(scene, 0, lines[i], lines[j]), y = images(scene, 1, lines[i], lines[j]);
+            const std::array<int, 2> x = images(scene, 0, lines[i], lines[j]),
+                                     y = images(scene, 1, lines[i], lines[j]);
             for (int a = x[0]; a <= x[1]; ++a) {
                 for (int b = y[0]; b <= y[1]; ++b) {
                     if (i == j && is_same_strand(scene.yarns[i], a, b)) continue;
-                    linking[i][j] += crossings(lines[i], lines[j], Vec3(a * scene.period_mm[0], b * scene.period_mm[1], 0));
+                    linking[i][j] += crossings(lines[i], lines[j],
+                                               Vec3(a * scene.period_mm[0], b * scene.period_mm[1], 0));
                 }
             }
         }

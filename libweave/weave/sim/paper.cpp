@@ -22,8 +22,10 @@ std::vector<double> inverse_masses(const Fabric<Real>& fabric) {
     for (std::size_t y = 0; y < fabric.yarns().size(); ++y) {
         const SimYarn& yarn = fabric.scene().yarns[y];
         const YarnPlace& place = fabric.yarns()[y];
-        double length = yarn.is_periodic ? (yarn.control.front() + yarn.shift - yarn.control.back()).norm() : 0;
-        for (std::size_t i = 0; i + 1 < yarn.control.size(); ++i) length += (yarn.control[i + 1] - yarn.control[i]).norm();
+        double length =
+            yarn.is_periodic ? (yarn.control.front() + yarn.shift - yarn.control.back()).norm() : 0;
+        for (std::size_t i = 0; i + 1 < yarn.control.size(); ++i)
+            length += (yarn.control[i + 1] - yarn.control[i]).norm();
         const double per_mm = yarn.gram_per_mm > 0
                                   ? yarn.gram_per_mm
                                   : water_gram_per_mm3 * std::numbers::pi * yarn.radius_mm * yarn.radius_mm;
@@ -38,7 +40,8 @@ std::vector<double> inverse_masses(const Fabric<Real>& fabric) {
 template <class Real>
 class Motion {
   public:
-    Motion(Energy<Real>& energy, std::vector<Real>& state, const RelaxOptions& options, const PaperOptions& paper)
+    Motion(Energy<Real>& energy, std::vector<Real>& state, const RelaxOptions& options,
+           const PaperOptions& paper)
         : m_energy(energy),
           m_state(state),
           m_options(options),
@@ -75,8 +78,8 @@ class Motion {
         return value;
     }
 
-    /// With L = l/S held while the force is taken, a segment of uneven speed pulls harder than the energy says, by
-    /// EA·S·(mean |y'|²/l² - 1)/2 along its length.
+    /// With L = l/S held while the force is taken, a segment of uneven speed pulls harder than the energy
+    /// says, by EA·S·(mean |y'|²/l² - 1)/2 along its length.
     void follow_the_paper(const std::vector<Real>& state, std::vector<Real>& gradient) {
         const Fabric<Real>& fabric = m_energy.fabric();
         m_more.assign(gradient.size(), Real(0));
@@ -91,7 +94,8 @@ class Motion {
                 SegmentSum<Real> sum;
                 for (std::size_t g = 0; g < gauss_points; ++g)
                     sum.add(fabric.gauss().basis[g].slope,
-                            speeds.tangent[g] * (fabric.gauss().weight[g] * pull / guarded(speeds.speed[g], yarn)));
+                            speeds.tangent[g] *
+                                (fabric.gauss().weight[g] * pull / guarded(speeds.speed[g], yarn)));
                 for (std::size_t k = 0; k < 12; ++k) m_more[3 * first + k] += sum.gradient[k];
             }
         });
@@ -138,8 +142,8 @@ class Motion {
         m_change.resize(m_state.size());
         m_energy.executor().each(m_inverse_mass.size(), [&](std::size_t slot) {
             for (std::size_t i = 3 * slot; i < 3 * slot + 3; ++i) {
-                m_velocity[i] = static_cast<Real>(kept * (double(m_velocity[i]) -
-                                                          step * m_inverse_mass[slot] * double(m_gradient[i])));
+                m_velocity[i] = static_cast<Real>(
+                    kept * (double(m_velocity[i]) - step * m_inverse_mass[slot] * double(m_gradient[i])));
                 m_change[i] = static_cast<Real>(step * double(m_velocity[i]));
             }
         });
@@ -150,8 +154,9 @@ class Motion {
         m_value = evaluate(m_state, m_gradient);
     }
 
-    /// No pair of samples may come nearer by half its distance. The least distance is looked up again only when the
-    /// ways since could have used it up, so that this costs the solver next to nothing once yarns lie apart.
+    /// No pair of samples may come nearer by half its distance. The least distance is looked up again only
+    /// when the ways since could have used it up, so that this costs the solver next to nothing once yarns
+    /// lie apart.
     void keep_apart(double step) {
         double way = farthest_way();
         if (!is_clear(way)) {
@@ -163,7 +168,8 @@ class Motion {
             const double share = m_energy.safe_share(m_state, m_change, 1);
             for (std::size_t i = 0; i < m_change.size(); ++i) {
                 m_change[i] *= static_cast<Real>(share);
-                m_velocity[i] = m_inverse_mass[i / 3] > 0 ? static_cast<Real>(double(m_change[i]) / step) : Real(0);
+                m_velocity[i] =
+                    m_inverse_mass[i / 3] > 0 ? static_cast<Real>(double(m_change[i]) / step) : Real(0);
             }
             way = farthest_way();
         }
@@ -188,7 +194,8 @@ class Motion {
                 double least = most * most;
                 for (std::uint32_t e = fabric.first_neighbour[a]; e < fabric.first_neighbour[a + 1]; ++e) {
                     const std::uint32_t b = fabric.neighbours[e];
-                    const Vec<Real> apart(fabric.samples.x[a] - fabric.samples.x[b], fabric.samples.y[a] - fabric.samples.y[b],
+                    const Vec<Real> apart(fabric.samples.x[a] - fabric.samples.x[b],
+                                          fabric.samples.y[a] - fabric.samples.y[b],
                                           fabric.samples.z[a] - fabric.samples.z[b]);
                     least = std::min(least, static_cast<double>(apart.squaredNorm()));
                 }
@@ -204,16 +211,19 @@ class Motion {
         double square = 0;
         for (int round = 0; round < (anew ? 24 : 4); ++round) {
             if (round == 0) stir();
-            const double size = mass_norm(m_direction), reach = greatest_force(m_energy.executor(), m_direction);
+            const double size = mass_norm(m_direction),
+                         reach = greatest_force(m_energy.executor(), m_direction);
             if (!(size > 0) || !(reach > 0)) break;
-            const double little = 1e-6 * m_energy.fabric().least_reach() / reach;  // farther would meet other contacts
+            const double little =
+                1e-6 * m_energy.fabric().least_reach() / reach;  // farther would meet other contacts
             m_trial = m_state;
-            for (std::size_t i = 0; i < m_trial.size(); ++i) m_trial[i] += static_cast<Real>(little) * m_direction[i];
+            for (std::size_t i = 0; i < m_trial.size(); ++i)
+                m_trial[i] += static_cast<Real>(little) * m_direction[i];
             m_energy.fabric().follow(m_trial);
             evaluate(m_trial, m_product);
             for (std::size_t i = 0; i < m_product.size(); ++i)
-                m_direction[i] =
-                    static_cast<Real>(m_inverse_mass[i / 3] * double(m_product[i] - m_gradient[i]) / (little * size));
+                m_direction[i] = static_cast<Real>(m_inverse_mass[i / 3] *
+                                                   double(m_product[i] - m_gradient[i]) / (little * size));
             square = std::max(square, mass_norm(m_direction));
         }
         m_limit = square > 0 ? 2 / std::sqrt(square) : 1;
@@ -221,9 +231,11 @@ class Motion {
         m_force_then = m_force;
     }
 
-    /// A little of every direction, or a part of the cloth that has just become the stiffest would not be found.
+    /// A little of every direction, or a part of the cloth that has just become the stiffest would not be
+    /// found.
     void stir() {
-        const double size = greatest_force(m_energy.executor(), m_direction), little = size > 0 ? 1e-3 * size : 1;
+        const double size = greatest_force(m_energy.executor(), m_direction),
+                     little = size > 0 ? 1e-3 * size : 1;
         std::uint32_t number = 12345;
         for (std::size_t i = 0; i < m_direction.size(); ++i) {
             number = number * 1664525U + 1013904223U;
@@ -234,7 +246,9 @@ class Motion {
 
     [[nodiscard]] double mass_norm(const std::vector<Real>& direction) const {
         return std::sqrt(m_energy.executor().sum(m_inverse_mass.size(), [&](std::size_t slot) {
-            return m_inverse_mass[slot] > 0 ? double(load(&direction[3 * slot]).squaredNorm()) / m_inverse_mass[slot] : 0.0;
+            return m_inverse_mass[slot] > 0
+                       ? double(load(&direction[3 * slot]).squaredNorm()) / m_inverse_mass[slot]
+                       : 0.0;
         }));
     }
 
@@ -247,8 +261,8 @@ class Motion {
     std::vector<double> m_inverse_mass;
     std::vector<Real> m_velocity, m_gradient, m_more, m_change, m_trial, m_product, m_direction;
     double m_value = 0, m_force = 0, m_least = 0;
-    double m_limit = 0, m_force_then = 0;      ///< 2/ω in ms, and the greatest force when it was measured
-    double m_clear = 0, m_travelled = 0;       ///< least distance when last looked up, and the ways since, mm
+    double m_limit = 0, m_force_then = 0;  ///< 2/ω in ms, and the greatest force when it was measured
+    double m_clear = 0, m_travelled = 0;   ///< least distance when last looked up, and the ways since, mm
     std::size_t m_referred = 0, m_measured = 0;
     RelaxResult m_result;
     std::chrono::steady_clock::time_point m_start = std::chrono::steady_clock::now();
@@ -262,7 +276,9 @@ RelaxResult relax_in_time(Energy<Real>& energy, std::vector<Real>& state, const 
     return Motion<Real>(energy, state, options, paper).run();
 }
 
-template RelaxResult relax_in_time(Energy<float>&, std::vector<float>&, const RelaxOptions&, const PaperOptions&);
-template RelaxResult relax_in_time(Energy<double>&, std::vector<double>&, const RelaxOptions&, const PaperOptions&);
+template RelaxResult relax_in_time(Energy<float>&, std::vector<float>&, const RelaxOptions&,
+                                   const PaperOptions&);
+template RelaxResult relax_in_time(Energy<double>&, std::vector<double>&, const RelaxOptions&,
+                                   const PaperOptions&);
 
 }  // namespace weave::sim
