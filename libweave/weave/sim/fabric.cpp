@@ -49,7 +49,8 @@ void Fabric<Real>::add_yarn(const SimYarn& yarn) {
     const auto points = static_cast<std::uint32_t>(yarn.control.size());
     YarnPlace place;
     place.points = points;
-    place.segments = yarn.is_periodic ? points : points - 1;
+    // A yarn of one point is no curve: it stays where it is, and nothing meets it.
+    place.segments = yarn.is_periodic ? points : std::max(points, 1U) - 1;
     place.slots = place.segments + 3;
     place.first_slot = static_cast<std::uint32_t>(m_moves.size());
     place.first_segment = static_cast<std::uint32_t>(m_segments.size());
@@ -83,9 +84,9 @@ void Fabric<Real>::add_yarn(const SimYarn& yarn) {
     m_moves.resize(m_moves.size() + place.slots, 0);
     m_yarn_of_slot.resize(m_moves.size(), index);
     for (std::uint32_t i = 0; i < points; ++i)
-        m_moves[place.first_slot + 1 + i] = yarn.frozen.empty() || yarn.frozen[i] == 0;
+        m_moves[place.first_slot + 1 + i] = place.segments > 0 && (yarn.frozen.empty() || yarn.frozen[i] == 0);
     m_points += points;
-    add_follows(yarn, place);
+    if (place.segments > 0) add_follows(yarn, place);
     m_places.push_back(place);
 }
 

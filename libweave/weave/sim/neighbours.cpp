@@ -70,9 +70,10 @@ struct Neighbours<Real>::Grid {
 };
 
 template <class Real>
-Neighbours<Real>::Neighbours(const Fabric<Real>& fabric, const Executor& executor)
+Neighbours<Real>::Neighbours(const Fabric<Real>& fabric, const Executor& executor, const Transition<Real>& transition)
     : m_fabric(fabric),
       m_executor(executor),
+      m_transition(transition),
       m_own(fabric.samples()),
       m_skin(skin_share * fabric.least_reach()),
       m_x(m_own),
@@ -205,6 +206,7 @@ bool Neighbours<Real>::same_stretch(std::size_t sample, std::uint32_t other) con
     const SimYarn& yarn = m_fabric.scene().yarns[mine.yarn];
     const YarnPlace& place = m_fabric.yarns()[mine.yarn];
     const YarnConstants<Real>& constants = m_fabric.constants()[mine.yarn];
+    if (!(constants.root_k > 0)) return true;  // it does not feel itself, and lengths cannot be told from weights
     std::int64_t apart = static_cast<std::int64_t>(of) - static_cast<std::int64_t>(sample);
     if (other >= m_own) {
         const HaloSample& halo = m_halo[other - m_own];
@@ -229,7 +231,9 @@ void Neighbours<Real>::near(const std::vector<Grid>& grids, std::size_t sample, 
     const double x = m_x[sample], y = m_y[sample], z = m_z[sample], radius = m_radius[sample];
     const auto look_at = [&](std::uint32_t b) {
         const double dx = m_x[b] - x, dy = m_y[b] - y, dz = m_z[b] - z, limit = radius + m_radius[b] + m_skin;
-        if (dx * dx + dy * dy + dz * dz < limit * limit && b != sample && !same_stretch(sample, b)) found(b);
+        if (dx * dx + dy * dy + dz * dz < limit * limit && b != sample && !same_stretch(sample, b) &&
+            !m_transition.parts(static_cast<std::uint32_t>(sample), own(b)))
+            found(b);
     };
     for (const Grid& grid : grids) {
         const double reach = radius + grid.radius + m_skin;

@@ -27,11 +27,11 @@ struct Thread {
 };
 
 /// Newton's method for the parameters at which two yarns cross, seen from above.
-std::optional<double> height_by_newton(const Thread& weft, const Thread& warp, double t, double s) {
+std::optional<FoundCrossing> by_newton(const Thread& weft, const Thread& warp, double t, double s) {
     const double t0 = t, s0 = s;
     for (int round = 0; round < 30; ++round) {
         const Vec3 apart = weft.spline.place(t) - warp.spline.place(s);
-        if (std::hypot(apart.x(), apart.y()) < 1e-9) return apart.z();
+        if (std::hypot(apart.x(), apart.y()) < 1e-9) return FoundCrossing{t, s, apart.z()};
         const Vec3 a = weft.spline.tangent(t), b = warp.spline.tangent(s);
         const double det = -a.x() * b.y() + a.y() * b.x();
         if (std::abs(det) < 1e-12 * (1 + a.squaredNorm() + b.squaredNorm())) return {};
@@ -47,7 +47,7 @@ std::optional<double> height_by_newton(const Thread& weft, const Thread& warp, d
 }
 
 /// The crossing nearest to the planned place among those of two polylines along the yarns.
-std::optional<double> height_by_search(const Thread& weft, const Thread& warp, double t0, double s0) {
+std::optional<FoundCrossing> by_search(const Thread& weft, const Thread& warp, double t0, double s0) {
     constexpr int pieces = 96;
     std::array<Vec3, pieces + 1> a, b;
     for (int i = 0; i <= pieces; ++i) {
@@ -55,7 +55,7 @@ std::optional<double> height_by_search(const Thread& weft, const Thread& warp, d
         a[static_cast<std::size_t>(i)] = weft.spline.place(weft.clamped(t0 + share * weft.per_key));
         b[static_cast<std::size_t>(i)] = warp.spline.place(warp.clamped(s0 + share * warp.per_key));
     }
-    std::optional<double> height;
+    std::optional<FoundCrossing> found;
     int nearest = 4 * pieces;
     for (int i = 0; i < pieces; ++i) {
         for (int j = 0; j < pieces; ++j) {
@@ -68,25 +68,33 @@ std::optional<double> height_by_search(const Thread& weft, const Thread& warp, d
             const int far = std::abs(2 * i - pieces) + std::abs(2 * j - pieces);
             if (far >= nearest) continue;
             nearest = far;
-            height = p.z() + along * u.z() - q.z() - other * v.z();
+            const double step = 2 * farthest_keys / pieces;
+            found = FoundCrossing{weft.clamped(t0 + ((i + along) * step - farthest_keys) * weft.per_key),
+                                  warp.clamped(s0 + ((j + other) * step - farthest_keys) * warp.per_key),
+                                  p.z() + along * u.z() - q.z() - other * v.z()};
         }
     }
-    return height;
+    return found;
 }
 
 }  // namespace
 
+std::optional<FoundCrossing> find_crossing(const ClothCurves& curves, const std::vector<Spline>& splines,
+                                           const Crossing& crossing) {
+    const Thread weft(splines[crossing.weft], curves.yarns[crossing.weft]),
+        warp(splines[crossing.warp], curves.yarns[crossing.warp]);
+    const double t = weft.per_key * static_cast<double>(crossing.weft_key),
+                 s = warp.per_key * static_cast<double>(crossing.warp_key);
+    const std::optional<FoundCrossing> found = by_newton(weft, warp, t, s);
+    return found ? found : by_search(weft, warp, t, s);
+}
+
 std::vector<LostCrossing> lost_crossings(const ClothCurves& curves, const std::vector<Spline>& splines) {
     std::vector<LostCrossing> lost;
     for (const Crossing& crossing : curves.crossings) {
-        const Spline &weft_spline = splines[crossing.weft], &warp_spline = splines[crossing.warp];
-        if (weft_spline.control.empty() || warp_spline.control.empty()) continue;
-        const Thread weft(weft_spline, curves.yarns[crossing.weft]), warp(warp_spline, curves.yarns[crossing.warp]);
-        const double t = weft.per_key * static_cast<double>(crossing.weft_key),
-                     s = warp.per_key * static_cast<double>(crossing.warp_key);
-        std::optional<double> height = height_by_newton(weft, warp, t, s);
-        if (!height) height = height_by_search(weft, warp, t, s);
-        if (!height || (*height > 0) != crossing.weft_over) lost.push_back({crossing, height.has_value()});
+        if (splines[crossing.weft].control.empty() || splines[crossing.warp].control.empty()) continue;
+        const std::optional<FoundCrossing> found = find_crossing(curves, splines, crossing);
+        if (!found || (found->height_mm > 0) != crossing.weft_over) lost.push_back({crossing, found.has_value()});
     }
     return lost;
 }

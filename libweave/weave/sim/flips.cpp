@@ -1,0 +1,189 @@
+#include <weave/sim/flips.hpp>
+#include <weave/sim/order.hpp>
+#include <weave/sim/relax.hpp>
+
+#include <algorithm>
+#include <array>
+#include <chrono>
+#include <cmath>
+#include <optional>
+
+namespace weave::sim {
+
+namespace {
+
+/// Shares of contact that come back one after the other, before all of it does.
+constexpr double contact_shares[]{0.02, 0.2};
+constexpr double stage_residual = 3e-2;
+constexpr std::size_t stage_iterations = 40;
+
+std::vector<Spline> splines_of(const SimScene& scene, const std::vector<std::size_t>& curve_of, std::size_t curves) {
+    std::vector<Spline> splines(curves);
+    for (std::size_t y = 0; y < scene.yarns.size(); ++y)
+        splines[curve_of[y]] = {scene.yarns[y].control, scene.yarns[y].is_periodic, scene.yarns[y].shift};
+    return splines;
+}
+
+/// One flip under way.
+class Flipping {
+  public:
+    Flipping(const SimScene& scene, const ClothCurves& curves, const std::vector<std::size_t>& curve_of,
+             const Crossing& crossing, bool weft_over, const Executor& executor, const std::function<bool()>& go_on)
+        : m_scene(scene), m_curves(curves), m_curve_of(curve_of), m_crossing(crossing), m_over(weft_over),
+          m_executor(executor), m_go_on(go_on) {}
+
+    /// Whether the crossing lies as asked for in the end; fills in what is known.
+    bool run(FlipResult& result) {
+        const auto found = find();
+        if (!found) return give_up(result, "the yarns no longer cross near their planned place");
+        prepare(*found);
+        stage(1, 0, result);
+        for (const double share : contact_shares) stage(1, share, result);
+        m_scene.transition.reset();
+        settle(result);
+        const auto ended = find();
+        if (!ended) return give_up(result, "the yarns slid off one another");
+        result.height_mm = ended->height_mm;
+        if ((ended->height_mm > 0) != m_over)
+            return give_up(result, m_stopped ? "it was stopped" : "other yarns keep the two from changing sides");
+        return true;
+    }
+
+    [[nodiscard]] const std::vector<SimYarn>& yarns() const { return m_scene.yarns; }
+
+  private:
+    static bool give_up(FlipResult& result, const char* reason) {
+        result.reason = reason;
+        return false;
+    }
+
+    [[nodiscard]] std::optional<FoundCrossing> find() const {
+        return find_crossing(m_curves, splines_of(m_scene, m_curve_of, m_curves.yarns.size()), m_crossing);
+    }
+
+    [[nodiscard]] std::size_t yarn_of(std::size_t curve) const {
+        return static_cast<std::size_t>(std::find(m_curve_of.begin(), m_curve_of.end(), curve) - m_curve_of.begin());
+    }
+
+    void prepare(const FoundCrossing& found) {
+        m_pair.yarn = {yarn_of(m_crossing.weft), yarn_of(m_crossing.warp)};
+        double thickest = 0;
+        for (const SimYarn& yarn : m_scene.yarns) thickest = std::max(thickest, yarn.radius_mm);
+        const SimYarn &weft = m_scene.yarns[m_pair.yarn[0]], &warp = m_scene.yarns[m_pair.yarn[1]];
+        const double reach = weft.radius_mm + warp.radius_mm;
+        m_stretch_mm = 2 * std::max(thickest, reach / 2);
+        m_pair.height_mm = (m_over ? 1 : -1) * reach;
+        // Ten times what bends or stretches either yarn over the way that it has to go.
+        double stiffness = 0;
+        for (const SimYarn* yarn : {&weft, &warp}) {
+            const double tension = yarn->stretch_N * std::max(yarn->strain - 1, 0.02);
+            stiffness = std::max({stiffness, tension / m_stretch_mm, yarn->bending_N_mm2 / std::pow(m_stretch_mm, 3)});
+        }
+        m_pair.spring_N_per_mm = 10 * stiffness;
+        const Spline of{weft.control, weft.is_periodic, weft.shift};
+        m_place = of.place(found.weft_at);
+        freeze_far();
+    }
+
+    /// What lies within some spacings of the crossing moves, so that there is room; all else stays where it is.
+    void freeze_far() {
+        const double near = std::max(1.5 * std::max(m_curves.dx_mm, m_curves.dy_mm), 1.5 * m_stretch_mm);
+        for (SimYarn& yarn : m_scene.yarns) {
+            yarn.frozen.resize(yarn.control.size(), 0);
+            for (std::size_t i = 0; i < yarn.control.size(); ++i) {
+                Vec3 apart = yarn.control[i] - m_place;
+                for (std::size_t k = 0; k < 2; ++k) {
+                    const auto axis = static_cast<Eigen::Index>(k);
+                    if (m_scene.is_periodic[k]) apart[axis] = std::remainder(apart[axis], m_scene.period_mm[k]);
+                }
+                if (apart.norm() > near) yarn.frozen[i] = 1;
+            }
+        }
+    }
+
+    /// Relaxes what may move with the spring and a share of the pair's contact.
+    void stage(double spring, double contact, FlipResult& result) {
+        const auto found = find();
+        if (!found || m_stopped) return;
+        const std::array<double, 2> at{found->weft_at, found->warp_at};
+        TransitionPair pair = m_pair;
+        pair.at = at;
+        pair.spring_N_per_mm *= spring;
+        pair.contact = contact;
+        for (std::size_t side = 0; side < 2; ++side) {
+            const SimYarn& yarn = m_scene.yarns[pair.yarn[side]];
+            const Spline of{yarn.control, yarn.is_periodic, yarn.shift};
+            pair.reach[side] = std::max(0.5, m_stretch_mm / std::max(1e-9, of.tangent(at[side]).norm()));
+            pair.reach[side] = std::min(pair.reach[side], 0.45 * static_cast<double>(of.segments()));
+        }
+        m_scene.transition = pair;
+        settle(result);
+    }
+
+    void settle(FlipResult& result) {
+        if (m_stopped) return;
+        const Fabric<double> fabric(m_scene);
+        Energy<double> energy(fabric, m_executor);
+        std::vector<double> state = fabric.state();
+        RelaxOptions options;
+        options.residual = stage_residual;
+        options.most_iterations = stage_iterations;
+        options.watch = [&](const Progress&) {
+            m_stopped = m_go_on && !m_go_on();
+            return !m_stopped;
+        };
+        result.iterations += relax(energy, state, options).iterations;
+        std::vector<std::vector<Vec3>> control = fabric.control(state);
+        for (std::size_t y = 0; y < control.size(); ++y) m_scene.yarns[y].control = std::move(control[y]);
+    }
+
+    SimScene m_scene;
+    const ClothCurves& m_curves;
+    const std::vector<std::size_t>& m_curve_of;
+    Crossing m_crossing;
+    bool m_over, m_stopped = false;
+    const Executor& m_executor;
+    const std::function<bool()>& m_go_on;
+    TransitionPair m_pair;
+    Vec3 m_place{0, 0, 0};
+    double m_stretch_mm = 0;  ///< half the stretches without contact
+};
+
+/// The crossings of the plan that a pixel of the card stands for: one, or two where the pick has two feeders.
+std::vector<std::size_t> crossings_of(const ClothCurves& curves, const std::vector<std::size_t>& curve_of, const Flip& flip) {
+    std::vector<std::size_t> found;
+    for (std::size_t c = 0; c < curves.crossings.size(); ++c) {
+        const Crossing& crossing = curves.crossings[c];
+        if (crossing.pick != flip.pick || crossing.end != flip.end || crossing.weft_over == flip.weft_over) continue;
+        const auto takes_part = [&](std::size_t curve) { return std::ranges::find(curve_of, curve) != curve_of.end(); };
+        if (takes_part(crossing.weft) && takes_part(crossing.warp)) found.push_back(c);
+    }
+    return found;
+}
+
+}  // namespace
+
+FlipResult flip_relaxed(SimScene& scene, ClothCurves& curves, const std::vector<std::size_t>& curve_of, const Flip& flip,
+                        const Executor& executor, const std::function<bool()>& go_on) {
+    const auto start = std::chrono::steady_clock::now();
+    FlipResult result;
+    result.flip = flip;
+    SimScene changed = scene;
+    const std::vector<std::size_t> crossings = crossings_of(curves, curve_of, flip);
+    result.done = !crossings.empty();
+    if (crossings.empty()) result.reason = "no two yarns of what is simulated cross there";
+    for (const std::size_t c : crossings) {
+        Flipping flipping(changed, curves, curve_of, curves.crossings[c], flip.weft_over, executor, go_on);
+        result.done = result.done && flipping.run(result);
+        if (!result.done) break;
+        for (std::size_t y = 0; y < changed.yarns.size(); ++y) changed.yarns[y].control = flipping.yarns()[y].control;
+    }
+    if (result.done) {
+        scene = std::move(changed);
+        for (const std::size_t c : crossings) curves.crossings[c].weft_over = flip.weft_over;
+    }
+    result.seconds = std::chrono::duration<double>(std::chrono::steady_clock::now() - start).count();
+    return result;
+}
+
+}  // namespace weave::sim
