@@ -14,8 +14,10 @@ namespace {
 
 /// Shares of contact that come back one after the other, before all of it does.
 constexpr double contact_shares[]{0.02, 0.2};
+/// The spring has done its work when the height is within this share of what it leads to.
+constexpr double height_share = 0.1;
 constexpr double stage_residual = 3e-2;
-constexpr std::size_t stage_iterations = 40;
+constexpr std::size_t spring_iterations = 40, contact_iterations = 5, last_iterations = 15;
 
 std::vector<Spline> splines_of(const SimScene& scene, const std::vector<std::size_t>& curve_of, std::size_t curves) {
     std::vector<Spline> splines(curves);
@@ -37,15 +39,16 @@ class Flipping {
         const auto found = find();
         if (!found) return give_up(result, "the yarns no longer cross near their planned place");
         prepare(*found);
-        stage(1, 0, result);
-        for (const double share : contact_shares) stage(1, share, result);
+        stage(0, spring_iterations, result);
+        for (const double share : contact_shares) stage(share, contact_iterations, result);
         m_scene.transition.reset();
-        settle(result);
+        settle(last_iterations, result);
+        if (m_stopped) return give_up(result, "it was stopped");
         const auto ended = find();
         if (!ended) return give_up(result, "the yarns slid off one another");
         result.height_mm = ended->height_mm;
         if ((ended->height_mm > 0) != m_over)
-            return give_up(result, m_stopped ? "it was stopped" : "other yarns keep the two from changing sides");
+            return give_up(result, "other yarns keep the two from changing sides");
         return true;
     }
 
@@ -102,13 +105,12 @@ class Flipping {
     }
 
     /// Relaxes what may move with the spring and a share of the pair's contact.
-    void stage(double spring, double contact, FlipResult& result) {
+    void stage(double contact, std::size_t most_iterations, FlipResult& result) {
         const auto found = find();
         if (!found || m_stopped) return;
         const std::array<double, 2> at{found->weft_at, found->warp_at};
         TransitionPair pair = m_pair;
         pair.at = at;
-        pair.spring_N_per_mm *= spring;
         pair.contact = contact;
         for (std::size_t side = 0; side < 2; ++side) {
             const SimYarn& yarn = m_scene.yarns[pair.yarn[side]];
@@ -117,20 +119,35 @@ class Flipping {
             pair.reach[side] = std::min(pair.reach[side], 0.45 * static_cast<double>(of.segments()));
         }
         m_scene.transition = pair;
-        settle(result);
+        settle(most_iterations, result);
     }
 
-    void settle(FlipResult& result) {
+    /// Whether the spring has led the two to their heights, all contact being off.
+    [[nodiscard]] static bool is_lifted(const Fabric<double>& fabric, const std::vector<double>& state) {
+        if (!fabric.scene().transition || fabric.scene().transition->contact > 0) return false;
+        const TransitionPair& pair = *fabric.scene().transition;
+        double height[2];
+        for (std::size_t side = 0; side < 2; ++side) {
+            const SimYarn& yarn = fabric.scene().yarns[pair.yarn[side]];
+            const YarnPlace& place = fabric.yarns()[pair.yarn[side]];
+            Spline spline{{}, yarn.is_periodic, yarn.shift};
+            for (std::size_t i = 0; i < place.points; ++i) spline.control.push_back(load(&state[3 * (place.first_slot + 1 + i)]));
+            height[side] = spline.place(pair.at[side]).z();
+        }
+        return std::abs(height[0] - height[1] - pair.height_mm) < height_share * std::abs(pair.height_mm);
+    }
+
+    void settle(std::size_t most_iterations, FlipResult& result) {
         if (m_stopped) return;
         const Fabric<double> fabric(m_scene);
         Energy<double> energy(fabric, m_executor);
         std::vector<double> state = fabric.state();
         RelaxOptions options;
         options.residual = stage_residual;
-        options.most_iterations = stage_iterations;
+        options.most_iterations = most_iterations;
         options.watch = [&](const Progress&) {
             m_stopped = m_go_on && !m_go_on();
-            return !m_stopped;
+            return !m_stopped && !is_lifted(fabric, state);
         };
         result.iterations += relax(energy, state, options).iterations;
         std::vector<std::vector<Vec3>> control = fabric.control(state);
