@@ -17,7 +17,11 @@ constexpr double contact_shares[]{0.02, 0.2};
 /// The spring has done its work when the height is within this share of what it leads to.
 constexpr double height_share = 0.1;
 constexpr double stage_residual = 3e-2;
-constexpr std::size_t spring_iterations = 40, contact_iterations = 5, last_iterations = 15;
+constexpr std::size_t spring_iterations = 40, contact_iterations = 5, last_iterations = 15, wide_iterations = 60;
+/// How far around the crossing yarns move, in spacings of the cloth: while the two change sides, and then while the cloth
+/// there comes to rest, so that the rest of it has little left to do.
+constexpr double near_spacings = 1.5, wide_spacings = 5;
+
 
 std::vector<Spline> splines_of(const SimScene& scene, const std::vector<std::size_t>& curve_of, std::size_t curves) {
     std::vector<Spline> splines(curves);
@@ -30,9 +34,10 @@ std::vector<Spline> splines_of(const SimScene& scene, const std::vector<std::siz
 class Flipping {
   public:
     Flipping(const SimScene& scene, const ClothCurves& curves, const std::vector<std::size_t>& curve_of,
-             const Crossing& crossing, bool weft_over, const Executor& executor, const std::function<bool()>& go_on)
-        : m_scene(scene), m_curves(curves), m_curve_of(curve_of), m_crossing(crossing), m_over(weft_over),
-          m_executor(executor), m_go_on(go_on) {}
+             const Crossing& crossing, bool weft_over, double residual, const Executor& executor,
+             const std::function<bool()>& go_on)
+        : m_before(scene), m_scene(scene), m_curves(curves), m_curve_of(curve_of), m_crossing(crossing), m_over(weft_over),
+          m_residual(residual), m_executor(executor), m_go_on(go_on) {}
 
     /// Whether the crossing lies as asked for in the end; fills in what is known.
     bool run(FlipResult& result) {
@@ -42,7 +47,9 @@ class Flipping {
         stage(0, spring_iterations, result);
         for (const double share : contact_shares) stage(share, contact_iterations, result);
         m_scene.transition.reset();
-        settle(last_iterations, result);
+        settle(last_iterations, stage_residual, result);
+        freeze_far(wide_spacings);
+        settle(wide_iterations, m_residual, result);
         if (m_stopped) return give_up(result, "it was stopped");
         const auto ended = find();
         if (!ended) return give_up(result, "the yarns slid off one another");
@@ -85,41 +92,67 @@ class Flipping {
         m_pair.spring_N_per_mm = 10 * stiffness;
         const Spline of{weft.control, weft.is_periodic, weft.shift};
         m_place = of.place(found.weft_at);
-        freeze_far();
+        freeze_far(near_spacings);
     }
 
-    /// What lies within some spacings of the crossing moves, so that there is room; all else stays where it is.
-    void freeze_far() {
-        const double near = std::max(1.5 * std::max(m_curves.dx_mm, m_curves.dy_mm), 1.5 * m_stretch_mm);
-        for (SimYarn& yarn : m_scene.yarns) {
+    /// What lies within some spacings of the crossing moves, so that there is room; all else stays where it is. Yarns that
+    /// come nowhere near are left out.
+    void freeze_far(double spacings) {
+        const double near = spacings * std::max({m_curves.dx_mm, m_curves.dy_mm, m_stretch_mm}), touching = near + 3 * m_stretch_mm;
+        m_taking_part.clear();
+        for (std::size_t y = 0; y < m_scene.yarns.size(); ++y) {
+            SimYarn& yarn = m_scene.yarns[y];
+            yarn.frozen = m_before.yarns[y].frozen;
             yarn.frozen.resize(yarn.control.size(), 0);
+            bool takes_part = false;
             for (std::size_t i = 0; i < yarn.control.size(); ++i) {
-                Vec3 apart = yarn.control[i] - m_place;
-                for (std::size_t k = 0; k < 2; ++k) {
-                    const auto axis = static_cast<Eigen::Index>(k);
-                    if (m_scene.is_periodic[k]) apart[axis] = std::remainder(apart[axis], m_scene.period_mm[k]);
-                }
-                if (apart.norm() > near) yarn.frozen[i] = 1;
+                const double far = distance(yarn.control[i]);
+                if (far > near) yarn.frozen[i] = 1;
+                // A yarn may come near between two points.
+                const Vec3& next = yarn.control[std::min(i + 1, yarn.control.size() - 1)];
+                takes_part = takes_part || far < touching + (next - yarn.control[i]).norm();
+            }
+            if (takes_part) m_taking_part.push_back(y);
+        }
+    }
+
+    /// From the crossing, or the nearest of its images.
+    [[nodiscard]] double distance(const Vec3& point) const {
+        Vec3 apart = point - m_place;
+        for (std::size_t k = 0; k < 2; ++k) {
+            const auto axis = static_cast<Eigen::Index>(k);
+            if (m_scene.is_periodic[k]) apart[axis] = std::remainder(apart[axis], m_scene.period_mm[k]);
+        }
+        return apart.norm();
+    }
+
+    /// The yarns that take part, as a scene of their own.
+    [[nodiscard]] SimScene part() const {
+        SimScene part = m_scene;
+        part.yarns.clear();
+        for (std::size_t k = 0; k < m_taking_part.size(); ++k) {
+            part.yarns.push_back(m_scene.yarns[m_taking_part[k]]);
+            for (std::size_t side = 0; side < 2 && part.transition; ++side) {
+                if (m_scene.transition->yarn[side] == m_taking_part[k]) part.transition->yarn[side] = k;
             }
         }
+        return part;
     }
 
     /// Relaxes what may move with the spring and a share of the pair's contact.
     void stage(double contact, std::size_t most_iterations, FlipResult& result) {
         const auto found = find();
         if (!found || m_stopped) return;
-        const std::array<double, 2> at{found->weft_at, found->warp_at};
-        TransitionPair pair = m_pair;
-        pair.at = at;
-        pair.contact = contact;
+        m_pair.at = {found->weft_at, found->warp_at};
+        m_pair.contact = contact;
         for (std::size_t side = 0; side < 2; ++side) {
-            const SimYarn& yarn = m_scene.yarns[pair.yarn[side]];
+            const SimYarn& yarn = m_scene.yarns[m_pair.yarn[side]];
             const Spline of{yarn.control, yarn.is_periodic, yarn.shift};
-            pair.reach[side] = std::max(0.5, m_stretch_mm / std::max(1e-9, of.tangent(at[side]).norm()));
-            pair.reach[side] = std::min(pair.reach[side], 0.45 * static_cast<double>(of.segments()));
+            m_pair.reach[side] = std::max(0.5, m_stretch_mm / std::max(1e-9, of.tangent(m_pair.at[side]).norm()));
+            m_pair.reach[side] = std::min(m_pair.reach[side], 0.45 * static_cast<double>(of.segments()));
         }
-        m_scene.transition = pair;
-        settle(most_iterations, result);
+        m_scene.transition = m_pair;
+        settle(most_iterations, stage_residual, result);
     }
 
     /// Whether the spring has led the two to their heights, all contact being off.
@@ -137,13 +170,13 @@ class Flipping {
         return std::abs(height[0] - height[1] - pair.height_mm) < height_share * std::abs(pair.height_mm);
     }
 
-    void settle(std::size_t most_iterations, FlipResult& result) {
+    void settle(std::size_t most_iterations, double residual, FlipResult& result) {
         if (m_stopped) return;
-        const Fabric<double> fabric(m_scene);
+        const Fabric<double> fabric(part());
         Energy<double> energy(fabric, m_executor);
         std::vector<double> state = fabric.state();
         RelaxOptions options;
-        options.residual = stage_residual;
+        options.residual = residual;
         options.most_iterations = most_iterations;
         options.watch = [&](const Progress&) {
             m_stopped = m_go_on && !m_go_on();
@@ -151,14 +184,17 @@ class Flipping {
         };
         result.iterations += relax(energy, state, options).iterations;
         std::vector<std::vector<Vec3>> control = fabric.control(state);
-        for (std::size_t y = 0; y < control.size(); ++y) m_scene.yarns[y].control = std::move(control[y]);
+        for (std::size_t k = 0; k < control.size(); ++k) m_scene.yarns[m_taking_part[k]].control = std::move(control[k]);
     }
 
+    const SimScene& m_before;
     SimScene m_scene;
+    std::vector<std::size_t> m_taking_part;  ///< yarns that come near
     const ClothCurves& m_curves;
     const std::vector<std::size_t>& m_curve_of;
     Crossing m_crossing;
     bool m_over, m_stopped = false;
+    double m_residual;
     const Executor& m_executor;
     const std::function<bool()>& m_go_on;
     TransitionPair m_pair;
@@ -181,7 +217,7 @@ std::vector<std::size_t> crossings_of(const ClothCurves& curves, const std::vect
 }  // namespace
 
 FlipResult flip_relaxed(SimScene& scene, ClothCurves& curves, const std::vector<std::size_t>& curve_of, const Flip& flip,
-                        const Executor& executor, const std::function<bool()>& go_on) {
+                        double residual, const Executor& executor, const std::function<bool()>& go_on) {
     const auto start = std::chrono::steady_clock::now();
     FlipResult result;
     result.flip = flip;
@@ -190,7 +226,7 @@ FlipResult flip_relaxed(SimScene& scene, ClothCurves& curves, const std::vector<
     result.done = !crossings.empty();
     if (crossings.empty()) result.reason = "no two yarns of what is simulated cross there";
     for (const std::size_t c : crossings) {
-        Flipping flipping(changed, curves, curve_of, curves.crossings[c], flip.weft_over, executor, go_on);
+        Flipping flipping(changed, curves, curve_of, curves.crossings[c], flip.weft_over, residual, executor, go_on);
         result.done = result.done && flipping.run(result);
         if (!result.done) break;
         for (std::size_t y = 0; y < changed.yarns.size(); ++y) changed.yarns[y].control = flipping.yarns()[y].control;

@@ -331,7 +331,8 @@ class Simulation {
         const std::vector<Crossing> crossings = m_plan.curves.crossings;
         const std::size_t lost_before = lost();
         const std::function<bool()> go_on = [&] { return !m_options.watch || m_options.watch({}); };
-        FlipResult result = flip_relaxed(m_scene, m_plan.curves, m_plan.curve_of, flip, m_executor, go_on);
+        FlipResult result = flip_relaxed(m_scene, m_plan.curves, m_plan.curve_of, flip,
+                                         m_options.residual.value_or(m_plan.goal), m_executor, go_on);
         m_seconds += result.seconds;
         m_iterations += result.iterations;
         const double flip_seconds = result.seconds;
