@@ -286,9 +286,23 @@ class Planner {
         const bool rims = !curve.is_periodic && m_rim[axis] == Boundary::frozen;
         if (!rims && m_held[c].empty()) return {};
         std::vector<std::uint8_t> frozen(points, 0);
+        if (m_request.region) freeze_rim(curve, frozen);
         for (std::size_t i = 0; rims && i < std::min(rim_points, points); ++i) frozen[i] = frozen[points - 1 - i] = 1;
         for (const std::size_t key : m_held[c]) hold(curve, key, frozen);
         return frozen;
+    }
+
+    /// A cut-out is held all round: the yarns along its rim would slide off the cut ends of those that they cross.
+    void freeze_rim(const YarnCurve& curve, std::vector<std::uint8_t>& frozen) const {
+        const Region& region = m_plan.curves.region;
+        const double per_key = curve.keys.size() < 2 ? 1 : double(frozen.size() - 1) / double(curve.keys.size() - 1);
+        for (std::size_t i = 0; i < frozen.size(); ++i) {
+            const auto nearest = static_cast<std::size_t>(std::lround(static_cast<double>(i) / per_key));
+            const KeyPoint& key = curve.keys[std::min(nearest, curve.keys.size() - 1)];
+            if (key.row == region.first_row || key.row == region.last_row || key.column == region.first_column ||
+                key.column == region.last_column)
+                frozen[i] = 1;
+        }
     }
 
     /// Holds the place of a key point: three control points make it.
