@@ -47,9 +47,11 @@ TEST_CASE("a tiled cloth is simulated as its smallest repeat and copied back") {
         const weave::SimulatedYarn& of = small.yarns[(warp ? 2 : 0) + yarn.number % 2];
         CHECK(yarn.length_mm == Approx(of.length_mm * (warp ? 3 : 2)));
     }
-    const Json whole = shop.json({"simulate", "t.weave", "-o", "w.yarns", "--residual", "1e-8", "--whole"});
+    // The repeat's rest is one of the whole cloth: it stays there. From the raw start the whole may find another.
+    const Json whole = shop.json({"simulate", "t.weave", "-o", "w.yarns", "--residual", "1e-7", "--whole", "--resume", "t.yarns"});
     CHECK(whole.at("points").get<std::size_t>() == 6 * one.at("points").get<std::size_t>());
-    CHECK(whole.at("energy_N_mm").get<double>() == Approx(6 * one.at("energy_N_mm").get<double>()).epsilon(1e-6));
+    CHECK(whole.at("iterations").get<int>() <= 1);
+    CHECK(whole.at("energy_N_mm").get<double>() == Approx(6 * one.at("energy_N_mm").get<double>()).epsilon(1e-9));
 }
 
 TEST_CASE("what cannot be simulated is refused with its reason") {

@@ -190,16 +190,24 @@ TEST_CASE("a period shorter than the yarns are thick counts every image") {
         4);
 }
 
-TEST_CASE("fields and gravity pull as their energies say") {
+TEST_CASE("fields and gravity pull as their energies say, and curve as their pulls say") {
     weave::testing::for_all(
         [](Random& random) {
             SimScene scene = heap(random, 2);
-            scene.gravity_mm_ms2 = 9.80665e-3;
-            for (SimYarn& yarn : scene.yarns) yarn.gram_per_mm = uniform(random, 0, 100);
-            scene.fields.push_back({.centre_mm = {0.1, 0.1, -0.2}, .radius_mm = 0.9, .strength_N_per_mm = 4});
+            if (random.coin()) scene.gravity_mm_ms2 = 9.80665e-3;
+            for (SimYarn& yarn : scene.yarns) {
+                yarn.gram_per_mm = uniform(random, 0, 100);
+                yarn.is_fed = random.coin();
+            }
+            scene.fields.push_back(
+                {.centre_mm = {0.1, 0.1, -0.2}, .radius_mm = 0.9, .strength_N_per_mm = uniform(random, -4, 4)});
+            if (random.coin())
+                scene.fields.push_back(
+                    {.centre_mm = {-0.3, 0, 0.3}, .radius_mm = 0.5, .strength_N_per_mm = 6});
             CHECK(gradient_error(scene) < 1e-6);
+            check_matrices(scene);
         },
-        10);
+        20);
 }
 
 TEST_CASE("the gradient in float is the one in double as far as float goes") {

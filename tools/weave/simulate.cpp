@@ -2,16 +2,20 @@
 
 #include "command.hpp"
 #include "interrupt.hpp"
+#include "simulate_words.hpp"
 
 #include <weave/core/file.hpp>
 #include <weave/core/text.hpp>
+#include <weave/design/document.hpp>
+#include <weave/design/edit.hpp>
 #include <weave/picture/cloth_view.hpp>
 #include <weave/sim/exports.hpp>
 #include <weave/sim/simulate.hpp>
 #include <weave/sim/yarns_file.hpp>
 
-#include <array>
-#include <charconv>
+#include <algorithm>
+#include <chrono>
+#include <cmath>
 #include <cstdio>
 #include <memory>
 #include <optional>
@@ -22,8 +26,8 @@ namespace weave::program {
 namespace {
 
 struct Wish {
-    std::string file, out, fidelity = "standard", solver = "relax", region;
-    std::vector<std::string> set;
+    std::string file, out, fidelity = "standard", region, solver = "relax", backend = "cpu", resume, save_design;
+    std::vector<std::string> set, boundaries, pins, fields, flips;
     bool wraparound = false, explain = false, whole = false;
     std::optional<double> residual, points, seconds;
     std::optional<std::size_t> steps;
@@ -34,63 +38,54 @@ Error usage_error(std::string message, std::string where) {
     return {ErrorCode::usage, std::move(message), std::move(where)};
 }
 
-std::optional<double> number_of(std::string_view text) {
-    double value = 0;
-    const auto [end, code] = std::from_chars(text.data(), text.data() + text.size(), value);
-    if (code != std::errc{} || end != text.data() + text.size()) return {};
-    return value;
+/// What is to be done, understood.
+struct Task {
+    Design design;  ///< with the scene of this run
+    std::string file_scene_sha256;  ///< of the scene as the file has it
+    sim::SimulationRequest request;
+    sim::SimulationOptions options;
+    std::vector<Flip> flips;
+};
+
+Status check_backend(const std::string& backend) {
+    if (backend == "cpu") return {};
+    if (backend == "cuda") return system_fault("this program was built without CUDA: use the backend cpu", "--backend cuda");
+    return usage_error("backend is cpu or cuda", "--backend " + backend);
 }
 
-/// `warp.strain=1.01`: a number of the scene, for this run only.
-Status set_number(Scene& scene, const std::string& text) {
-    const std::size_t equals = text.find('=');
-    const std::string name = text.substr(0, equals), where = "--set " + text;
-    const std::optional<double> value =
-        equals == std::string::npos ? std::nullopt : number_of(std::string_view(text).substr(equals + 1));
-    if (!value) return usage_error("write it as NAME=NUMBER, such as warp.strain=1.01", where);
-    const std::size_t point = name.find('.');
-    const std::string system = name.substr(0, point), what = point == std::string::npos ? "" : name.substr(point + 1);
-    SystemScene* of = system == "warp" ? &scene.warp : system == "weft" ? &scene.weft : nullptr;
-    std::optional<double>* number = nullptr;
-    if (of != nullptr && what == "strain") number = &of->strain;
-    if (of != nullptr && what == "stiffness") number = &of->stiffness_scale;
-    if (of != nullptr && what == "radius") number = &of->radius_scale;
-    if (number == nullptr)
-        return usage_error("NAME is warp or weft with strain, stiffness or radius (the latter two are factors), such as weft.radius",
-                           where);
-    *number = *value;
+Status check_wish(const Wish& wish) {
+    WEAVE_CHECK_OK(check_backend(wish.backend));
+    if (!wish.save_design.empty() && wish.flips.empty())
+        return usage_error("without --flip the design stays as it is", "--save-design " + wish.save_design);
     return {};
 }
 
-/// `picks:1-8,ends:3-12`, from 1: the rows and columns that hold them.
-Result<Region> parse_region(const std::string& text, const Block& block) {
-    const Error trouble = usage_error("write it as picks:FIRST-LAST,ends:FIRST-LAST within " + std::to_string(block.picks()) +
-                                          " picks and " + std::to_string(block.ends()) + " ends",
-                                      "--region " + text);
-    std::array<std::size_t, 4> bounds{};
-    int read = 0;
-    if (std::sscanf(text.c_str(), "picks:%zu-%zu,ends:%zu-%zu%n", &bounds[0], &bounds[1], &bounds[2], &bounds[3], &read) != 4 ||
-        static_cast<std::size_t>(read) != text.size())
-        return trouble;
-    if (bounds[0] < 1 || bounds[0] > bounds[1] || bounds[1] > block.picks() || bounds[2] < 1 || bounds[2] > bounds[3] ||
-        bounds[3] > block.ends())
-        return trouble;
-    return Region{block.row_of_pick(bounds[0] - 1), block.row_of_pick(bounds[1] - 1),
-                  block.column_of_end(bounds[2] - 1), block.column_of_end(bounds[3] - 1)};
-}
-
-Result<sim::Plan> plan_for(Cloth& cloth, const Wish& wish) {
-    sim::SimulationRequest request;
-    WEAVE_TRY(request.fidelity, sim::parse_fidelity(wish.fidelity));
-    for (const std::string& text : wish.set) WEAVE_CHECK_OK(set_number(cloth.design.scene, text));
-    WEAVE_CHECK_OK(check(cloth.design));
-    if (wish.wraparound) request.weft_mode = WeftMode::wraparound;
+Result<Task> understand(Cloth cloth, const Wish& wish) {
+    WEAVE_CHECK_OK(check_wish(wish));
+    const Block& block = *cloth.evaluation.block;
+    Task task;
+    task.file_scene_sha256 = scene_sha256(cloth.design);
+    task.design = std::move(cloth.design);
+    Scene& scene = task.design.scene;
+    WEAVE_TRY(task.request.fidelity, sim::parse_fidelity(wish.fidelity));
+    WEAVE_TRY(task.options.solver, sim::parse_solver(wish.solver));
+    for (const std::string& text : wish.set) WEAVE_CHECK_OK(set_number(scene, text));
+    for (const std::string& text : wish.boundaries) WEAVE_CHECK_OK(set_boundary(scene, task.request, text));
+    for (const std::string& text : wish.pins) WEAVE_CHECK_OK(add_pin(scene, task.request, block, text));
+    for (const std::string& text : wish.fields) WEAVE_CHECK_OK(add_field(scene, text));
+    WEAVE_TRY(task.flips, parse_flips(wish.flips, block));
+    WEAVE_CHECK_OK(check(task.design));
+    if (wish.wraparound) task.request.weft_mode = WeftMode::wraparound;
     if (!wish.region.empty()) {
-        WEAVE_TRY(request.region, parse_region(wish.region, *cloth.evaluation.block));
+        WEAVE_TRY(task.request.region, parse_region(wish.region, block));
     }
-    request.points_per_key = wish.points;
-    request.reduce = !wish.whole;
-    return sim::make_plan(cloth.design, *cloth.evaluation.block, request);
+    task.request.points_per_key = wish.points;
+    task.request.reduce = !wish.whole;
+    task.options.threads = wish.threads;
+    task.options.residual = wish.residual;
+    task.options.most_iterations = wish.steps.value_or(task.options.solver == sim::Solver::paper ? 1'000'000 : 2000);
+    task.options.most_seconds = wish.seconds.value_or(1e30);
+    return task;
 }
 
 std::string in_words(const sim::Plan& plan) {
@@ -100,14 +95,22 @@ std::string in_words(const sim::Plan& plan) {
     return text;
 }
 
-/// Tells how far it has come: on a terminal in one line, else once in ten seconds.
+/// Tells how far it has come and how long it may still take: on a terminal in one line, else after a second and then once
+/// in ten.
 class Teller {
   public:
+    explicit Teller(double goal) : m_goal(goal) {}
+
     bool operator()(const sim::Progress& progress) {
-        const double now = progress.seconds;
-        if (now - m_told >= (m_terminal ? 0.2 : 10)) {
-            std::fprintf(stderr, m_terminal ? "\rresidual %.2e after %zu steps, %.1f s " : "residual %.2e after %zu steps, %.1f s\n",
-                         progress.residual, progress.iteration, now);
+        const double now = std::chrono::duration<double>(std::chrono::steady_clock::now() - m_start).count();
+        if (progress.residual > 0) m_past.push_back({now, std::log(progress.residual)});
+        if (progress.residual > 0 && now - m_told >= (m_terminal ? 0.2 : m_told == 0 ? 1 : 10)) {
+            const std::optional<double> left = seconds_left();
+            char to_go[40] = "";
+            if (left) std::snprintf(to_go, sizeof to_go, "to go some %.*f s, ", *left < 10 ? 1 : 0, *left);
+            std::fprintf(stderr, "%srelaxing ... residual %.2e (goal %.0e) after %zu steps, %sso far %.1f s%s",
+                         m_terminal ? "\r" : "", progress.residual, m_goal, progress.iteration, to_go, now,
+                         m_terminal ? "\033[K" : "\n");
             m_told = now;
             m_open = m_terminal;
         }
@@ -118,9 +121,50 @@ class Teller {
     }
 
   private:
+    struct Past {
+        double seconds, log_residual;
+    };
+
+    /// By how fast the residual fell in the last third of the time; nothing while it does not fall.
+    [[nodiscard]] std::optional<double> seconds_left() const {
+        const Past& now = m_past.back();
+        const auto then = std::find_if(m_past.begin(), m_past.end(),
+                                       [&](const Past& past) { return past.seconds >= now.seconds * 2 / 3; });
+        const double fell = then->log_residual - now.log_residual;
+        if (!(fell > 0.1)) return {};
+        return std::max(0.0, (now.log_residual - std::log(m_goal)) / fell * (now.seconds - then->seconds));
+    }
+
+    double m_goal;
     bool m_terminal = ::isatty(STDERR_FILENO) == 1, m_open = false;
     double m_told = 0;
+    std::vector<Past> m_past;
+    std::chrono::steady_clock::time_point m_start = std::chrono::steady_clock::now();
 };
+
+std::string flips_in_words(const Json& report) {
+    std::string text;
+    if (!report.contains("flips")) return text;
+    for (const Json& flip : report.at("flips")) {
+        const std::string pair = "pick " + std::to_string(flip.at("pick").get<std::size_t>()) + " and end " +
+                                 std::to_string(flip.at("end").get<std::size_t>());
+        char seconds[40];
+        std::snprintf(seconds, sizeof seconds, " (%.2f s)\n",
+                      flip.at("flip_seconds").get<double>() + flip.at("settle_seconds").get<double>());
+        text += flip.at("done").get<bool>() ? pair + " have changed sides" + seconds
+                                            : pair + " stay as they were: " + flip.at("reason").get<std::string>() + "\n";
+    }
+    return text;
+}
+
+/// Which part of the cloth was simulated, where it is not all.
+std::string coverage_in_words(const Json& report) {
+    const Json& coverage = report.at("coverage");
+    if (coverage.at("whole").get<bool>() || !coverage.contains("picks")) return "";
+    const auto number = [&](const char* name, std::size_t k) { return std::to_string(coverage.at(name).at(k).get<std::size_t>()); };
+    return "only picks " + number("picks", 0) + " to " + number("picks", 1) + " and ends " + number("ends", 0) + " to " +
+           number("ends", 1) + " of the cloth\n";
+}
 
 std::string ending_in_words(const Json& report) {
     char line[200];
@@ -130,37 +174,80 @@ std::string ending_in_words(const Json& report) {
                   report.at("points").get<std::size_t>(), 100 * report.at("max_overlap").get<double>());
     const auto lost = report.at("lost_crossings").get<std::size_t>();
     return line + (lost == 0 ? std::string("every crossing lies as the card says\n")
-                             : counted(lost, "crossing") + " no longer as the card says\n");
+                             : counted(lost, "crossing") + " no longer as the card says\n") +
+           coverage_in_words(report) + flips_in_words(report);
+}
+
+/// The state to go on from, out of a .yarns file.
+Result<sim::StartState> taken_up(const std::string& file, const sim::Plan& plan, const Task& task) {
+    WEAVE_TRY(const Yarns yarns, load_yarns(file));
+    auto start = sim::start_from(plan, yarns, design_sha256(task.design), {scene_sha256(task.design), task.file_scene_sha256});
+    if (!start) return std::move(start).error().in(file);
+    return start;
+}
+
+/// Relaxes; with flips first the smallest repeat, then from there the whole cloth, one of whose crossings is to change.
+Result<Yarns> relaxed(const Block& block, Task& task, const sim::Plan& plan, const Wish& wish) {
+    sim::SimulationOptions& options = task.options;
+    if (!wish.resume.empty()) {
+        WEAVE_TRY(options.start, taken_up(wish.resume, plan, task));
+    }
+    const bool reduced = plan.repeats[0] * plan.repeats[1] > 1;
+    if (task.flips.empty() || !reduced) {
+        options.flips = task.flips;
+        return sim::simulate(task.design, plan, options);
+    }
+    const Yarns repeat = sim::simulate(task.design, plan, options);
+    if (interrupted()) return repeat;
+    sim::SimulationRequest request = task.request;
+    request.reduce = false;
+    WEAVE_TRY(const sim::Plan whole, sim::make_plan(task.design, block, request));
+    WEAVE_TRY(options.start, sim::start_from(whole, repeat, repeat.design_sha256, {repeat.scene_sha256}));
+    options.flips = task.flips;
+    return sim::simulate(task.design, whole, options);
+}
+
+/// The design with the flips that were made, in the scene of its file.
+Status save_flipped(Design design, const Task& task, const Yarns& yarns, const std::string& file) {
+    for (std::size_t k = 0; k < yarns.report.at("flips").size(); ++k) {
+        if (yarns.report.at("flips").at(k).at("done").get<bool>())
+            WEAVE_CHECK_OK(apply_edit(design, PutFlip{design.root, task.flips[k]}));
+    }
+    return save_design(design, file);
+}
+
+bool is_good(const Json& report) {
+    const auto is_done = [](const Json& flip) { return flip.at("done").get<bool>(); };
+    const Json flips = report.value("flips", Json::array());
+    return report.at("converged").get<bool>() && report.at("order_kept").get<bool>() && std::all_of(flips.begin(), flips.end(), is_done);
 }
 
 Status run_simulation(Program& program, const Wish& wish) {
-    WEAVE_TRY(Cloth cloth, load_cloth(program, wish.file));
-    auto planned = plan_for(cloth, wish);
+    WEAVE_TRY(const Cloth cloth, load_cloth(program, wish.file));
+    const Block& block = *cloth.evaluation.block;
+    auto understood = understand(cloth, wish);
+    if (!understood) return std::move(understood).error().in(wish.file);
+    Task& task = *understood;
+    auto planned = sim::make_plan(task.design, block, task.request);
     if (!planned) return std::move(planned).error().in(wish.file);
-    const sim::Plan& plan = *planned;
     if (wish.explain) {
-        program.answer({{"plan", sim::lines_json(plan)}, {"yarns", plan.scene.yarns.size()}}, in_words(plan));
+        program.answer({{"plan", sim::lines_json(*planned)}, {"yarns", planned->scene.yarns.size()}}, in_words(*planned));
         return {};
     }
     if (wish.out.empty()) return usage_error("say where the yarns go: -o OUT.yarns", "");
-    Teller teller;
-    sim::SimulationOptions options;
-    options.threads = wish.threads;
-    options.residual = wish.residual;
-    WEAVE_TRY(options.solver, sim::parse_solver(wish.solver));
-    options.most_iterations = wish.steps.value_or(options.solver == sim::Solver::paper ? 1'000'000 : 2000);
-    options.most_seconds = wish.seconds.value_or(1e30);
-    options.watch = [&](const sim::Progress& progress) { return teller(progress); };
+    Teller teller(wish.residual.value_or(planned->goal));
+    task.options.watch = [&](const sim::Progress& progress) { return teller(progress); };
     const HeldInterrupt held;
-    const Yarns yarns = sim::simulate(cloth.design, plan, options);
+    WEAVE_TRY(const Yarns yarns, relaxed(block, task, *planned, wish));
     teller.end();
     WEAVE_TRY(const std::string bytes, write_yarns(yarns));
     WEAVE_CHECK_OK(write_file(wish.out, bytes));
+    if (!wish.save_design.empty() && yarns.report.contains("flips"))
+        WEAVE_CHECK_OK(save_flipped(cloth.design, task, yarns, wish.save_design));
     Json answer = yarns.report;
     answer["file"] = wish.out;
     program.answer(answer, on_one_line(wish.out) + ", " + ending_in_words(yarns.report));
-    const bool good = yarns.report.at("converged").get<bool>() && yarns.report.at("order_kept").get<bool>();
-    if (!good) program.exit_code = findings;
+    if (!is_good(yarns.report)) program.exit_code = findings;
     return {};
 }
 
@@ -179,6 +266,19 @@ void add_simulate(CLI::App& app, Program& program) {
         ->check(CLI::PositiveNumber.description(""))
         ->type_name("N");
     command->add_option("--set", wish->set, "a number of the scene for this run, such as warp.strain=1.02")->type_name("NAME=N");
+    command->add_option("--backend", wish->backend, "what computes: cpu (if nothing is said) or cuda")->type_name("WORD");
+    command->add_option("--boundary", wish->boundaries, "the rim for this run: x= or y= with periodic, frozen, free or relaxing:FORCE")
+        ->type_name("RIM")
+        ->allow_extra_args(false);
+    command->add_option("--pin", wish->pins, "hold a yarn or a crossing where it is planned: pick:N, end:N or PICK,END")
+        ->type_name("YARN")
+        ->allow_extra_args(false);
+    command->add_option("--field", wish->fields, "a sphere that pushes yarns out: sphere:X,Y,Z,RADIUS,STRENGTH; none: no sphere of the scene")
+        ->type_name("FIELD")
+        ->allow_extra_args(false);
+    command->add_option("--flip", wish->flips, "let a pick and an end change sides in the relaxed cloth")->type_name("PICK,END")->allow_extra_args(false);
+    command->add_option("--save-design", wish->save_design, "the .weave file to write with the flips that were made")->type_name("FILE");
+    command->add_option("--resume", wish->resume, "go on from these relaxed yarns of the same design")->type_name("FILE");
     command->add_option("--region", wish->region, "only a part, with frozen rims: picks:1-40,ends:1-60")->type_name("PART");
     command->add_flag("--wraparound", wish->wraparound, "the picks of a feeder are one yarn that turns at the edges");
     command->add_flag("--whole", wish->whole, "do not reduce a periodic cloth to its smallest repeat");

@@ -38,7 +38,8 @@ struct Pin {
     friend bool operator==(const Pin&, const Pin&) = default;
 };
 
-/// A spherical force field that pushes yarns outwards; lengths in mm, strength in N/mm of depth.
+/// A spherical force field that pushes yarns outwards; lengths in mm. Strength: N on each mm of yarn at the centre,
+/// falling evenly to none at the surface; below 0 it pulls inwards.
 struct ForceField {
     std::array<double, 3> centre_mm{};
     double radius_mm = 1;

@@ -16,7 +16,9 @@ template <class Real>
 Energy<Real>::Energy(const Fabric<Real>& fabric, const Executor& executor)
     : m_fabric(fabric),
       m_executor(executor),
-      m_neighbours(fabric, executor),
+      m_transition(fabric),
+      m_neighbours(fabric, executor, m_transition),
+      m_spheres(spheres_of<Real>(fabric.scene())),
       m_segment_energy(fabric.segments()),
       m_segment_gradient(12 * fabric.segments()) {}
 
@@ -40,12 +42,54 @@ double Energy<Real>::evaluate(const std::vector<Real>& state, std::vector<Real>&
     m_neighbours.update();
     m_executor.each(m_fabric.segments(), SegmentForces<Real>{view(state), terms, m_segment_energy.data(),
                                                              m_segment_gradient.data()});
+    if (terms.elastic && !m_spheres.empty()) {
+        m_executor.each(m_fabric.segments(),
+                        FieldForces<Real>{view(state), m_spheres.data(), m_spheres.size(), m_segment_energy.data(),
+                                          m_segment_gradient.data()});
+    }
     gather(gradient);
     double energy = m_executor.sum(m_fabric.segments(),
                                    [&](std::size_t s) { return static_cast<double>(m_segment_energy[s]); });
-    if (terms.elastic) energy += add_fields(state, gradient);
+    if (terms.elastic && m_fabric.scene().gravity_mm_ms2 != 0) energy += add_weight(state, gradient);
+    if (terms.contact && m_transition.is_on()) energy += m_transition.add(view(state), gradient);
     m_fabric.fold(gradient);
     return energy;
+}
+
+template <class Real>
+std::array<double, 2> Energy<Real>::period_gradient(const std::vector<Real>& state) {
+    std::vector<Real> by_slot;
+    evaluate(state, by_slot);
+    gather(by_slot);  // what the segments pull at slots beyond the ends, which move with the period
+    std::array<double, 2> gradient{};
+    for (const FollowSlot& follow : m_fabric.follows()) {
+        const SimYarn& yarn = m_fabric.scene().yarns[m_fabric.yarn_of_slot()[follow.slot]];
+        for (std::size_t k = 0; k < 2; ++k)
+            gradient[k] += follow.turns * yarn.turns[k] * static_cast<double>(by_slot[3 * follow.slot + k]);
+    }
+    const FabricView<Real> fabric = view(state);
+    for (std::size_t k = 0; k < 2; ++k) {
+        gradient[k] += m_executor.sum(m_fabric.samples(), [&](std::size_t a) { return image_pull(fabric, a, k); });
+    }
+    return gradient;
+}
+
+/// What a sample pulls at the images of others when the period along axis `k` grows; each of a pair has half of it.
+template <class Real>
+double Energy<Real>::image_pull(const FabricView<Real>& fabric, std::size_t a, std::size_t k) const {
+    const SamplesView<Real>& all = fabric.samples;
+    double sum = 0;
+    for (std::uint32_t e = fabric.first_neighbour[a]; e < fabric.first_neighbour[a + 1]; ++e) {
+        const std::uint32_t b = fabric.neighbours[e];
+        const int images = m_neighbours.image(b)[k];
+        if (images == 0) continue;
+        const Vec<Real> apart(all.x[a] - all.x[b], all.y[a] - all.y[b], all.z[a] - all.z[b]);
+        const Real reach = all.radius[a] + all.radius[b], limit = reach * reach;
+        const ContactLaw<Real> law = ContactLaw<Real>::at(apart.squaredNorm() / limit, fabric.floor);
+        sum -= images * static_cast<double>(all.weight[a] * all.weight[b] * law.slope / limit *
+                                            apart[static_cast<Eigen::Index>(k)]);
+    }
+    return sum;
 }
 
 /// Each slot adds up what the segments that reach it have found: segment s - c of its yarn at its place c.
@@ -65,29 +109,6 @@ void Energy<Real>::gather(std::vector<Real>& gradient) const {
         }
         for (std::size_t k = 0; k < 3; ++k) gradient[3 * slot + k] = sum[k];
     });
-}
-
-/// Spheres push yarns outwards by ½·K·depth² a control point; gravity pulls on every length alike.
-template <class Real>
-double Energy<Real>::add_fields(const std::vector<Real>& state, std::vector<Real>& gradient) const {
-    const SimScene& scene = m_fabric.scene();
-    double energy = scene.gravity_mm_ms2 == 0 ? 0 : add_weight(state, gradient);
-    if (scene.fields.empty()) return energy;
-    for (const YarnPlace& place : m_fabric.yarns()) {
-        for (std::size_t slot = place.first_slot + 1; slot < place.first_slot + 1 + place.points; ++slot) {
-            const Vec<double> at = load(&state[3 * slot]).template cast<double>();
-            for (const ForceField& field : scene.fields) {
-                const Vec<double> out = at - Vec<double>(field.centre_mm[0], field.centre_mm[1], field.centre_mm[2]);
-                const double distance = out.norm(), depth = field.radius_mm - distance;
-                if (depth <= 0 || distance <= 0) continue;
-                energy += field.strength_N_per_mm * depth * depth / 2;
-                const Vec<double> force = -field.strength_N_per_mm * depth / distance * out;
-                for (std::size_t k = 0; k < 3; ++k)
-                    gradient[3 * slot + k] += static_cast<Real>(force[static_cast<Eigen::Index>(k)]);
-            }
-        }
-    }
-    return energy;
 }
 
 /// Weight times mean height of each segment, which is ∫ of its four splines: else the tip of a yarn would weigh double.

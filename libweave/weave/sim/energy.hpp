@@ -2,8 +2,11 @@
 
 #include <weave/sim/execute.hpp>
 #include <weave/sim/fabric.hpp>
+#include <weave/sim/fields.hpp>
 #include <weave/sim/neighbours.hpp>
+#include <weave/sim/transition.hpp>
 
+#include <array>
 #include <cstddef>
 #include <vector>
 
@@ -18,9 +21,14 @@ class Energy {
     /// Energy in N·mm; `gradient` is resized to the state and holds ∂E/∂q, zero at slots that do not move.
     double evaluate(const std::vector<Real>& state, std::vector<Real>& gradient, Terms terms = {});
 
+    /// ∂E/∂P of the periods in x and y at fixed control points, N: what the piece pulls its rims together with. At rest it
+    /// is the derivative of the relaxed energy. 0 where a direction is not periodic.
+    std::array<double, 2> period_gradient(const std::vector<Real>& state);
+
     /// The samples and their neighbours as the latest evaluation left them.
     [[nodiscard]] Neighbours<Real>& neighbours() { return m_neighbours; }
     [[nodiscard]] FabricView<Real> view(const std::vector<Real>& state);
+    [[nodiscard]] const Transition<Real>& transition() const { return m_transition; }
     [[nodiscard]] const Fabric<Real>& fabric() const { return m_fabric; }
     [[nodiscard]] const Executor& executor() const { return m_executor; }
     [[nodiscard]] std::size_t evaluations() const { return m_evaluations; }
@@ -36,12 +44,14 @@ class Energy {
     void move_samples(const std::vector<Real>& change);
     [[nodiscard]] double safe_share_of(const FabricView<Real>& fabric, std::size_t sample, double most) const;
     void gather(std::vector<Real>& gradient) const;
-    double add_fields(const std::vector<Real>& state, std::vector<Real>& gradient) const;
+    [[nodiscard]] double image_pull(const FabricView<Real>& fabric, std::size_t sample, std::size_t axis) const;
     double add_weight(const std::vector<Real>& state, std::vector<Real>& gradient) const;
 
     const Fabric<Real>& m_fabric;
     const Executor& m_executor;
+    Transition<Real> m_transition;
     Neighbours<Real> m_neighbours;
+    std::vector<Sphere<Real>> m_spheres;
     std::vector<Real> m_segment_energy, m_segment_gradient;
     std::vector<Real> m_moved;  ///< change of each sample, scratch of safe_share
     std::size_t m_evaluations = 0;

@@ -22,7 +22,9 @@ Gauss<Real> gauss_rule() {
     return gauss;
 }
 
-double spline_length(const SimYarn& yarn) {
+}  // namespace
+
+double control_length(const SimYarn& yarn) {
     double length = 0;
     for (std::size_t i = 0; i + 1 < yarn.control.size(); ++i)
         length += (yarn.control[i + 1] - yarn.control[i]).norm();
@@ -30,8 +32,6 @@ double spline_length(const SimYarn& yarn) {
         length += (yarn.control.front() + yarn.shift - yarn.control.back()).norm();
     return length;
 }
-
-}  // namespace
 
 template <class Real>
 Fabric<Real>::Fabric(const SimScene& scene) : m_scene(scene), m_gauss(gauss_rule<Real>()) {
@@ -49,16 +49,16 @@ void Fabric<Real>::add_yarn(const SimYarn& yarn) {
     const auto points = static_cast<std::uint32_t>(yarn.control.size());
     YarnPlace place;
     place.points = points;
-    place.segments = yarn.is_periodic ? points : points - 1;
+    // A yarn of one point is no curve: it stays where it is, and nothing meets it.
+    place.segments = yarn.is_periodic ? points : std::max(points, 1U) - 1;
     place.slots = place.segments + 3;
     place.first_slot = static_cast<std::uint32_t>(m_moves.size());
     place.first_segment = static_cast<std::uint32_t>(m_segments.size());
     place.first_sample = static_cast<std::uint32_t>(m_samples);
     const auto index = static_cast<std::uint32_t>(m_places.size());
 
-    // As long as the yarn is at the start, so are its segments; a few more samples than that keep the spacing when it
-    // grows.
-    const double length = spline_length(yarn) / std::max<double>(1, place.segments);
+    // A few more samples than the planned length asks for keep the spacing when the yarn grows.
+    const double length = (yarn.planned_mm > 0 ? yarn.planned_mm : control_length(yarn)) / std::max<double>(1, place.segments);
     const double nearest = yarn.radius_mm + m_least_reach / 2;
     const double wanted = std::ceil(1.05 * length / (scene().sample_spacing * nearest));
     const auto samples = static_cast<std::uint32_t>(std::clamp(wanted, 2.0, 4096.0));
@@ -83,9 +83,9 @@ void Fabric<Real>::add_yarn(const SimYarn& yarn) {
     m_moves.resize(m_moves.size() + place.slots, 0);
     m_yarn_of_slot.resize(m_moves.size(), index);
     for (std::uint32_t i = 0; i < points; ++i)
-        m_moves[place.first_slot + 1 + i] = yarn.frozen.empty() || yarn.frozen[i] == 0;
+        m_moves[place.first_slot + 1 + i] = place.segments > 0 && (yarn.frozen.empty() || yarn.frozen[i] == 0);
     m_points += points;
-    add_follows(yarn, place);
+    if (place.segments > 0) add_follows(yarn, place);
     m_places.push_back(place);
 }
 

@@ -27,6 +27,9 @@ struct FollowSlot {
     int turns = 0;  ///< times the yarn's shift
 };
 
+/// Length of the polygon of a yarn's control points, mm.
+double control_length(const SimYarn& yarn);
+
 /// An image of an own contact sample, some periods away.
 struct HaloSample {
     std::uint32_t of = 0;                ///< own sample

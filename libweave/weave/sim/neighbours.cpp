@@ -86,9 +86,10 @@ struct Neighbours<Real>::Grid {
 };
 
 template <class Real>
-Neighbours<Real>::Neighbours(const Fabric<Real>& fabric, const Executor& executor)
+Neighbours<Real>::Neighbours(const Fabric<Real>& fabric, const Executor& executor, const Transition<Real>& transition)
     : m_fabric(fabric),
       m_executor(executor),
+      m_transition(transition),
       m_own(fabric.samples()),
       m_skin(skin_share * fabric.least_reach()),
       m_x(m_own),
@@ -220,6 +221,7 @@ bool Neighbours<Real>::same_stretch(std::size_t sample, std::uint32_t other) con
     const SimYarn& yarn = m_fabric.scene().yarns[mine.yarn];
     const YarnPlace& place = m_fabric.yarns()[mine.yarn];
     const YarnConstants<Real>& constants = m_fabric.constants()[mine.yarn];
+    if (!(constants.root_k > 0)) return true;  // it does not feel itself, and lengths cannot be told from weights
     std::int64_t apart = static_cast<std::int64_t>(of) - static_cast<std::int64_t>(sample);
     if (other >= m_own) {
         const HaloSample& halo = m_halo[other - m_own];
@@ -329,7 +331,7 @@ void Neighbours<Real>::list_near(std::uint32_t sample, const Candidates& candida
                      limit = reach + candidates.radius[i];
         if (dx * dx + dy * dy + dz * dz >= limit * limit) continue;
         const std::uint32_t b = candidates.samples[i];
-        if (b != sample && !same_stretch(sample, b)) list.push_back(b);
+        if (b != sample && !same_stretch(sample, b) && !m_transition.parts(sample, own(b))) list.push_back(b);
     }
 }
 

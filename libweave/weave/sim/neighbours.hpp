@@ -2,7 +2,9 @@
 
 #include <weave/sim/execute.hpp>
 #include <weave/sim/fabric.hpp>
+#include <weave/sim/transition.hpp>
 
+#include <array>
 #include <cstddef>
 #include <cstdint>
 #include <vector>
@@ -15,7 +17,8 @@ namespace weave::sim {
 template <class Real>
 class Neighbours {
   public:
-    Neighbours(const Fabric<Real>& fabric, const Executor& executor);
+    /// `transition` tells which pairs are left out besides, and must live as long.
+    Neighbours(const Fabric<Real>& fabric, const Executor& executor, const Transition<Real>& transition);
 
     /// Own samples are placed by the body PlaceSamples, then update() moves the halo along, and builds the list anew
     /// where it no longer holds.
@@ -36,6 +39,10 @@ class Neighbours {
     [[nodiscard]] std::uint32_t own(std::uint32_t sample) const {
         return sample < m_own ? sample : m_halo[sample - m_own].of;
     }
+    /// How many periods away from its own sample a sample lies.
+    [[nodiscard]] std::array<std::int16_t, 2> image(std::uint32_t sample) const {
+        return sample < m_own ? std::array<std::int16_t, 2>{} : m_halo[sample - m_own].image;
+    }
     [[nodiscard]] std::uint32_t segment_of(std::uint32_t own_sample) const { return m_segment_of[own_sample]; }
     /// Bumped by each rebuild.
     [[nodiscard]] std::size_t builds() const { return m_builds; }
@@ -54,6 +61,7 @@ class Neighbours {
 
     const Fabric<Real>& m_fabric;
     const Executor& m_executor;
+    const Transition<Real>& m_transition;
     std::size_t m_own;
     double m_skin;
     std::vector<Real> m_x, m_y, m_z, m_weight, m_radius;

@@ -81,13 +81,17 @@ std::optional<CrossingSpot> find_crossing(const Thread& weft, const Thread& warp
     return spot ? spot : spot_by_search(weft, warp, t, s);
 }
 
+std::optional<CrossingSpot> find_crossing(const ClothCurves& curves, const std::vector<Spline>& splines,
+                                          const Crossing& crossing) {
+    return find_crossing(thread_of(splines[crossing.weft], curves.yarns[crossing.weft]),
+                         thread_of(splines[crossing.warp], curves.yarns[crossing.warp]), crossing.weft_key, crossing.warp_key);
+}
+
 std::vector<LostCrossing> lost_crossings(const ClothCurves& curves, const std::vector<Spline>& splines) {
     std::vector<LostCrossing> lost;
     for (const Crossing& crossing : curves.crossings) {
-        const Spline &weft_spline = splines[crossing.weft], &warp_spline = splines[crossing.warp];
-        if (weft_spline.control.empty() || warp_spline.control.empty()) continue;
-        const auto spot = find_crossing(thread_of(weft_spline, curves.yarns[crossing.weft]),
-                                        thread_of(warp_spline, curves.yarns[crossing.warp]), crossing.weft_key, crossing.warp_key);
+        if (splines[crossing.weft].control.empty() || splines[crossing.warp].control.empty()) continue;
+        const std::optional<CrossingSpot> spot = find_crossing(curves, splines, crossing);
         if (!spot || (spot->height_mm > 0) != crossing.weft_over) lost.push_back({crossing, spot.has_value()});
     }
     return lost;

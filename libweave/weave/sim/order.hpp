@@ -31,6 +31,10 @@ struct LostCrossing {
     bool found = true;  ///< whether the yarns still cross near their planned place
 };
 
+/// The same for a crossing of planned curves, from its planned place on. `splines` as for lost_crossings().
+std::optional<CrossingSpot> find_crossing(const ClothCurves& curves, const std::vector<Spline>& splines,
+                                          const Crossing& crossing);
+
 /// Looks every crossing up in the relaxed yarns: where the projections of its two yarns cross, from the planned place
 /// on, and which lies above. `splines` has one entry for each yarn of `curves`; an empty one was left out, and so are
 /// its crossings.

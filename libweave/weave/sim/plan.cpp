@@ -2,10 +2,12 @@
 #include <weave/core/units.hpp>
 #include <weave/curve/spline.hpp>
 #include <weave/loom/pick_table.hpp>
+#include <weave/sim/fabric.hpp>
 #include <weave/sim/plan.hpp>
 
 #include <algorithm>
 #include <cmath>
+#include <cstdio>
 #include <set>
 
 namespace weave::sim {
@@ -49,21 +51,33 @@ bool feeds_alike(const std::vector<Pick>& picks, std::size_t a, std::size_t b) {
     return picks[a].feeders == picks[b].feeders;
 }
 
-/// Rows and columns of the smallest repeat of the cloth, its yarns included.
+/// Which picks, or which ends, the scene pins.
+std::vector<std::uint8_t> pinned(const Design& design, bool picks, std::size_t count) {
+    std::vector<std::uint8_t> numbers(count, 0);
+    for (const Pin& pin : design.scene.pins) {
+        if (pin.is_pick == picks && pin.number < count) numbers[pin.number] = 1;
+    }
+    return numbers;
+}
+
+/// Rows and columns of the smallest repeat of the cloth, its yarns and pins included.
 std::array<std::size_t, 2> smallest_repeat(const Design& design, const Block& block) {
     const std::vector<Pick> picks = pick_table(design, block);
+    const std::vector<std::uint8_t> pinned_picks = pinned(design, true, block.picks()),
+                                    pinned_ends = pinned(design, false, block.ends());
     const std::size_t rows = period_of(block.rows(), [&](std::size_t i, std::size_t j) {
         if (block.t()[i] != block.t()[j] || !std::ranges::equal(block.cells(i), block.cells(j))) return false;
         for (std::size_t k = 0; k < block.t()[i]; ++k) {
-            if (!feeds_alike(picks, block.first_pick(i) + k, block.first_pick(j) + k)) return false;
+            const std::size_t a = block.first_pick(i) + k, b = block.first_pick(j) + k;
+            if (!feeds_alike(picks, a, b) || pinned_picks[a] != pinned_picks[b]) return false;
         }
         return true;
     });
     const std::size_t columns = period_of(block.columns(), [&](std::size_t i, std::size_t j) {
         if (block.p()[i] != block.p()[j]) return false;
         for (std::size_t k = 0; k < block.p()[i]; ++k) {
-            if (design.warp.order.at(block.first_end(i) + k) != design.warp.order.at(block.first_end(j) + k))
-                return false;
+            const std::size_t a = block.first_end(i) + k, b = block.first_end(j) + k;
+            if (design.warp.order.at(a) != design.warp.order.at(b) || pinned_ends[a] != pinned_ends[b]) return false;
         }
         for (std::size_t row = 0; row < block.rows(); ++row) {
             if (block.cells(row)[i] != block.cells(row)[j]) return false;
@@ -111,7 +125,8 @@ class Planner {
         WEAVE_CHECK_OK(check_request());
         WEAVE_CHECK_OK(check_terms());
         WEAVE_CHECK_OK(lay_curves());
-        set_boundaries();
+        WEAVE_CHECK_OK(set_boundaries());
+        WEAVE_CHECK_OK(find_held());
         for (std::size_t c = 0; c < m_plan.curves.yarns.size(); ++c) add_yarn(c);
         if (m_plan.scene.yarns.empty()) return invalid("no yarn touches another, so there is nothing to simulate");
         WEAVE_CHECK_OK(check_balance());
@@ -144,12 +159,18 @@ class Planner {
                               m_design.scene.boundary_y == Boundary::periodic && !m_request.region &&
                               m_request.weft_mode.value_or(m_design.scene.weft_mode) == WeftMode::periodic;
         std::array<std::size_t, 2> repeat{m_block.rows(), m_block.columns()};
-        if (periodic && m_request.reduce) repeat = smallest_repeat(m_design, m_block);
+        // A sphere acts at one place, and so does a held crossing: then no two repeats are alike.
+        const bool local = !m_design.scene.fields.empty() || !m_request.held.empty();
+        if (periodic && m_request.reduce && !local) repeat = smallest_repeat(m_design, m_block);
         m_plan.repeats = {m_block.rows() / repeat[0], m_block.columns() / repeat[1]};
         const std::size_t cells = m_plan.repeats[0] * m_plan.repeats[1];
         if (cells == 1) {
             WEAVE_TRY(m_plan.curves, cloth_curves(m_design, m_block, options));
-            tell("repeat", "whole", periodic ? "the cloth has no smaller repeat" : "only a periodic cloth is its repeat");
+            tell("repeat", "whole",
+                 !periodic            ? "only a periodic cloth is its repeat"
+                 : local              ? "a field or a held crossing acts at one place of the cloth"
+                 : !m_request.reduce  ? "as asked for"
+                                      : "the cloth has no smaller repeat");
             return {};
         }
         WEAVE_TRY(const Block small, first_repeat(m_block, repeat[0], repeat[1]));
@@ -159,19 +180,59 @@ class Planner {
         return {};
     }
 
-    void set_boundaries() {
+    Status set_boundaries() {
         m_plan.scene.is_periodic = m_plan.curves.is_periodic;
         m_plan.scene.period_mm = m_plan.curves.size_mm;
         for (std::size_t axis = 0; axis < 2; ++axis) {
             const Boundary asked = axis == 0 ? m_design.scene.boundary_x : m_design.scene.boundary_y;
             m_rim[axis] = m_request.region ? Boundary::frozen : asked;
             const char* names[]{"periodic", "frozen", "free"};
+            const std::string term = axis == 0 ? "boundary x" : "boundary y";
+            if (m_request.relaxing_N_per_mm[axis]) {
+                WEAVE_CHECK_OK(free_period(axis, term));
+                continue;
+            }
             const std::string choice = m_plan.curves.is_periodic[axis] ? "periodic"
                                        : m_rim[axis] == Boundary::periodic ? "free"
                                                                            : names[static_cast<int>(m_rim[axis])];
-            tell(axis == 0 ? "boundary x" : "boundary y", choice,
-                 m_request.region ? "a cut-out has frozen rims" : "as the scene says");
+            tell(term, choice, m_request.region ? "a cut-out has frozen rims" : "as the scene says");
         }
+        return {};
+    }
+
+    Status free_period(std::size_t axis, const std::string& term) {
+        if (!m_plan.curves.is_periodic[axis])
+            return invalid("a period can relax only where the piece is periodic", term);
+        const double per_mm = *m_request.relaxing_N_per_mm[axis];
+        m_plan.rim_force_N[axis] = per_mm * m_plan.curves.size_mm[1 - axis];
+        tell(term, "periodic, relaxing",
+             per_mm == 0 ? "no force pulls its rims" : "each mm of its rims is pulled with " + short_number(per_mm) + " N");
+        return {};
+    }
+
+    static std::string short_number(double number) {
+        char text[32];
+        std::snprintf(text, sizeof text, "%g", number);
+        return text;
+    }
+
+    /// The key points of held crossings, by curve.
+    Status find_held() {
+        m_held.resize(m_plan.curves.yarns.size());
+        for (const auto& [pick, end] : m_request.held) {
+            bool found = false;
+            for (const Crossing& crossing : m_plan.curves.crossings) {
+                if (crossing.pick != pick || crossing.end != end) continue;
+                m_held[crossing.weft].push_back(crossing.weft_key);
+                m_held[crossing.warp].push_back(crossing.warp_key);
+                found = true;
+            }
+            if (!found)
+                return invalid("pick " + std::to_string(pick + 1) + " and end " + std::to_string(end + 1) +
+                                   " do not cross in what is simulated",
+                               "pins");
+        }
+        return {};
     }
 
     /// A yarn that is loose all along is only a placeholder: nothing holds it, and it would come to rest nowhere.
@@ -194,6 +255,7 @@ class Planner {
         yarn.shift = curve.shift;
         yarn.turns = {curve.is_periodic && curve.shift.x() != 0 ? 1 : 0, curve.is_periodic && curve.shift.y() != 0 ? 1 : 0};
         yarn.control = control_points(curve);
+        yarn.planned_mm = control_length(yarn);
         yarn.radius_mm = type.radius_mm * system.radius_scale.value_or(1);
         yarn.stretch_N = type.stretch_stiffness_N * stiffness;
         yarn.bending_N_mm2 = type.bending_stiffness_N_mm2 * stiffness;
@@ -202,7 +264,7 @@ class Planner {
         yarn.is_fed = warp || system.strain.has_value();
         yarn.strain = system.strain.value_or(usual_strain);
         yarn.rest_mm = inserted_length(curve) * (1 + weft_excess);
-        yarn.frozen = frozen_points(curve, yarn.control.size());
+        yarn.frozen = frozen_points(c, yarn.control.size());
         m_plan.scene.yarns.push_back(std::move(yarn));
         m_plan.curve_of.push_back(c);
     }
@@ -216,29 +278,67 @@ class Planner {
         return resample(spline, curve.is_periodic ? wanted : wanted + 1).control;
     }
 
-    [[nodiscard]] std::vector<std::uint8_t> frozen_points(const YarnCurve& curve, std::size_t points) const {
+    [[nodiscard]] std::vector<std::uint8_t> frozen_points(std::size_t c, std::size_t points) const {
+        const YarnCurve& curve = m_plan.curves.yarns[c];
         const bool pinned = std::ranges::any_of(m_design.scene.pins, [&](const Pin& pin) {
             return pin.is_pick == (curve.system == System::weft) && pin.number == curve.number;
         });
         if (pinned) return std::vector<std::uint8_t>(points, 1);
         const std::size_t axis = curve.system == System::warp ? 0 : 1;
-        if (curve.is_periodic || m_rim[axis] != Boundary::frozen) return {};
+        const bool rims = !curve.is_periodic && m_rim[axis] == Boundary::frozen;
+        if (!rims && m_held[c].empty()) return {};
         std::vector<std::uint8_t> frozen(points, 0);
-        for (std::size_t i = 0; i < std::min(rim_points, points); ++i) frozen[i] = frozen[points - 1 - i] = 1;
+        if (m_request.region) freeze_rim(curve, frozen);
+        for (std::size_t i = 0; rims && i < std::min(rim_points, points); ++i) frozen[i] = frozen[points - 1 - i] = 1;
+        for (const std::size_t key : m_held[c]) hold(curve, key, frozen);
         return frozen;
+    }
+
+    /// A cut-out is held all round: the yarns along its rim would slide off the cut ends of those that they cross.
+    void freeze_rim(const YarnCurve& curve, std::vector<std::uint8_t>& frozen) const {
+        const Region& region = m_plan.curves.region;
+        const double per_key = curve.keys.size() < 2 ? 1 : double(frozen.size() - 1) / double(curve.keys.size() - 1);
+        for (std::size_t i = 0; i < frozen.size(); ++i) {
+            const auto nearest = static_cast<std::size_t>(std::lround(static_cast<double>(i) / per_key));
+            const KeyPoint& key = curve.keys[std::min(nearest, curve.keys.size() - 1)];
+            if (key.row == region.first_row || key.row == region.last_row || key.column == region.first_column ||
+                key.column == region.last_column)
+                frozen[i] = 1;
+        }
+    }
+
+    /// Holds the place of a key point: three control points make it.
+    static void hold(const YarnCurve& curve, std::size_t key, std::vector<std::uint8_t>& frozen) {
+        const std::size_t points = frozen.size(), keys = curve.keys.size();
+        const double per_key = curve.is_periodic ? double(points) / double(keys) : double(points - 1) / double(keys - 1);
+        const auto at = static_cast<std::ptrdiff_t>(std::lround(per_key * static_cast<double>(key)));
+        for (std::ptrdiff_t i = at - 1; i <= at + 1; ++i) {
+            const auto n = static_cast<std::ptrdiff_t>(points);
+            if (curve.is_periodic) frozen[static_cast<std::size_t>((i + n) % n)] = 1;
+            if (!curve.is_periodic && i >= 0 && i < n) frozen[static_cast<std::size_t>(i)] = 1;
+        }
     }
 
     /// A yarn fed at constant tension needs something to pull against.
     [[nodiscard]] Status check_balance() const {
         for (std::size_t y = 0; y < m_plan.scene.yarns.size(); ++y) {
             const SimYarn& yarn = m_plan.scene.yarns[y];
-            if (!yarn.is_fed || yarn.is_periodic || !yarn.frozen.empty()) continue;
+            if (!yarn.is_fed) continue;
             const YarnCurve& curve = m_plan.curves.yarns[m_plan.curve_of[y]];
             const bool warp = curve.system == System::warp;
-            return invalid(std::string(warp ? "end " : "pick ") + std::to_string(curve.number + 1) +
-                               " is fed at constant tension but its ends are free: it would shrink for ever; make the "
-                               "boundary " + (warp ? "x" : "y") + " periodic or frozen",
-                           warp ? "scene.boundary_x" : "scene.boundary_y");
+            const std::string name = (warp ? "end " : "pick ") + std::to_string(curve.number + 1),
+                              where = warp ? "scene.boundary_x" : "scene.boundary_y";
+            const bool held = !yarn.frozen.empty() && yarn.frozen.front() != 0 && yarn.frozen.back() != 0;
+            if (!yarn.is_periodic && !held)
+                return invalid(name + " is fed at constant tension but its ends are free: it would shrink for ever; make the "
+                                      "boundary " + (warp ? "x" : "y") + " periodic or frozen",
+                               where);
+            for (std::size_t axis = 0; axis < 2; ++axis) {
+                if (yarn.turns[axis] != 0 && m_plan.rim_force_N[axis] && !(*m_plan.rim_force_N[axis] > 0))
+                    return invalid(name + " is fed at constant tension and no force pulls the rims: the piece would shrink for "
+                                          "ever; give the force, such as relaxing:0.5 N on each mm",
+                                   where);
+            }
         }
         return {};
     }
@@ -253,6 +353,8 @@ class Planner {
         std::set<double> radii;
         for (const SimYarn& yarn : m_plan.scene.yarns) radii.insert(yarn.radius_mm);
         tell("radii", std::to_string(radii.size()), radii.size() == 1 ? "one grid of contact samples" : "a grid for each class of radii");
+        tell("pins", m_design.scene.pins.empty() && m_request.held.empty() ? "off" : counted(m_design.scene.pins.size(), "yarn") + ", " + counted(m_request.held.size(), "crossing"),
+             m_design.scene.pins.empty() && m_request.held.empty() ? "the scene has none" : "held at their planned places");
         tell("fields", scene.fields.empty() ? "off" : std::to_string(scene.fields.size()), scene.fields.empty() ? "the scene has none" : "as the scene says");
         tell("gravity", scene.gravity ? "on" : "off", "as the scene says");
         tell("friction", "off", "its coefficient is 0");
@@ -262,6 +364,7 @@ class Planner {
     const Block& m_block;
     const SimulationRequest& m_request;
     std::array<Boundary, 2> m_rim{};
+    std::vector<std::vector<std::size_t>> m_held;  ///< by curve: key points
     std::size_t m_left_out = 0;
     Plan m_plan;
 };

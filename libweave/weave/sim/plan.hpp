@@ -30,6 +30,9 @@ struct SimulationRequest {
     std::optional<double> points_per_key;  ///< control points per key point of a yarn
     std::optional<double> sample_spacing;  ///< see SimScene
     bool reduce = true;  ///< a periodic cloth is simulated as its smallest repeat
+    std::vector<std::array<std::size_t, 2>> held;  ///< crossings held at their planned place: pick and end, from 0
+    /// The period in x or y is unknown, and the piece pulled apart there with so much force for each mm of rim.
+    std::array<std::optional<double>, 2> relaxing_N_per_mm{};
 };
 
 /// One thing that the plan does or saves, and why.
@@ -46,6 +49,8 @@ struct Plan {
     std::vector<std::size_t> curve_of;           ///< of each simulated yarn its index in `curves`
     std::array<std::size_t, 2> repeats{1, 1};    ///< how often the simulated repeat fills the cloth, in x and y
     std::size_t cloth_rows = 0, cloth_columns = 0;  ///< of the whole design
+    /// Where the period relaxes: the force that pulls the whole rim, N.
+    std::array<std::optional<double>, 2> rim_force_N{};
     std::vector<PlanLine> lines;
     Fidelity fidelity = Fidelity::standard;
     double points_per_key = 0;
@@ -56,7 +61,8 @@ struct Plan {
 Json lines_json(const Plan& plan);
 
 /// Derives the plan from a design's scene. Errors: nothing to simulate; yarns fed at constant tension whose ends are
-/// free, which would shrink for ever; a region outside the cloth; overrides out of range.
+/// free, or whose period relaxes without a force, which would shrink for ever; a period that relaxes where there is none;
+/// a crossing to hold that is not there; a region outside the cloth; overrides out of range.
 Result<Plan> make_plan(const Design& design, const Block& block, const SimulationRequest& request);
 
 }  // namespace weave::sim

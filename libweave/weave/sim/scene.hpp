@@ -6,6 +6,7 @@
 #include <array>
 #include <cstddef>
 #include <cstdint>
+#include <optional>
 #include <vector>
 
 namespace weave::sim {
@@ -13,6 +14,9 @@ namespace weave::sim {
 /// A yarn as the solvers see it; lengths mm, forces N.
 struct SimYarn {
     std::vector<Vec3> control;  ///< control points of its uniform cubic B-spline (curve/spline.hpp)
+    /// Length by which contact samples are counted, so that they are the same whatever state a relaxation starts from;
+    /// 0: that of the control points.
+    double planned_mm = 0;
     bool is_periodic = false;
     Vec3 shift{0, 0, 0};        ///< of a periodic yarn from its end to its next beginning
     std::array<int, 2> turns{};  ///< how many periods in x and y `shift` is
@@ -27,12 +31,24 @@ struct SimYarn {
     double rest_mm = 0;           ///< unstretched length of a yarn of fixed length, whole
 };
 
+/// A crossing whose two yarns are being led past one another (paper, 5.2 and A.4). Both `at` and `reach` count segments
+/// along a yarn; those of a periodic one go on beyond its ends.
+struct TransitionPair {
+    std::array<std::size_t, 2> yarn{};  ///< of SimScene::yarns
+    std::array<double, 2> at{};         ///< where each crosses the other, seen from above
+    std::array<double, 2> reach{};      ///< half the stretch of each that does not touch the other's
+    double height_mm = 0;               ///< how far the first is to lie above the second there; below 0: under it
+    double spring_N_per_mm = 0;         ///< of the spring that leads to that height
+    double contact = 0;                 ///< share of the contact of the two stretches, 0 to 1
+};
+
 /// Everything that is simulated: yarns in one repeat, or in a piece with rims.
 struct SimScene {
     std::vector<SimYarn> yarns;
     std::array<double, 2> period_mm{};
     std::array<bool, 2> is_periodic{};
     std::vector<ForceField> fields;
+    std::optional<TransitionPair> transition;
     double gravity_mm_ms2 = 0;  ///< along -z
     double friction = 0;
     /// Greatest distance of contact samples, as a share of the smallest sum of two radii (1/4: see the accuracy notes).

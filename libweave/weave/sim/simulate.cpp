@@ -1,12 +1,16 @@
 #include <weave/design/document.hpp>
+#include <weave/design/edit.hpp>
 #include <weave/loom/pick_table.hpp>
+#include <weave/sim/flips.hpp>
 #include <weave/sim/order.hpp>
 #include <weave/sim/paper.hpp>
+#include <weave/sim/periods.hpp>
 #include <weave/sim/simulate.hpp>
 
 #include <algorithm>
 #include <cmath>
 #include <fstream>
+#include <memory>
 #include <string>
 
 namespace weave::sim {
@@ -86,14 +90,6 @@ class RelaxedRepeat {
                 yarns.crossings.push_back(crossing);
         }
         return yarns;
-    }
-
-    /// One spline a curve of the plan; empty for those that were left out.
-    [[nodiscard]] std::vector<Spline> splines() const {
-        std::vector<Spline> splines(m_plan.curves.yarns.size());
-        const std::vector<std::vector<Vec3>> control = m_fabric.control(m_state);
-        for (std::size_t y = 0; y < control.size(); ++y) splines[m_plan.curve_of[y]] = spline(y, control[y]);
-        return splines;
     }
 
   private:
@@ -240,14 +236,191 @@ Yarns copied_back(Yarns yarns, const Plan& plan, const Design& design) {
     return whole;
 }
 
+/// Rows and columns from 0, picks and ends from 1.
 Json coverage_of(const Plan& plan) {
     const Region& region = plan.curves.region;
-    return {{"rows", {region.first_row, region.last_row}},
-            {"columns", {region.first_column, region.last_column}},
-            {"repeats", {plan.repeats[0], plan.repeats[1]}}};
+    std::array<std::size_t, 2> picks{SIZE_MAX, 0}, ends{SIZE_MAX, 0};
+    for (const Crossing& crossing : plan.curves.crossings) {
+        picks = {std::min(picks[0], crossing.pick + 1), std::max(picks[1], crossing.pick + 1)};
+        ends = {std::min(ends[0], crossing.end + 1), std::max(ends[1], crossing.end + 1)};
+    }
+    Json coverage{{"rows", {region.first_row, region.last_row}},
+                  {"columns", {region.first_column, region.last_column}},
+                  {"repeats", {plan.repeats[0], plan.repeats[1]}}};
+    if (picks[1] > 0) coverage["picks"] = picks, coverage["ends"] = ends;
+    const bool rows = region.first_row == 0 && (region.last_row + 1) * plan.repeats[0] == plan.cloth_rows;
+    const bool columns = region.first_column == 0 && (region.last_column + 1) * plan.repeats[1] == plan.cloth_columns;
+    coverage["whole"] = rows && columns;
+    return coverage;
 }
 
 constexpr std::string_view solver_names[]{"relax", "paper"};
+
+/// The plan, as it is at the end of a simulation, becomes yarns with a report.
+class Simulation {
+  public:
+    Simulation(const Design& design, const Plan& plan, const SimulationOptions& options)
+        : m_design(design), m_plan(plan), m_options(options), m_executor(options.threads), m_scene(plan.scene) {}
+
+    Yarns run() {
+        take_start();
+        relax_scene();
+        for (const Flip& flip : m_options.flips) {
+            if (m_last.ending == Ending::stopped || m_last.ending == Ending::time) break;
+            make(flip);
+        }
+        return measured();
+    }
+
+  private:
+    void take_start() {
+        if (!m_options.start) return;
+        for (std::size_t y = 0; y < m_scene.yarns.size(); ++y) m_scene.yarns[y].control = m_options.start->control[y];
+        // Yarns of another period are drawn to this one, unless it is what is looked for.
+        const std::array<double, 2> wanted = m_scene.period_mm;
+        std::array<double, 2> came = m_options.start->size_mm;
+        m_scene.period_mm = came;
+        for (std::size_t k = 0; k < 2; ++k) {
+            if (!m_plan.rim_force_N[k]) came[k] = wanted[k];
+        }
+        for (SimYarn& yarn : m_scene.yarns) {
+            for (Eigen::Index k = 0; k < 2; ++k) yarn.shift[k] *= m_scene.period_mm[std::size_t(k)] / wanted[std::size_t(k)];
+        }
+        m_scene = with_periods(std::move(m_scene), came);
+        for (std::size_t k = 0; k < 2; ++k) {
+            if (!m_scene.is_periodic[k]) m_scene.period_mm[k] = wanted[k];
+        }
+    }
+
+    [[nodiscard]] RelaxOptions relax_options() const {
+        RelaxOptions options;
+        options.residual = m_options.residual.value_or(m_plan.goal);
+        options.most_iterations = m_options.most_iterations;
+        options.most_seconds = m_options.most_seconds - m_seconds;
+        options.watch = m_options.watch;
+        return options;
+    }
+
+    /// Brings the scene to rest, its periods too where they relax.
+    void relax_scene() {
+        const bool periods = m_plan.rim_force_N[0].has_value() || m_plan.rim_force_N[1].has_value();
+        if (periods) {
+            m_periods = relax_periods(m_scene, m_plan.rim_force_N, relax_options(), rim_tolerance, m_executor);
+            m_last = m_periods->last;
+        }
+        m_fabric = std::make_unique<Fabric<double>>(m_scene);
+        m_energy = std::make_unique<Energy<double>>(*m_fabric, m_executor);
+        m_state = m_fabric->state();
+        if (!periods && m_options.solver == Solver::relax) m_last = relax(*m_energy, m_state, relax_options());
+        if (!periods && m_options.solver == Solver::paper) m_last = relax_in_time(*m_energy, m_state, relax_options());
+        std::vector<std::vector<Vec3>> control = m_fabric->control(m_state);
+        for (std::size_t y = 0; y < control.size(); ++y) m_scene.yarns[y].control = std::move(control[y]);
+        m_seconds += m_last.seconds;
+        m_iterations += m_last.iterations;
+        m_evaluations += m_last.evaluations;
+    }
+
+    [[nodiscard]] std::size_t lost() const { return lost_crossings(m_plan.curves, splines()).size(); }
+
+    [[nodiscard]] std::vector<Spline> splines() const {
+        std::vector<Spline> splines(m_plan.curves.yarns.size());
+        for (std::size_t y = 0; y < m_scene.yarns.size(); ++y)
+            splines[m_plan.curve_of[y]] = {m_scene.yarns[y].control, m_scene.yarns[y].is_periodic, m_scene.yarns[y].shift};
+        return splines;
+    }
+
+    /// One flip with the relaxation that follows; undone where the cloth does not take it.
+    void make(const Flip& flip) {
+        const SimScene before = m_scene;
+        const std::vector<Crossing> crossings = m_plan.curves.crossings;
+        const std::size_t lost_before = lost();
+        const std::function<bool()> go_on = [&] { return !m_options.watch || m_options.watch({}); };
+        FlipResult result = flip_relaxed(m_scene, m_plan.curves, m_plan.curve_of, flip,
+                                         m_options.residual.value_or(m_plan.goal), m_executor, go_on);
+        m_seconds += result.seconds;
+        m_iterations += result.iterations;
+        const double flip_seconds = result.seconds;
+        double settle_seconds = 0;
+        if (result.done) {
+            relax_scene();
+            settle_seconds = m_last.seconds;
+            if (lost() > lost_before) {
+                result.done = false;
+                result.reason = "other crossings would change with it";
+                m_scene = before;
+                m_plan.curves.crossings = crossings;
+                relax_scene();
+            }
+        }
+        if (result.done && !apply_edit(m_design, PutFlip{m_design.root, flip})) {
+            result.done = false;
+            result.reason = "the design does not take it";
+        }
+        m_flips.push_back({{"pick", flip.pick + 1}, {"end", flip.end + 1}, {"weft_over", flip.weft_over},
+                           {"done", result.done}, {"reason", result.reason}, {"flip_seconds", flip_seconds},
+                           {"settle_seconds", settle_seconds}, {"settle_iterations", result.done ? m_last.iterations : 0}});
+    }
+
+    Yarns measured() {
+        // What the yarns say of themselves is that of the periods reached.
+        m_plan.curves.size_mm = {m_scene.is_periodic[0] ? m_scene.period_mm[0] : m_plan.curves.size_mm[0],
+                                 m_scene.is_periodic[1] ? m_scene.period_mm[1] : m_plan.curves.size_mm[1]};
+        for (std::size_t y = 0; y < m_scene.yarns.size(); ++y) m_plan.scene.yarns[y].shift = m_scene.yarns[y].shift;
+        const RelaxedRepeat result(m_design, m_plan, *m_energy, m_state);
+        const Contacts contacts = contacts_of(*m_energy, m_state);
+        const std::size_t lost_count = lost();
+        Yarns yarns = copied_back(result.yarns(), m_plan, m_design);
+        const bool balanced = !m_periods || m_periods->balanced;
+        yarns.report = {{"design_sha256", yarns.design_sha256},
+                        {"scene_sha256", yarns.scene_sha256},
+                        {"coverage", coverage_of(m_plan)},
+                        {"solver", std::string(sim::name_of(m_options.solver))},
+                        {"backend", "cpu"},
+                        {"fidelity", std::string(sim::name_of(m_plan.fidelity))},
+                        {"points_per_key", m_plan.points_per_key},
+                        {"converged", m_last.ending == Ending::converged && balanced},
+                        {"ending", std::string(name_of(m_last.ending))},
+                        {"goal", m_options.residual.value_or(m_plan.goal)},
+                        {"residual", m_last.residual},
+                        {"reference_N", m_last.reference_N},
+                        {"energy_N_mm", m_last.energy},
+                        {"points", m_fabric->points()},
+                        {"contacts", contacts.touching},
+                        {"iterations", m_iterations},
+                        {"evaluations", m_evaluations},
+                        {"seconds", m_seconds},
+                        {"curves_down", m_last.curves_down},
+                        {"order_kept", lost_count == 0},
+                        {"crossings", m_plan.curves.crossings.size()},
+                        {"lost_crossings", lost_count},
+                        {"max_overlap", contacts.overlap},
+                        {"plan", lines_json(m_plan)},
+                        {"peak_bytes", peak_bytes()}};
+        if (!m_options.flips.empty()) yarns.report["flips"] = m_flips;
+        if (m_periods) {
+            yarns.report["periods"] = {{"size_mm", m_plan.curves.size_mm}, {"force_N", m_periods->force_N},
+                                       {"rounds", m_periods->rounds}, {"balanced", m_periods->balanced}};
+        }
+        return yarns;
+    }
+
+    /// How near the force on a rim must come to what was asked for, as a share of the reference force of each yarn.
+    static constexpr double rim_tolerance = 1e-2;
+
+    Design m_design;
+    Plan m_plan;
+    const SimulationOptions& m_options;
+    Executor m_executor;
+    SimScene m_scene;  ///< as it lies now
+    std::unique_ptr<Fabric<double>> m_fabric;
+    std::unique_ptr<Energy<double>> m_energy;
+    std::vector<double> m_state;
+    RelaxResult m_last;
+    std::optional<PeriodsResult> m_periods;
+    Json m_flips = Json::array();
+    double m_seconds = 0;
+    std::size_t m_iterations = 0, m_evaluations = 0;
+};
 
 }  // namespace
 
@@ -263,48 +436,7 @@ std::string_view name_of(Solver solver) {
 }
 
 Yarns simulate(const Design& design, const Plan& plan, const SimulationOptions& options) {
-    const Executor executor(options.threads);
-    const Fabric<double> fabric(plan.scene);
-    Energy<double> energy(fabric, executor);
-    std::vector<double> state = fabric.state();
-    RelaxOptions relax_options;
-    relax_options.residual = options.residual.value_or(plan.goal);
-    relax_options.most_iterations = options.most_iterations;
-    relax_options.most_seconds = options.most_seconds;
-    relax_options.watch = options.watch;
-    const RelaxResult ended = options.solver == Solver::paper ? relax_in_time(energy, state, relax_options)
-                                                              : relax(energy, state, relax_options);
-
-    const RelaxedRepeat result(design, plan, energy, state);
-    const Contacts contacts = contacts_of(energy, state);
-    const std::vector<LostCrossing> lost = lost_crossings(plan.curves, result.splines());
-    Yarns yarns = copied_back(result.yarns(), plan, design);
-    yarns.report = {{"design_sha256", yarns.design_sha256},
-                    {"scene_sha256", yarns.scene_sha256},
-                    {"coverage", coverage_of(plan)},
-                    {"solver", std::string(name_of(options.solver))},
-                    {"backend", "cpu"},
-                    {"fidelity", std::string(sim::name_of(plan.fidelity))},
-                    {"points_per_key", plan.points_per_key},
-                    {"converged", ended.ending == Ending::converged},
-                    {"ending", std::string(name_of(ended.ending))},
-                    {"goal", relax_options.residual},
-                    {"residual", ended.residual},
-                    {"reference_N", ended.reference_N},
-                    {"energy_N_mm", ended.energy},
-                    {"points", fabric.points()},
-                    {"contacts", contacts.touching},
-                    {"iterations", ended.iterations},
-                    {"evaluations", ended.evaluations},
-                    {"seconds", ended.seconds},
-                    {"curves_down", ended.curves_down},
-                    {"order_kept", lost.empty()},
-                    {"crossings", plan.curves.crossings.size()},
-                    {"lost_crossings", lost.size()},
-                    {"max_overlap", contacts.overlap},
-                    {"plan", lines_json(plan)},
-                    {"peak_bytes", peak_bytes()}};
-    return yarns;
+    return Simulation(design, plan, options).run();
 }
 
 }  // namespace weave::sim

@@ -2,15 +2,18 @@
 
 #include <weave/sim/plan.hpp>
 #include <weave/sim/relax.hpp>
+#include <weave/sim/resume.hpp>
 #include <weave/sim/yarns.hpp>
 
 #include <cstddef>
 #include <functional>
 #include <optional>
 #include <string_view>
+#include <vector>
 
 namespace weave::sim {
 
+/// Which solver relaxes.
 enum class Solver : std::uint8_t {
     relax,  ///< damped Newton steps (relax.hpp)
     paper,  ///< motion in time, as the paper did it (paper.hpp): slow, the baseline
@@ -26,11 +29,17 @@ struct SimulationOptions {
     std::size_t most_iterations = 2000;
     double most_seconds = 1e30;
     std::function<bool(const Progress&)> watch;  ///< see RelaxOptions
+    std::optional<StartState> start;             ///< instead of the planned curves
+    /// Made one after the other once the cloth is at rest, each followed by a relaxation. They must be legal (block/flip.hpp),
+    /// and the plan one of the whole cloth where it has several repeats.
+    std::vector<Flip> flips;
 };
 
 /// Relaxes a plan. The yarns hold the whole cloth: a smallest repeat is copied back. Their report has the keys of
 /// `weave simulate --json`; whether it converged, and whether every crossing kept its order, is in it. What the report
-/// says is measured on the last state, whatever the ending.
+/// says is measured on the last state, whatever the ending. Of flips the report lists which are done, and the yarns are those
+/// of the design with these; one that does not end with the crossing asked for, or that costs another crossing its order,
+/// is undone.
 Yarns simulate(const Design& design, const Plan& plan, const SimulationOptions& options);
 
 }  // namespace weave::sim

@@ -1,0 +1,68 @@
+#include <weave/core/text.hpp>
+#include <weave/curve/spline.hpp>
+#include <weave/sim/resume.hpp>
+
+#include <algorithm>
+#include <map>
+#include <utility>
+
+namespace weave::sim {
+
+namespace {
+
+std::string name_of(System system, std::size_t number) {
+    return (system == System::warp ? "end " : "pick ") + std::to_string(number + 1);
+}
+
+Status check_origin(const Plan& plan, const Yarns& yarns, const std::string& design_sha256,
+                    const std::vector<std::string>& scenes) {
+    if (yarns.design_sha256 != design_sha256)
+        return bad_input("these are the yarns of another design, '" + on_one_line(yarns.title) + "' (" +
+                             yarns.design_sha256.substr(0, 12) + "), not of this one (" + design_sha256.substr(0, 12) + ")",
+                         "design_sha256");
+    if (std::ranges::find(scenes, yarns.scene_sha256) == scenes.end())
+        return bad_input("these yarns come from another scene (" + yarns.scene_sha256.substr(0, 12) + ") than this one (" +
+                             scenes.front().substr(0, 12) + "): give the same --set, --boundary, --pin and --field",
+                         "scene_sha256");
+    const Region whole{0, plan.cloth_rows - 1, 0, plan.cloth_columns - 1};
+    const Region& wanted = plan.repeats[0] * plan.repeats[1] == 1 ? plan.curves.region : whole;
+    if (!(yarns.region == wanted)) return bad_input("these are the yarns of another part of the cloth", "region");
+    return {};
+}
+
+/// The first of `repeats` equal parts of a spline that goes on for ever.
+Spline first_part(const Spline& spline, std::size_t repeats, const Vec3& shift) {
+    Spline part = spline;
+    part.control.resize(spline.control.size() / repeats);
+    part.shift = shift;
+    return part;
+}
+
+}  // namespace
+
+Result<StartState> start_from(const Plan& plan, const Yarns& yarns, const std::string& design_sha256,
+                              const std::vector<std::string>& scenes) {
+    WEAVE_CHECK_OK(check_origin(plan, yarns, design_sha256, scenes));
+    std::map<std::pair<System, std::size_t>, std::vector<const SimulatedYarn*>> known;
+    for (const SimulatedYarn& yarn : yarns.yarns) known[{yarn.system, yarn.number}].push_back(&yarn);
+    std::map<std::pair<System, std::size_t>, std::size_t> taken;
+    StartState start;
+    for (std::size_t k = 0; k < 2; ++k) start.size_mm[k] = yarns.size_mm[k] / static_cast<double>(plan.repeats[k]);
+    for (std::size_t y = 0; y < plan.scene.yarns.size(); ++y) {
+        const YarnCurve& curve = plan.curves.yarns[plan.curve_of[y]];
+        const SimYarn& planned = plan.scene.yarns[y];
+        const std::pair key(curve.system, curve.number);
+        const std::size_t nth = taken[key]++;  // a pick of two feeders is two yarns, always in the same order
+        const auto found = known.find(key);
+        const SimulatedYarn* from = found == known.end() || nth >= found->second.size() ? nullptr : found->second[nth];
+        const std::size_t along = curve.system == System::warp ? plan.repeats[0] : plan.repeats[1];
+        if (from == nullptr || from->spline.is_periodic != planned.is_periodic || from->spline.control.size() % along != 0)
+            return bad_input(name_of(curve.system, curve.number) + " is not in these yarns as it is simulated now");
+        const Spline part = along == 1 ? from->spline : first_part(from->spline, along, from->spline.shift / double(along));
+        start.control.push_back(part.control.size() == planned.control.size() ? part.control
+                                                                               : resample(part, planned.control.size()).control);
+    }
+    return start;
+}
+
+}  // namespace weave::sim

@@ -1,0 +1,25 @@
+#pragma once
+
+#include <weave/sim/plan.hpp>
+#include <weave/sim/yarns.hpp>
+
+#include <array>
+#include <string>
+#include <vector>
+
+namespace weave::sim {
+
+/// Where a relaxation takes up an earlier one.
+struct StartState {
+    std::vector<std::vector<Vec3>> control;  ///< of each simulated yarn of the plan
+    std::array<double, 2> size_mm{};         ///< of the repeat, which may have relaxed
+};
+
+/// The state of relaxed yarns for a plan of the same design: each yarn is found again by its system and number, and its
+/// spline taken over, through other points where the plan has another number of them. Where the plan holds one repeat of
+/// the cloth, the first repeat of the yarns is taken.
+/// `scenes` are the hashes of scenes that the yarns may come from. Errors: yarns of another design, scene or part of it.
+Result<StartState> start_from(const Plan& plan, const Yarns& yarns, const std::string& design_sha256,
+                              const std::vector<std::string>& scenes);
+
+}  // namespace weave::sim

@@ -1,0 +1,210 @@
+// What a scene may ask of `weave simulate`: rims, pins, fields, flips, going on from an earlier run, and being stopped.
+
+#include "run.hpp"
+
+#include <weave/sim/yarns_file.hpp>
+
+#include <csignal>
+
+using program_tests::Ended;
+using program_tests::Workshop;
+using weave::Json;
+
+namespace {
+
+/// The choice of one line of a plan.
+std::string choice_of(const Json& said, const std::string& term) {
+    for (const Json& line : said.at("plan")) {
+        if (line.at("term") == term) return line.at("choice");
+    }
+    return "";
+}
+
+weave::Yarns yarns_in(const Workshop& shop, const std::string& file) {
+    weave::Result<weave::Yarns> yarns = weave::read_yarns(shop.get(file));
+    REQUIRE(yarns);
+    return std::move(yarns).value();
+}
+
+}  // namespace
+
+TEST_CASE("the plan tells rims, pins and fields of this run") {
+    const Workshop shop;
+    shop.must({"samples", "layer-to-layer", "-o", "d.weave"});
+    const auto plan = [&](std::vector<std::string> words) {
+        words.insert(words.begin(), {"simulate", "d.weave", "--explain"});
+        return shop.json(words);
+    };
+    CHECK(choice_of(plan({}), "boundary y") == "periodic");
+    CHECK(choice_of(plan({"--boundary", "x=frozen", "--boundary", "y=free"}), "boundary x") == "frozen");
+    CHECK(choice_of(plan({"--boundary", "x=frozen", "--boundary", "y=free"}), "boundary y") == "free");
+    CHECK(choice_of(plan({"--boundary", "y=relaxing:0.2"}), "boundary y") == "periodic, relaxing");
+    CHECK(choice_of(plan({"--pin", "pick:1", "--pin", "3,2"}), "pins") == "1 yarn, 1 crossing");
+    CHECK(choice_of(plan({"--field", "sphere:1,1,0,0.5,2"}), "fields") == "1");
+    CHECK(choice_of(plan({"--field", "sphere:1,1,0,0.5,2", "--field", "none"}), "fields") == "off");
+}
+
+TEST_CASE("options that make no sense are refused in a line that names them") {
+    const Workshop shop;
+    shop.must({"samples", "plain", "-o", "d.weave"});
+    const auto refused = [&](std::vector<std::string> words, int exit, const std::vector<std::string>& pieces) {
+        words.insert(words.begin(), {"simulate", "d.weave", "-o", "x.yarns"});
+        shop.refused(words, exit, pieces);
+    };
+    refused({"--boundary", "z=free"}, 2, {"--boundary z=free", "periodic, frozen, free or relaxing"});
+    refused({"--boundary", "y=relaxing:much"}, 2, {"--boundary y=relaxing:much"});
+    refused({"--boundary", "x=free"}, 1, {"shrink for ever"});
+    refused({"--boundary", "x=relaxing"}, 1, {"shrink for ever", "give the force"});
+    refused({"--pin", "weft:1"}, 2, {"--pin weft:1", "2 picks and 2 ends"});
+    refused({"--pin", "pick:3"}, 2, {"--pin pick:3"});
+    refused({"--field", "cube:1,2,3"}, 2, {"--field cube:1,2,3", "sphere:X,Y,Z,RADIUS,STRENGTH"});
+    refused({"--field", "sphere:1,2,3,-1,1"}, 3, {"radius_mm"});
+    refused({"--solver", "magic"}, 2, {"magic"});
+    refused({"--backend", "cuda"}, 5, {"--backend cuda", "without CUDA"});
+    refused({"--backend", "abacus"}, 2, {"--backend abacus"});
+    refused({"--flip", "9,1"}, 2, {"--flip 9,1", "2 picks and 2 ends"});
+    refused({"--save-design", "g.weave"}, 2, {"--save-design g.weave", "--flip"});
+    refused({"--resume", "none.yarns"}, 3, {"none.yarns"});
+    shop.must({"samples", "orthogonal", "-o", "d.weave"});
+    const Ended illegal = shop.run({"flip", "d.weave", "--pick", "1", "--end", "1", "-o", "g.weave"});
+    if (illegal.exit == 1) refused({"--flip", "1,1", "--save-design", "g.weave"}, 1, {"--flip 1,1", "in the way"});
+}
+
+TEST_CASE("a relaxation goes on from a file, in more points too, and not from one of another design or scene") {
+    const Workshop shop;
+    shop.must({"samples", "layer-to-layer", "-o", "d.weave"});
+    const Json first = shop.json({"simulate", "d.weave", "--threads", "1", "-o", "a.yarns", "--residual", "1e-6"});
+    const Json again = shop.json({"simulate", "d.weave", "--threads", "1", "--resume", "a.yarns", "-o", "b.yarns", "--residual", "1e-6"});
+    CHECK(again.at("iterations").get<int>() <= 2);
+    CHECK(again.at("energy_N_mm").get<double>() == Approx(first.at("energy_N_mm").get<double>()).epsilon(1e-6));
+    const Json finer = shop.json({"simulate", "d.weave", "--threads", "1", "--resume", "a.yarns", "--points", "8", "-o", "c.yarns"});
+    CHECK(finer.at("points").get<int>() == 2 * first.at("points").get<int>());
+    CHECK(finer.at("converged") == true);
+    CHECK(finer.at("order_kept") == true);
+    CHECK(finer.at("iterations").get<int>() < first.at("iterations").get<int>());
+
+    // Another scene of the same design: from the file's own scene a run with other numbers may start, not the other way.
+    CHECK(shop.json({"simulate", "d.weave", "--threads", "1", "--resume", "a.yarns", "--set", "warp.strain=1.02", "-o", "tight.yarns"})
+              .at("converged") == true);
+    shop.refused({"simulate", "d.weave", "--threads", "1", "--resume", "tight.yarns", "-o", "x.yarns"}, 3, {"tight.yarns", "another scene"});
+    shop.must({"samples", "plain", "-o", "p.weave"});
+    shop.refused({"simulate", "p.weave", "--threads", "1", "--resume", "a.yarns", "-o", "x.yarns"}, 3, {"a.yarns", "another design"});
+    shop.refused({"simulate", "d.weave", "--threads", "1", "--region", "picks:1-8,ends:1-5", "--resume", "a.yarns", "-o", "x.yarns"}, 3,
+                 {"a.yarns", "another part"});
+}
+
+TEST_CASE("a tiled cloth resumes as its smallest repeat") {
+    const Workshop shop;
+    shop.must({"samples", "plain", "-o", "d.weave"});
+    shop.must({"tile", "d.weave", "--x", "3", "--y", "2", "-o", "t.weave"});
+    const Json first = shop.json({"simulate", "t.weave", "--threads", "1", "-o", "t.yarns", "--residual", "1e-6"});
+    const Json again = shop.json({"simulate", "t.weave", "--threads", "1", "--resume", "t.yarns", "-o", "u.yarns", "--residual", "1e-6"});
+    // Contact samples follow the lengths at the start, so that it is not quite the same cloth.
+    CHECK(again.at("energy_N_mm").get<double>() == Approx(first.at("energy_N_mm").get<double>()).epsilon(0.02));
+    const Json whole = shop.json({"simulate", "t.weave", "--threads", "1", "--whole", "--resume", "t.yarns", "-o", "w.yarns", "--residual", "1e-6"});
+    CHECK(whole.at("energy_N_mm").get<double>() == Approx(6 * again.at("energy_N_mm").get<double>()).epsilon(1e-5));
+    CHECK(whole.at("points").get<int>() == 6 * first.at("points").get<int>());
+}
+
+TEST_CASE("a run that is stopped leaves a whole file that says so, and another goes on from it") {
+    const Workshop shop;
+    shop.must({"samples", "tl013-wrong", "-o", "d.weave"});
+    for (const int signal : {SIGINT, SIGTERM}) {
+        Workshop::Running running =
+            shop.start({"simulate", "d.weave", "--threads", "1", "-o", "d.yarns", "--fidelity", "reference"});
+        REQUIRE(running.says("residual"));
+        ::kill(running.child, signal);
+        const Ended ended = running.finish();
+        INFO(ended.err);
+        CHECK(ended.exit == 1);
+        CHECK(ended.out.find("NOT at rest") != std::string::npos);
+        const weave::Yarns yarns = yarns_in(shop, "d.yarns");
+        CHECK(yarns.report.at("ending") == "stopped");
+        CHECK(yarns.report.at("converged") == false);
+        CHECK(shop.names() == std::set<std::string>{"d.weave", "d.yarns"});
+    }
+    const weave::Yarns before = yarns_in(shop, "d.yarns");
+    const Json more = shop.json({"simulate", "d.weave", "--threads", "1", "--resume", "d.yarns", "-o", "e.yarns", "--fidelity", "reference",
+                                 "--steps", "1"}, 1);
+    CHECK(more.at("points") == before.report.at("points"));
+    CHECK(more.at("energy_N_mm").get<double>() <= before.report.at("energy_N_mm").get<double>() * 1.001);
+}
+
+TEST_CASE("a flip in the relaxed cloth saves the design that its yarns are of") {
+    const Workshop shop;
+    shop.must({"samples", "plain", "-o", "p.weave"});
+    shop.must({"tile", "p.weave", "--x", "2", "--y", "2", "-o", "d.weave"});
+    const Json said = shop.json({"simulate", "d.weave", "--threads", "1", "--flip", "2,3", "--save-design", "g.weave", "-o", "g.yarns"});
+    INFO(said.at("flips").dump());
+    CHECK(said.at("flips").at(0).at("done") == true);
+    CHECK(said.at("order_kept") == true);
+    const Json info = shop.json({"info", "g.weave"});
+    CHECK(said.at("design_sha256") == info.at("design_sha256"));
+    shop.must({"flip", "d.weave", "--pick", "2", "--end", "3", "-o", "f.weave"});
+    CHECK(info.at("card_sha256") == shop.json({"info", "f.weave"}).at("card_sha256"));
+    // The yarns go on as those of the new design, which has no smaller repeat any more.
+    const Json again = shop.json({"simulate", "g.weave", "--threads", "1", "--resume", "g.yarns", "-o", "h.yarns"});
+    CHECK(again.at("converged") == true);
+    CHECK(again.at("order_kept") == true);
+    CHECK(again.at("iterations").get<int>() <= 3);
+}
+
+TEST_CASE("a part of a cloth has frozen rims, says what it covers, and takes flips") {
+    const Workshop shop;
+    shop.must({"samples", "twill-2-2", "-o", "p.weave"});
+    shop.must({"tile", "p.weave", "--x", "3", "--y", "3", "-o", "d.weave"});
+    const Json said = shop.json({"simulate", "d.weave", "--threads", "1", "--region", "picks:3-10,ends:2-9", "-o", "r.yarns"});
+    CHECK(said.at("coverage").at("whole") == false);
+    CHECK(said.at("coverage").at("picks") == Json({3, 10}));
+    CHECK(said.at("coverage").at("ends") == Json({2, 9}));
+    CHECK(said.at("converged") == true);
+    const weave::Yarns yarns = yarns_in(shop, "r.yarns");
+    CHECK(yarns.yarns.size() == 16);
+    for (const weave::SimulatedYarn& yarn : yarns.yarns) {
+        for (const std::size_t rim : {std::size_t{0}, std::size_t{1}, yarn.planned.size() - 2, yarn.planned.size() - 1})
+            CHECK(yarn.spline.control[rim] == yarn.planned[rim]);
+    }
+    const Json flipped = shop.json({"simulate", "d.weave", "--threads", "1", "--region", "picks:3-10,ends:2-9", "--resume", "r.yarns",
+                                    "--flip", "6,5", "--save-design", "g.weave", "-o", "f.yarns"});
+    CHECK(flipped.at("flips").at(0).at("done") == true);
+    CHECK(flipped.at("order_kept") == true);
+    const Json outside = shop.json({"simulate", "d.weave", "--threads", "1", "--region", "picks:3-10,ends:2-9", "--resume", "r.yarns",
+                                    "--flip", "1,1", "-o", "o.yarns"}, 1);
+    CHECK(outside.at("flips").at(0).at("done") == false);
+}
+
+TEST_CASE("a free period shrinks to where no force is left on its rim") {
+    const Workshop shop;
+    shop.must({"samples", "plain", "-o", "d.weave"});
+    const Json said = shop.json({"simulate", "d.weave", "--threads", "1", "--boundary", "y=relaxing", "-o", "r.yarns"});
+    CHECK(said.at("converged") == true);
+    CHECK(said.at("periods").at("balanced") == true);
+    const weave::Yarns yarns = yarns_in(shop, "r.yarns");
+    CHECK(yarns.size_mm[1] == Approx(said.at("periods").at("size_mm").at(1).get<double>()));
+    const Json again = shop.json({"simulate", "d.weave", "--threads", "1", "--boundary", "y=relaxing", "--resume", "r.yarns", "-o", "s.yarns"});
+    CHECK(again.at("periods").at("size_mm").at(1).get<double>() == Approx(yarns.size_mm[1]).epsilon(1e-3));
+}
+
+TEST_CASE("pinned yarns and crossings stay where they are planned") {
+    const Workshop shop;
+    shop.must({"samples", "layer-to-layer", "-o", "d.weave"});
+    const Json said = shop.json({"simulate", "d.weave", "--threads", "1", "--pin", "pick:2", "--pin", "5,3", "-o", "p.yarns"});
+    CHECK(said.at("converged") == true);
+    const weave::Yarns yarns = yarns_in(shop, "p.yarns");
+    bool moved = false;
+    for (const weave::SimulatedYarn& yarn : yarns.yarns) {
+        const bool pinned = yarn.system == weave::System::weft && yarn.number == 1;
+        if (pinned) CHECK(yarn.spline.control == yarn.planned);
+        moved = moved || yarn.spline.control != yarn.planned;
+    }
+    CHECK(moved);
+    for (const weave::Crossing& crossing : yarns.crossings) {
+        if (crossing.pick != 4 || crossing.end != 2) continue;
+        for (const auto& [index, key] : {std::pair{crossing.weft, crossing.weft_key}, {crossing.warp, crossing.warp_key}}) {
+            const weave::SimulatedYarn& yarn = yarns.yarns[index];
+            const weave::Spline planned{yarn.planned, yarn.spline.is_periodic, yarn.spline.shift};
+            const double at = 4.0 * static_cast<double>(key);
+            CHECK((yarn.spline.place(at) - planned.place(at)).norm() < 1e-12);
+        }
+    }
+}
