@@ -1,0 +1,36 @@
+# The pages that tools/demo and tools/gallery make: pictures with the sentence that says what each shows. Sourced by them, with
+# $weave the program, $made the folder that is being made, and $page the page in it.
+
+page_head() { # TITLE COMMAND
+    cat > "$page" <<PAGE
+<!doctype html><html lang="en"><head><meta charset="utf-8"><title>weave: $1</title>
+<meta name="viewport" content="width=device-width, initial-scale=1"><style>
+body{font:16px/1.5 "DejaVu Sans",system-ui,sans-serif;color:#222;background:#faf9f7;max-width:1200px;margin:2rem auto;padding:0 1.5rem}
+h1{font-weight:600;margin-bottom:0}h2{margin-top:3rem;border-top:1px solid #ddd;padding-top:1.5rem}pre{background:#f0eee9;padding:.8rem 1rem;overflow:auto;font-size:13px}
+section{display:grid;grid-template-columns:repeat(auto-fill,minmax(340px,1fr));gap:1.2rem}figure{margin:0;background:#fff;border:1px solid #e3e0da;border-radius:6px;padding:.8rem}
+img{width:100%;height:280px;object-fit:contain}figcaption{font-size:14px;color:#555;margin-top:.5rem}</style></head><body>
+<h1>$1</h1><p>Made by <code>$2</code>. Click a picture to see it whole.</p>
+PAGE
+}
+
+in_html() { sed 's/&/\&amp;/g; s/</\&lt;/g'; }
+
+# A picture by `weave render`, which takes the options.
+picture() { # FILE VIEW NAME CAPTION [OPTION...]
+    "$weave" render "$made/$1" --view "$2" -o "$made/$3.png" "${@:5}" > /dev/null
+    echo "<figure><a href=\"$3.png\"><img src=\"$3.png\" alt=\"$4\"></a><figcaption>$4</figcaption></figure>" >> "$page"
+}
+
+# Relaxes NAME.weave into RUN.yarns and puts what was said, and what `weave inspect` tells a weaver, on the page. Yarns that did
+# not come to rest are shown as well, and said so.
+relax() { # NAME RUN [OPTION...]
+    local verdict=0
+    "$weave" simulate "$made/$1.weave" -o "$made/$2.yarns" "${@:3}" > "$made/$2.txt" 2> "$made/$2.progress" || verdict=$?
+    if [ $verdict -gt 1 ]; then
+        cat "$made/$2.progress" >&2
+        return $verdict
+    fi
+    rm "$made/$2.progress"
+    "$weave" inspect "$made/$2.yarns" >> "$made/$2.txt"
+    printf '<pre>weave simulate %s\n%s</pre>\n' "$1.weave ${*:3}" "$(sed "s|$made/||" "$made/$2.txt" | in_html)" >> "$page"
+}
