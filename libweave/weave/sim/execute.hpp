@@ -10,54 +10,61 @@
 
 namespace weave::sim {
 
-/// Threads that wait for a task and all run it at once. They sleep between tasks, so that a busy machine is not made
-/// busier by waiting.
+/// Threads that help with a task of many pieces. The thread that has it does not wait for them to come: it takes piece
+/// after piece itself, and whoever is awake in time takes some as well. So a machine that is busy with other work costs a
+/// helper, never a stop. They sleep between tasks.
 class ThreadTeam {
   public:
-    explicit ThreadTeam(std::size_t threads) {
-        for (std::size_t t = 1; t < threads; ++t) m_threads.emplace_back([this, t] { serve(t); });
+    explicit ThreadTeam(std::size_t helpers) {
+        for (std::size_t t = 0; t < helpers; ++t) m_threads.emplace_back([this] { serve(); });
     }
     ThreadTeam(const ThreadTeam&) = delete;
     ThreadTeam& operator=(const ThreadTeam&) = delete;
     ~ThreadTeam() {
-        m_task = nullptr;
-        m_round.fetch_add(1, std::memory_order_release);
+        m_ends = true;
+        m_round.fetch_add(1);
         m_round.notify_all();
         for (std::thread& thread : m_threads) thread.join();
     }
 
-    /// task(t) for every thread t, this one being 0; returns when all are done.
-    void run(const std::function<void(std::size_t)>& task) {
+    /// task(piece) for every piece below `pieces`, each once; returns when all are done.
+    void run(std::size_t pieces, const std::function<void(std::size_t)>& task) {
         m_task = &task;
-        m_running.store(m_threads.size(), std::memory_order_relaxed);
-        m_round.fetch_add(1, std::memory_order_release);
+        m_pieces = pieces;
+        m_next.store(0);
+        m_open.store(true);
+        m_round.fetch_add(1);
         m_round.notify_all();
-        task(0);
-        std::size_t running = m_running.load(std::memory_order_acquire);
-        for (int spin = 0; running != 0 && spin < spins; ++spin) running = m_running.load(std::memory_order_acquire);
-        while (running != 0) {
-            m_running.wait(running, std::memory_order_acquire);
-            running = m_running.load(std::memory_order_acquire);
+        work();
+        // A helper counts itself in before it looks whether the task is still open, so none slips in after this.
+        m_open.store(false);
+        for (std::size_t inside = m_inside.load(), spin = 0; inside != 0; inside = m_inside.load(), ++spin) {
+            if (spin >= spins) m_inside.wait(inside);
         }
     }
 
   private:
-    static constexpr int spins = 2000;  ///< some microseconds: as long as a short task lasts
+    static constexpr std::size_t spins = 2000;  ///< some microseconds: as long as a short task lasts
 
-    void serve(std::size_t number) {
-        std::size_t seen = 0;
-        while (true) {
-            for (int spin = 0; m_round.load(std::memory_order_acquire) == seen && spin < spins; ++spin) {}
-            m_round.wait(seen, std::memory_order_acquire);
-            ++seen;
-            if (m_task == nullptr) return;
-            (*m_task)(number);
-            if (m_running.fetch_sub(1, std::memory_order_acq_rel) == 1) m_running.notify_one();
+    void work() {
+        for (std::size_t piece = m_next.fetch_add(1); piece < m_pieces; piece = m_next.fetch_add(1)) (*m_task)(piece);
+    }
+
+    void serve() {
+        for (std::size_t seen = 0; !m_ends;) {
+            for (std::size_t spin = 0; m_round.load() == seen && spin < spins; ++spin) {}
+            m_round.wait(seen);
+            seen = m_round.load();
+            m_inside.fetch_add(1);
+            if (m_open.load()) work();
+            if (m_inside.fetch_sub(1) == 1) m_inside.notify_one();
         }
     }
 
     const std::function<void(std::size_t)>* m_task = nullptr;
-    std::atomic<std::size_t> m_round{0}, m_running{0};
+    std::size_t m_pieces = 0;
+    std::atomic<bool> m_open{false}, m_ends{false};
+    std::atomic<std::size_t> m_round{0}, m_next{0}, m_inside{0};
     std::vector<std::thread> m_threads;
 };
 
@@ -68,7 +75,7 @@ class Executor {
     /// 0: as many threads as there are cores.
     explicit Executor(std::size_t threads = 0)
         : m_threads(threads > 0 ? threads : std::max(1U, std::thread::hardware_concurrency())),
-          m_team(m_threads > 1 ? std::make_unique<ThreadTeam>(m_threads) : nullptr) {}
+          m_team(m_threads > 1 ? std::make_unique<ThreadTeam>(m_threads - 1) : nullptr) {}
 
     [[nodiscard]] std::size_t threads() const { return m_threads; }
 
@@ -79,8 +86,9 @@ class Executor {
             for (std::size_t i = 0; i < count; ++i) body(i);
             return;
         }
-        m_team->run([&](std::size_t thread) {
-            for (std::size_t i = count * thread / m_threads; i < count * (thread + 1) / m_threads; ++i) body(i);
+        const std::size_t pieces = std::min(count, pieces_a_thread * m_threads);
+        m_team->run(pieces, [&](std::size_t piece) {
+            for (std::size_t i = count * piece / pieces; i < count * (piece + 1) / pieces; ++i) body(i);
         });
     }
 
@@ -103,7 +111,7 @@ class Executor {
     }
 
   private:
-    static constexpr std::size_t smallest_share = 16, block = 512;
+    static constexpr std::size_t smallest_share = 16, pieces_a_thread = 4, block = 512;
 
     template <class Term, class Join>
     double reduce(std::size_t count, const Term& term, double start, Join join) const {
