@@ -34,3 +34,8 @@ relax() { # NAME RUN [OPTION...]
     "$weave" inspect "$made/$2.yarns" >> "$made/$2.txt" || [ $? -eq 1 ]  # 1: it found something, and says it
     printf '<pre>weave simulate %s\n%s</pre>\n' "$1.weave ${*:3}" "$(sed "s|$made/||" "$made/$2.txt" | in_html)" >> "$page"
 }
+
+# The middle of relaxed cloth across its ends, in mm: where a section shows the warp.
+middle_of() { # RUN
+    sed -nE 's/.* ([0-9.]+) mm along the picks.*/\1/p' "$made/$1.txt" | awk '{ print $1 / 2; exit }'
+}
