@@ -81,5 +81,6 @@ void add_look_commands(CLI::App& app, Program& program);   // info, card, render
 void add_loom_commands(CLI::App& app, Program& program);   // check, export
 void add_simulation_commands(CLI::App& app, Program& program);  // simulate, export-yarns
 void add_inspection_commands(CLI::App& app, Program& program);  // inspect, compare
+void add_bench_commands(CLI::App& app, Program& program);  // bench
 
 }  // namespace weave::program

@@ -65,6 +65,7 @@ int main(int count, char** words) {
     weave::program::add_loom_commands(app, program);
     weave::program::add_simulation_commands(app, program);
     weave::program::add_inspection_commands(app, program);
+    weave::program::add_bench_commands(app, program);
     app.footer("'weave COMMAND --help' tells what a command takes.\n" + std::string(endings));
     try {
         app.parse(count, words);

@@ -22,11 +22,12 @@ namespace weave::program {
 namespace {
 
 struct Wish {
-    std::string file, out, fidelity = "standard", region;
+    std::string file, out, fidelity = "standard", solver = "relax", region;
     std::vector<std::string> set;
     bool wraparound = false, explain = false, whole = false;
     std::optional<double> residual, points, seconds;
-    std::size_t steps = 2000, threads = 0;
+    std::optional<std::size_t> steps;
+    std::size_t threads = 0;
 };
 
 Error usage_error(std::string message, std::string where) {
@@ -146,7 +147,8 @@ Status run_simulation(Program& program, const Wish& wish) {
     sim::SimulationOptions options;
     options.threads = wish.threads;
     options.residual = wish.residual;
-    options.most_iterations = wish.steps;
+    WEAVE_TRY(options.solver, sim::parse_solver(wish.solver));
+    options.most_iterations = wish.steps.value_or(options.solver == sim::Solver::paper ? 1'000'000 : 2000);
     options.most_seconds = wish.seconds.value_or(1e30);
     options.watch = [&](const sim::Progress& progress) { return teller(progress); };
     const HeldInterrupt held;
@@ -170,6 +172,8 @@ void add_simulate(CLI::App& app, Program& program) {
     command->add_option("FILE", wish->file, "the .weave file")->required();
     command->add_option("-o,--out", wish->out, "the .yarns file to write")->type_name("FILE");
     command->add_option("--fidelity", wish->fidelity, "draft, standard (if nothing is said) or reference")->type_name("WORD");
+    command->add_option("--solver", wish->solver, "relax (if nothing is said), or paper: in time as the paper did, the slow baseline")
+        ->type_name("WORD");
     command->add_option("--points", wish->points, "control points for each crossing, instead of the fidelity's")->type_name("N");
     command->add_option("--residual", wish->residual, "how still is still: greatest force over the reference force")
         ->check(CLI::PositiveNumber.description(""))

@@ -1,6 +1,7 @@
 #include <weave/design/document.hpp>
 #include <weave/loom/pick_table.hpp>
 #include <weave/sim/order.hpp>
+#include <weave/sim/paper.hpp>
 #include <weave/sim/simulate.hpp>
 
 #include <algorithm>
@@ -246,7 +247,20 @@ Json coverage_of(const Plan& plan) {
             {"repeats", {plan.repeats[0], plan.repeats[1]}}};
 }
 
+constexpr std::string_view solver_names[]{"relax", "paper"};
+
 }  // namespace
+
+Result<Solver> parse_solver(std::string_view text) {
+    for (const Solver solver : {Solver::relax, Solver::paper}) {
+        if (text == name_of(solver)) return solver;
+    }
+    return Error{ErrorCode::usage, "solver is relax or paper, not '" + std::string(text) + "'", {}};
+}
+
+std::string_view name_of(Solver solver) {
+    return solver_names[static_cast<std::size_t>(solver)];
+}
 
 Yarns simulate(const Design& design, const Plan& plan, const SimulationOptions& options) {
     const Executor executor(options.threads);
@@ -258,7 +272,8 @@ Yarns simulate(const Design& design, const Plan& plan, const SimulationOptions& 
     relax_options.most_iterations = options.most_iterations;
     relax_options.most_seconds = options.most_seconds;
     relax_options.watch = options.watch;
-    const RelaxResult ended = relax(energy, state, relax_options);
+    const RelaxResult ended = options.solver == Solver::paper ? relax_in_time(energy, state, relax_options)
+                                                              : relax(energy, state, relax_options);
 
     const RelaxedRepeat result(design, plan, energy, state);
     const Contacts contacts = contacts_of(energy, state);
@@ -267,7 +282,7 @@ Yarns simulate(const Design& design, const Plan& plan, const SimulationOptions& 
     yarns.report = {{"design_sha256", yarns.design_sha256},
                     {"scene_sha256", yarns.scene_sha256},
                     {"coverage", coverage_of(plan)},
-                    {"solver", "relax"},
+                    {"solver", std::string(name_of(options.solver))},
                     {"backend", "cpu"},
                     {"fidelity", std::string(sim::name_of(plan.fidelity))},
                     {"points_per_key", plan.points_per_key},

@@ -7,10 +7,20 @@
 #include <cstddef>
 #include <functional>
 #include <optional>
+#include <string_view>
 
 namespace weave::sim {
 
+enum class Solver : std::uint8_t {
+    relax,  ///< damped Newton steps (relax.hpp)
+    paper,  ///< motion in time, as the paper did it (paper.hpp): slow, the baseline
+};
+
+Result<Solver> parse_solver(std::string_view text);
+std::string_view name_of(Solver solver);
+
 struct SimulationOptions {
+    Solver solver = Solver::relax;
     std::size_t threads = 0;            ///< 0: one a core
     std::optional<double> residual;     ///< instead of the fidelity's
     std::size_t most_iterations = 2000;
