@@ -9,6 +9,9 @@ namespace {
 
 /// Below a tenth of the reach the contact law goes on linearly.
 constexpr double contact_floor = 0.01;
+/// Samples that are not listed as near lie 1.25 reaches apart: after a step in which each moves by at most so many
+/// reaches, still half a reach.
+constexpr double farthest_share = 0.375;
 
 }  // namespace
 
@@ -17,6 +20,7 @@ Energy<Real>::Energy(const Fabric<Real>& fabric, const Executor& executor)
     : m_fabric(fabric),
       m_executor(executor),
       m_neighbours(fabric, executor),
+      m_spheres(spheres_of<Real>(fabric.scene())),
       m_segment_energy(fabric.segments()),
       m_segment_gradient(12 * fabric.segments()) {}
 
@@ -40,10 +44,15 @@ double Energy<Real>::evaluate(const std::vector<Real>& state, std::vector<Real>&
     m_neighbours.update();
     m_executor.each(m_fabric.segments(), SegmentForces<Real>{view(state), terms, m_segment_energy.data(),
                                                              m_segment_gradient.data()});
+    if (terms.elastic && !m_spheres.empty()) {
+        m_executor.each(m_fabric.segments(),
+                        FieldForces<Real>{view(state), m_spheres.data(), m_spheres.size(), m_segment_energy.data(),
+                                          m_segment_gradient.data()});
+    }
     gather(gradient);
     double energy = m_executor.sum(m_fabric.segments(),
                                    [&](std::size_t s) { return static_cast<double>(m_segment_energy[s]); });
-    if (terms.elastic) energy += add_fields(state, gradient);
+    if (terms.elastic && m_fabric.scene().gravity_mm_ms2 != 0) energy += add_weight(state, gradient);
     m_fabric.fold(gradient);
     return energy;
 }
@@ -67,29 +76,6 @@ void Energy<Real>::gather(std::vector<Real>& gradient) const {
     });
 }
 
-/// Spheres push yarns outwards by ½·K·depth² a control point; gravity pulls on every length alike.
-template <class Real>
-double Energy<Real>::add_fields(const std::vector<Real>& state, std::vector<Real>& gradient) const {
-    const SimScene& scene = m_fabric.scene();
-    double energy = scene.gravity_mm_ms2 == 0 ? 0 : add_weight(state, gradient);
-    if (scene.fields.empty()) return energy;
-    for (const YarnPlace& place : m_fabric.yarns()) {
-        for (std::size_t slot = place.first_slot + 1; slot < place.first_slot + 1 + place.points; ++slot) {
-            const Vec<double> at = load(&state[3 * slot]).template cast<double>();
-            for (const ForceField& field : scene.fields) {
-                const Vec<double> out = at - Vec<double>(field.centre_mm[0], field.centre_mm[1], field.centre_mm[2]);
-                const double distance = out.norm(), depth = field.radius_mm - distance;
-                if (depth <= 0 || distance <= 0) continue;
-                energy += field.strength_N_per_mm * depth * depth / 2;
-                const Vec<double> force = -field.strength_N_per_mm * depth / distance * out;
-                for (std::size_t k = 0; k < 3; ++k)
-                    gradient[3 * slot + k] += static_cast<Real>(force[static_cast<Eigen::Index>(k)]);
-            }
-        }
-    }
-    return energy;
-}
-
 /// Weight times mean height of each segment, which is ∫ of its four splines: else the tip of a yarn would weigh double.
 template <class Real>
 double Energy<Real>::add_weight(const std::vector<Real>& state, std::vector<Real>& gradient) const {
@@ -108,15 +94,20 @@ double Energy<Real>::add_weight(const std::vector<Real>& state, std::vector<Real
     return energy;
 }
 
+/// How far each sample goes, and how far across its yarn: a yarn that slides along itself meets nothing new.
 template <class Real>
-void Energy<Real>::move_samples(const std::vector<Real>& change) {
+void Energy<Real>::move_samples(const std::vector<Real>& state, const std::vector<Real>& change) {
     m_moved.resize(3 * m_fabric.samples());
+    m_moved_far.resize(m_fabric.samples());
     const std::vector<SegmentPlace>& segments = m_fabric.segment_places();
     m_executor.each(segments.size(), [&](std::size_t s) {
         const YarnConstants<Real>& yarn = m_fabric.constants()[segments[s].yarn];
         for (std::uint32_t k = 0; k < yarn.samples; ++k) {
-            const Vec<Real> moved =
-                combine(m_fabric.bases()[yarn.basis + k].value, &change[3 * std::size_t(segments[s].slot)]);
+            const Basis<Real>& basis = m_fabric.bases()[yarn.basis + k];
+            Vec<Real> moved = combine(basis.value, &change[3 * std::size_t(segments[s].slot)]);
+            const Vec<Real> tangent = combine(basis.slope, &state[3 * std::size_t(segments[s].slot)]);
+            m_moved_far[segments[s].sample + k] = moved.norm();
+            moved -= tangent * (tangent.dot(moved) / std::max(tangent.squaredNorm(), Real(1e-30)));
             for (std::size_t axis = 0; axis < 3; ++axis)
                 m_moved[3 * (segments[s].sample + k) + axis] = moved[static_cast<Eigen::Index>(axis)];
         }
@@ -126,8 +117,8 @@ void Energy<Real>::move_samples(const std::vector<Real>& change) {
 template <class Real>
 double Energy<Real>::safe_share_of(const FabricView<Real>& fabric, std::size_t a, double most) const {
     const Vec<Real> mine = load(&m_moved[3 * a]);
-    const auto moved = static_cast<double>(mine.norm());
-    double share = std::min(most, m_fabric.least_reach() / 4 / std::max(1e-300, moved));
+    const auto moved = static_cast<double>(m_moved_far[a]);
+    double share = std::min(most, farthest_share * m_fabric.least_reach() / std::max(1e-300, moved));
     for (std::uint32_t e = fabric.first_neighbour[a]; e < fabric.first_neighbour[a + 1]; ++e) {
         const std::uint32_t b = fabric.neighbours[e];
         const Vec<Real> apart(fabric.samples.x[a] - fabric.samples.x[b], fabric.samples.y[a] - fabric.samples.y[b],
@@ -140,7 +131,7 @@ double Energy<Real>::safe_share_of(const FabricView<Real>& fabric, std::size_t a
 
 template <class Real>
 double Energy<Real>::safe_share(const std::vector<Real>& state, const std::vector<Real>& change, double most) {
-    move_samples(change);
+    move_samples(state, change);
     const FabricView<Real> fabric = view(state);
     return m_executor.least(m_fabric.samples(), [&](std::size_t a) { return safe_share_of(fabric, a, most); }, most);
 }
@@ -152,7 +143,7 @@ void Energy<Real>::shorten(const std::vector<Real>& state, std::vector<Real>& ch
     std::vector<double> share(m_fabric.segments());
     const std::vector<YarnPlace>& yarns = m_fabric.yarns();
     for (int round = 0; round < rounds; ++round) {
-        move_samples(change);
+        move_samples(state, change);
         m_executor.each(share.size(), [&](std::size_t s) {
             const SegmentPlace& segment = fabric.segments[s];
             share[s] = 1;

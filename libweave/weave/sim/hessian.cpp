@@ -52,7 +52,7 @@ struct Hessian<Real>::Scratch {
 };
 
 template <class Real>
-Hessian<Real>::Hessian(const Fabric<Real>& fabric) : m_fabric(fabric), m_gauss(as_double(fabric.gauss())) {
+Hessian<Real>::Hessian(const Fabric<Real>& fabric) : m_fabric(fabric), m_gauss(as_double(fabric.gauss())), m_spheres(spheres_of<double>(fabric.scene())) {
     for (const Basis<Real>& basis : fabric.bases()) m_bases.push_back(as_double(basis));
     for (const YarnConstants<Real>& yarn : fabric.constants()) m_constants.push_back(as_double(yarn));
     make_shares();
@@ -205,6 +205,7 @@ void Hessian<Real>::add_segment(Energy<Real>& energy, const FabricView<Real>& fa
     const Speeds<double> speeds(m_gauss, scratch.slots);
     add_stretch_curvature(yarn, m_gauss, speeds, convex, scratch.own);
     add_bending_curvature(yarn, m_gauss, scratch.slots, speeds, convex, scratch.own);
+    if (!m_spheres.empty()) add_field_curvature(yarn, m_gauss, scratch.slots, m_spheres, convex, scratch.own);
 
     const std::uint32_t first_near = m_first_near[index], near = m_first_near[index + 1] - first_near;
     if (scratch.other.size() < near) scratch.other.resize(near);

@@ -57,6 +57,7 @@ class Hessian {
 
     const Fabric<Real>& m_fabric;
     Gauss<double> m_gauss;
+    std::vector<Sphere<double>> m_spheres;
     std::vector<Basis<double>> m_bases;
     std::vector<YarnConstants<double>> m_constants;
     std::vector<std::uint32_t> m_slot_of_row;

@@ -1,0 +1,111 @@
+#pragma once
+
+// Spherical force fields: what opens a pocket. A field pushes on every length of yarn alike, so its effect does not
+// depend on how many control points a yarn has.
+
+#include <weave/sim/bodies.hpp>
+#include <weave/sim/hessian_terms.hpp>
+#include <weave/sim/scene.hpp>
+
+#include <algorithm>
+#include <cstddef>
+#include <vector>
+
+namespace weave::sim {
+
+/// A field as the bodies read it: φ = ½·stiffness·depth², N (an energy per length of yarn), depth being the distance
+/// below the sphere's surface.
+template <class Real>
+struct Sphere {
+    Vec<Real> centre;
+    Real radius, stiffness;  ///< mm, N/mm²
+};
+
+/// φ and ∂φ/∂y at a place. At the very centre no direction leads out: the push is 0 there.
+template <class Real>
+struct SpherePush {
+    Real value = 0, depth = 0, distance = 0;
+    Vec<Real> out;  ///< unit, from the centre
+
+    WEAVE_HD SpherePush(const Sphere<Real>& sphere, const Vec<Real>& at) : out(at - sphere.centre) {
+        distance = out.norm();
+        depth = sphere.radius - distance;
+        if (depth <= 0) return;
+        value = sphere.stiffness * depth * depth / 2;
+        out = distance > 0 ? Vec<Real>(out / distance) : Vec<Real>(Vec<Real>::Zero());
+    }
+};
+
+/// Adds ∫ φ(y) dl of one segment. A yarn of fixed length counts its own unstretched length; a fed one, which runs
+/// through, that which lies there: its tension then rises by φ inside, as force along the yarn asks.
+template <class Real>
+struct FieldForces {
+    FabricView<Real> fabric;
+    const Sphere<Real>* spheres;
+    std::size_t count;
+    Real* energy;    ///< per segment; added to
+    Real* gradient;  ///< 12 per segment; added to
+
+    WEAVE_HD void operator()(std::size_t index) const {
+        const SegmentPlace segment = fabric.segments[index];
+        const YarnConstants<Real>& yarn = fabric.yarns[segment.yarn];
+        const Real* slots = fabric.place + 3 * std::size_t(segment.slot);
+        SegmentSum<Real> sum;
+        for (std::size_t g = 0; g < gauss_points; ++g) {
+            const Basis<Real>& basis = fabric.gauss->basis[g];
+            const Vec<Real> at = combine(basis.value, slots), tangent = combine(basis.slope, slots);
+            const bool fed = yarn.supply == Supply::tension;
+            const Real speed = tangent.norm(), share = fabric.gauss->weight[g] * (fed ? speed : yarn.rest_mm);
+            for (std::size_t s = 0; s < count; ++s) {
+                const SpherePush<Real> push(spheres[s], at);
+                if (push.depth <= 0) continue;
+                sum.energy += share * push.value;
+                sum.add(basis.value, push.out * (-share * spheres[s].stiffness * push.depth));
+                if (fed) sum.add(basis.slope, tangent * (fabric.gauss->weight[g] * push.value / guarded(speed, yarn)));
+            }
+        }
+        energy[index] += sum.energy;
+        for (int k = 0; k < 12; ++k) gradient[12 * index + std::size_t(k)] += sum.gradient[k];
+    }
+};
+
+/// The fields of a scene for the bodies; their strength acts at the centre and falls evenly to nothing at the surface.
+template <class Real>
+std::vector<Sphere<Real>> spheres_of(const SimScene& scene) {
+    std::vector<Sphere<Real>> spheres;
+    for (const ForceField& field : scene.fields) {
+        const Vec<double> centre(field.centre_mm[0], field.centre_mm[1], field.centre_mm[2]);
+        spheres.push_back({centre.cast<Real>(), static_cast<Real>(field.radius_mm),
+                           static_cast<Real>(field.strength_N_per_mm / field.radius_mm)});
+    }
+    return spheres;
+}
+
+/// Second derivatives of the same. Convex: only what curves upwards.
+inline void add_field_curvature(const YarnConstants<double>& yarn, const Gauss<double>& gauss, const double* slots,
+                                const std::vector<Sphere<double>>& spheres, bool convex, SlotBlocks& sum) {
+    const bool fed = yarn.supply == Supply::tension;
+    for (std::size_t g = 0; g < gauss_points; ++g) {
+        const Basis<double>& basis = gauss.basis[g];
+        const Vec<double> at = combine(basis.value, slots), tangent = combine(basis.slope, slots);
+        const double speed = guarded(tangent.norm(), yarn), weight = gauss.weight[g];
+        const Vec<double> unit = tangent / speed;
+        for (const Sphere<double>& sphere : spheres) {
+            const SpherePush<double> push(sphere, at);
+            if (push.depth <= 0 || push.distance <= 0) continue;
+            double along = sphere.stiffness, side = -sphere.stiffness * push.depth / push.distance,
+                   pull = push.value / speed;
+            if (convex) along = std::max(along, 0.0), side = std::max(side, 0.0), pull = std::max(pull, 0.0);
+            const Mat<double> by_place = along * push.out * push.out.transpose() + side * across(push.out);
+            sum.add(basis.value, basis.value, weight * (fed ? speed : yarn.rest_mm) * by_place);
+            if (!fed) continue;
+            sum.add(basis.slope, basis.slope, weight * pull * across(unit));
+            if (convex) continue;
+            const Mat<double> mixed = -weight * sphere.stiffness * push.depth * push.out * unit.transpose();
+            sum.add(basis.value, basis.slope, mixed);
+            sum.add(basis.slope, basis.value, mixed.transpose());
+        }
+    }
+}
+
+}  // namespace weave::sim
