@@ -61,7 +61,7 @@ class Newton {
           m_state(state),
           m_options(options),
           m_hessian(energy.fabric()),
-          m_preconditioner(energy.executor(), strands_of(energy.fabric())) {}
+          m_preconditioner(energy.executor(), strands_of(energy.fabric()), places_of(energy.fabric())) {}
 
     RelaxResult run() {
         m_value = m_energy.evaluate(m_state, m_gradient);
