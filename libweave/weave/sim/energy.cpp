@@ -9,9 +9,6 @@ namespace {
 
 /// Below a tenth of the reach the contact law goes on linearly.
 constexpr double contact_floor = 0.01;
-/// Samples that are not listed as near lie 1.25 reaches apart: after a step in which each moves by at most so many
-/// reaches, still half a reach.
-constexpr double farthest_share = 0.375;
 
 }  // namespace
 
@@ -94,20 +91,15 @@ double Energy<Real>::add_weight(const std::vector<Real>& state, std::vector<Real
     return energy;
 }
 
-/// How far each sample goes, and how far across its yarn: a yarn that slides along itself meets nothing new.
 template <class Real>
-void Energy<Real>::move_samples(const std::vector<Real>& state, const std::vector<Real>& change) {
+void Energy<Real>::move_samples(const std::vector<Real>& change) {
     m_moved.resize(3 * m_fabric.samples());
-    m_moved_far.resize(m_fabric.samples());
     const std::vector<SegmentPlace>& segments = m_fabric.segment_places();
     m_executor.each(segments.size(), [&](std::size_t s) {
         const YarnConstants<Real>& yarn = m_fabric.constants()[segments[s].yarn];
         for (std::uint32_t k = 0; k < yarn.samples; ++k) {
-            const Basis<Real>& basis = m_fabric.bases()[yarn.basis + k];
-            Vec<Real> moved = combine(basis.value, &change[3 * std::size_t(segments[s].slot)]);
-            const Vec<Real> tangent = combine(basis.slope, &state[3 * std::size_t(segments[s].slot)]);
-            m_moved_far[segments[s].sample + k] = moved.norm();
-            moved -= tangent * (tangent.dot(moved) / std::max(tangent.squaredNorm(), Real(1e-30)));
+            const Vec<Real> moved =
+                combine(m_fabric.bases()[yarn.basis + k].value, &change[3 * std::size_t(segments[s].slot)]);
             for (std::size_t axis = 0; axis < 3; ++axis)
                 m_moved[3 * (segments[s].sample + k) + axis] = moved[static_cast<Eigen::Index>(axis)];
         }
@@ -117,8 +109,8 @@ void Energy<Real>::move_samples(const std::vector<Real>& state, const std::vecto
 template <class Real>
 double Energy<Real>::safe_share_of(const FabricView<Real>& fabric, std::size_t a, double most) const {
     const Vec<Real> mine = load(&m_moved[3 * a]);
-    const auto moved = static_cast<double>(m_moved_far[a]);
-    double share = std::min(most, farthest_share * m_fabric.least_reach() / std::max(1e-300, moved));
+    const auto moved = static_cast<double>(mine.norm());
+    double share = std::min(most, m_fabric.least_reach() / 4 / std::max(1e-300, moved));
     for (std::uint32_t e = fabric.first_neighbour[a]; e < fabric.first_neighbour[a + 1]; ++e) {
         const std::uint32_t b = fabric.neighbours[e];
         const Vec<Real> apart(fabric.samples.x[a] - fabric.samples.x[b], fabric.samples.y[a] - fabric.samples.y[b],
@@ -131,7 +123,7 @@ double Energy<Real>::safe_share_of(const FabricView<Real>& fabric, std::size_t a
 
 template <class Real>
 double Energy<Real>::safe_share(const std::vector<Real>& state, const std::vector<Real>& change, double most) {
-    move_samples(state, change);
+    move_samples(change);
     const FabricView<Real> fabric = view(state);
     return m_executor.least(m_fabric.samples(), [&](std::size_t a) { return safe_share_of(fabric, a, most); }, most);
 }
@@ -143,7 +135,7 @@ void Energy<Real>::shorten(const std::vector<Real>& state, std::vector<Real>& ch
     std::vector<double> share(m_fabric.segments());
     const std::vector<YarnPlace>& yarns = m_fabric.yarns();
     for (int round = 0; round < rounds; ++round) {
-        move_samples(state, change);
+        move_samples(change);
         m_executor.each(share.size(), [&](std::size_t s) {
             const SegmentPlace& segment = fabric.segments[s];
             share[s] = 1;

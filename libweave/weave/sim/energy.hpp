@@ -27,14 +27,14 @@ class Energy {
     [[nodiscard]] std::size_t evaluations() const { return m_evaluations; }
 
     /// How much of a change of state, at most `most`, may be made at once so that no two yarns can pass through one another: no pair of
-    /// near samples comes closer by half its distance or more, what slides along its own yarn not counted, and no sample moves by 3/8 of the least reach.
+    /// near samples comes closer by half its distance or more, and no sample moves by a quarter of the least reach.
     double safe_share(const std::vector<Real>& state, const std::vector<Real>& change, double most);
 
     /// Shortens a change where it is not safe: each control point goes as far as the samples near it allow.
     void shorten(const std::vector<Real>& state, std::vector<Real>& change);
 
   private:
-    void move_samples(const std::vector<Real>& state, const std::vector<Real>& change);
+    void move_samples(const std::vector<Real>& change);
     [[nodiscard]] double safe_share_of(const FabricView<Real>& fabric, std::size_t sample, double most) const;
     void gather(std::vector<Real>& gradient) const;
     double add_weight(const std::vector<Real>& state, std::vector<Real>& gradient) const;
@@ -44,7 +44,7 @@ class Energy {
     Neighbours<Real> m_neighbours;
     std::vector<Sphere<Real>> m_spheres;
     std::vector<Real> m_segment_energy, m_segment_gradient;
-    std::vector<Real> m_moved, m_moved_far;  ///< change of each sample across its yarn, and its size; scratch of safe_share
+    std::vector<Real> m_moved;  ///< change of each sample, scratch of safe_share
     std::size_t m_evaluations = 0;
 };
 
