@@ -2,6 +2,7 @@
 
 #include <algorithm>
 #include <cmath>
+#include <map>
 
 namespace weave::sim {
 
@@ -12,6 +13,9 @@ constexpr std::uint32_t span = 4;
 /// So few rows are solved as a whole.
 constexpr std::size_t last_rows = 128;
 constexpr std::size_t rows_at_once = 64;
+/// Pieces of this level hand on to the grids: the shortest, for yarns that cross move alike only close to where they do.
+constexpr std::size_t grids_from = 1;
+constexpr double pieces_per_node = 6;
 
 std::uint32_t pieces_of(std::uint32_t rows) {
     return rows <= span ? 1 : (rows + span / 2) / span;
@@ -38,7 +42,23 @@ std::vector<Strand> strands_of(const Fabric<Real>& fabric) {
 template std::vector<Strand> strands_of(const Fabric<float>&);
 template std::vector<Strand> strands_of(const Fabric<double>&);
 
-Multigrid::Multigrid(const Executor& executor, std::vector<Strand> strands) : m_executor(executor) {
+template <class Real>
+RowPlaces places_of(const Fabric<Real>& fabric) {
+    RowPlaces places;
+    const std::vector<Real> state = fabric.state();
+    for (std::size_t slot = 0; slot < fabric.slots(); ++slot) {
+        if (fabric.moves()[slot] != 0)
+            places.at.push_back({static_cast<double>(state[3 * slot]), static_cast<double>(state[3 * slot + 1])});
+    }
+    for (std::size_t k = 0; k < 2; ++k)
+        places.period[k] = fabric.scene().is_periodic[k] ? fabric.scene().period_mm[k] : 0;
+    return places;
+}
+
+template RowPlaces places_of(const Fabric<float>&);
+template RowPlaces places_of(const Fabric<double>&);
+
+Multigrid::Multigrid(const Executor& executor, std::vector<Strand> strands, RowPlaces places) : m_executor(executor) {
     std::size_t rows = 0;
     for (const Strand& strand : strands) rows += strand.rows;
     m_levels.emplace_back().rows = rows;
@@ -46,18 +66,21 @@ Multigrid::Multigrid(const Executor& executor, std::vector<Strand> strands) : m_
         // Yarns that are one piece each are bundled with those beside them.
         if (m_levels.back().rows == strands.size())
             strands = {{0, static_cast<std::uint32_t>(strands.size()), false}};
-        add_level(strands);
+        add_pieces_of_yarns(m_levels.size() - 1, strands);
     }
+    if (places.at.size() != rows || m_levels.size() <= grids_from) return;
+    for (std::size_t l = 1; l <= grids_from; ++l) places = places_of_pieces(m_levels[l], places);
+    add_grids(grids_from, std::move(places));
 }
 
-/// Groups the rows of the last level into pieces; `strands` become those of the pieces.
-void Multigrid::add_level(std::vector<Strand>& strands) {
-    Level& level = m_levels.back();
+/// Groups the rows of a level into pieces; `strands` become those of the pieces.
+void Multigrid::add_pieces_of_yarns(std::size_t finer, std::vector<Strand>& strands) {
+    std::vector<Shares> all;
     std::uint32_t pieces = 0;
     for (Strand& strand : strands) {
         const std::uint32_t count = pieces_of(strand.rows);
         for (std::uint32_t i = 0; i < strand.rows; ++i) {
-            Shares shares{{pieces, pieces}, {1, 0}};
+            Shares shares{{pieces}, {1}};
             if (count > 1) {
                 const double at = strand.is_closed ? double(i) * count / strand.rows
                                                    : double(i) * (count - 1) / (strand.rows - 1);
@@ -65,20 +88,23 @@ void Multigrid::add_level(std::vector<Strand>& strands) {
                 const std::uint32_t next = piece + 1 < count ? piece + 1 : strand.is_closed ? 0 : piece;
                 shares = {{pieces + piece, pieces + next}, {1 - (at - piece), at - piece}};
             }
-            level.shares.push_back(shares);
+            all.push_back(shares);
         }
         strand = {pieces, count, strand.is_closed};
         pieces += count;
     }
-    list_members(level, pieces);
-    m_levels.emplace_back().rows = pieces;
+    add_level(finer, std::move(all), pieces);
 }
 
-void Multigrid::list_members(Level& level, std::size_t pieces) const {
+void Multigrid::add_level(std::size_t finer, std::vector<Shares> shares, std::size_t pieces) {
+    m_levels[finer].coarser.push_back(m_levels.size());
+    Level& level = m_levels.emplace_back();
+    level.rows = pieces;
+    level.shares = std::move(shares);
     level.first_member.assign(pieces + 1, 0);
     const auto each_share = [&](const auto& visit) {
-        for (std::uint32_t row = 0; row < level.rows; ++row) {
-            for (std::size_t k = 0; k < 2; ++k) {
+        for (std::uint32_t row = 0; row < level.shares.size(); ++row) {
+            for (std::size_t k = 0; k < 4; ++k) {
                 if (level.shares[row].weight[k] != 0) visit(row, level.shares[row].of[k]);
             }
         }
@@ -91,6 +117,79 @@ void Multigrid::list_members(Level& level, std::size_t pieces) const {
     each_share([&](std::uint32_t row, std::uint32_t piece) { level.members[next[piece]++] = row; });
 }
 
+/// A piece lies where the row lies that belongs to it most.
+RowPlaces Multigrid::places_of_pieces(const Level& pieces, const RowPlaces& places) {
+    RowPlaces of{std::vector<std::array<double, 2>>(pieces.rows), places.period};
+    std::vector<double> most(pieces.rows, 0);
+    for (std::size_t row = 0; row < pieces.shares.size(); ++row) {
+        for (std::size_t k = 0; k < 4; ++k) {
+            const std::uint32_t piece = pieces.shares[row].of[k];
+            if (pieces.shares[row].weight[k] <= most[piece]) continue;
+            most[piece] = pieces.shares[row].weight[k];
+            of.at[piece] = places.at[row];
+        }
+    }
+    return of;
+}
+
+/// From a node for every few pieces on, each grid twice as wide as the one before.
+void Multigrid::add_grids(std::size_t finer, RowPlaces places) {
+    std::array<double, 2> size{1e-9, 1e-9};
+    for (std::size_t k = 0; k < 2; ++k) {
+        for (const std::array<double, 2>& at : places.at) size[k] = std::max(size[k], at[k] - places.at[0][k]);
+    }
+    double spacing = std::sqrt(pieces_per_node * size[0] * size[1] / static_cast<double>(places.at.size()));
+    while (m_levels[finer].rows > last_rows && add_grid(finer, spacing, places)) {
+        finer = m_levels.size() - 1;
+        spacing *= 2;
+    }
+}
+
+/// Each row belongs to the four nodes around it; `places` become those of the nodes. False if they are not fewer.
+bool Multigrid::add_grid(std::size_t finer, double spacing, RowPlaces& places) {
+    std::array<double, 2> low{1e300, 1e300}, step{};
+    std::array<std::int64_t, 2> around{};  // nodes to the period
+    for (std::size_t k = 0; k < 2; ++k) {
+        for (const std::array<double, 2>& at : places.at) low[k] = std::min(low[k], at[k]);
+        around[k] = places.period[k] > 0 ? std::max<std::int64_t>(1, std::llround(places.period[k] / spacing)) : 0;
+        step[k] = around[k] > 0 ? places.period[k] / static_cast<double>(around[k]) : spacing;
+    }
+    std::map<std::array<std::int64_t, 2>, std::uint32_t> numbers;
+    std::vector<std::array<double, 2>> nodes;
+    std::vector<Shares> all;
+    for (const std::array<double, 2>& at : places.at) {
+        const double x = (at[0] - low[0]) / step[0], y = (at[1] - low[1]) / step[1], i = std::floor(x), j = std::floor(y);
+        Shares shares;
+        for (std::size_t k = 0; k < 4; ++k) {
+            const auto right = static_cast<double>(k % 2), up = static_cast<double>(k / 2);
+            std::array<std::int64_t, 2> node{std::llround(i + right), std::llround(j + up)};
+            for (std::size_t axis = 0; axis < 2; ++axis) {
+                if (around[axis] > 0) node[axis] = ((node[axis] % around[axis]) + around[axis]) % around[axis];
+            }
+            const double weight = (k % 2 == 0 ? 1 - (x - i) : x - i) * (k / 2 == 0 ? 1 - (y - j) : y - j);
+            if (weight == 0) {
+                shares.weight[k] = 0;
+                continue;
+            }
+            const auto [found, is_new] = numbers.try_emplace(node, static_cast<std::uint32_t>(nodes.size()));
+            if (is_new)
+                nodes.push_back({low[0] + static_cast<double>(node[0]) * step[0],
+                                 low[1] + static_cast<double>(node[1]) * step[1]});
+            // On a small torus the same node may lie on two sides.
+            std::size_t to = 0;
+            while (to < k && !(shares.of[to] == found->second && shares.weight[to] != 0)) ++to;
+            if (to == k) shares.weight[k] = 0;
+            shares.of[to] = found->second;
+            shares.weight[to] += weight;
+        }
+        all.push_back(shares);
+    }
+    if (nodes.size() >= places.at.size()) return false;
+    places.at = std::move(nodes);
+    add_level(finer, std::move(all), places.at.size());
+    return true;
+}
+
 /// Few rows are not worth waking a thread for.
 template <class Body>
 void Multigrid::each_row(std::size_t rows, const Body& body) const {
@@ -101,13 +200,16 @@ void Multigrid::each_row(std::size_t rows, const Body& body) const {
 }
 
 void Multigrid::factor(const BlockMatrix& matrix) {
-    const BlockMatrix* fine = &matrix;
-    for (std::size_t l = 0; l + 1 < m_levels.size(); ++l) {
-        invert_pivots(*fine, m_levels[l]);
-        coarsen(*fine, m_levels[l], m_levels[l + 1].matrix);
-        fine = &m_levels[l + 1].matrix;
+    factor(0, matrix);
+}
+
+void Multigrid::factor(std::size_t number, const BlockMatrix& matrix) {
+    if (m_levels[number].coarser.empty()) return factor_whole(matrix, m_levels[number]);
+    invert_pivots(matrix, m_levels[number]);
+    for (const std::size_t next : m_levels[number].coarser) {
+        coarsen(matrix, m_levels[next], m_levels[next].matrix);
+        factor(next, m_levels[next].matrix);
     }
-    factor_last(*fine);
 }
 
 /// A pivot that is not positive is made so: a direction that curves down counts as one that curves up as
@@ -165,6 +267,15 @@ struct CoarseRows {
 
 }  // namespace
 
+/// How much of a row belongs to one of its pieces.
+template <class Shares>
+double share_of(const Shares& shares, std::size_t piece) {
+    for (std::size_t k = 0; k < 4; ++k) {
+        if (shares.of[k] == piece && shares.weight[k] != 0) return shares.weight[k];
+    }
+    return 0;
+}
+
 /// PᵀAP, P being the shares.
 void Multigrid::coarsen(const BlockMatrix& fine, const Level& level, BlockMatrix& coarse) const {
     const std::size_t pieces = level.first_member.size() - 1, parts = std::min<std::size_t>(64, pieces);
@@ -176,12 +287,12 @@ void Multigrid::coarsen(const BlockMatrix& fine, const Level& level, BlockMatrix
             for (std::uint32_t m = level.first_member[piece]; m < level.first_member[piece + 1]; ++m) {
                 const std::uint32_t row = level.members[m];
                 const Shares& mine = level.shares[row];
-                const double weight = mine.of[0] == piece ? mine.weight[0] : mine.weight[1];
+                const double weight = share_of(mine, piece);
                 for (std::uint32_t at = fine.first(row); at < fine.first(row + 1); ++at) {
                     const Shares& theirs = level.shares[fine.column(at)];
                     const Eigen::Matrix3d block =
                         Eigen::Map<const BlockMatrix::Block>(fine.value(at)).cast<double>();
-                    for (std::size_t k = 0; k < 2; ++k) {
+                    for (std::size_t k = 0; k < 4; ++k) {
                         if (theirs.weight[k] != 0) rows.add(theirs.of[k], weight * theirs.weight[k], block);
                     }
                 }
@@ -201,7 +312,7 @@ void Multigrid::coarsen(const BlockMatrix& fine, const Level& level, BlockMatrix
 }
 
 /// Whatever the matrix, some damping makes it positive.
-void Multigrid::factor_last(const BlockMatrix& matrix) {
+void Multigrid::factor_whole(const BlockMatrix& matrix, Level& level) {
     const auto size = static_cast<Eigen::Index>(3 * matrix.rows());
     Eigen::MatrixXd whole = Eigen::MatrixXd::Zero(size, size);
     for (std::size_t row = 0; row < matrix.rows(); ++row) {
@@ -214,45 +325,42 @@ void Multigrid::factor_last(const BlockMatrix& matrix) {
     double damping = 1e-6 * mean;
     do {
         whole.diagonal().array() += damping;
-        m_last.compute(whole);
+        level.whole.compute(whole);
         damping *= 8;
-    } while (m_last.info() != Eigen::Success && damping < 1e6 * mean);
+    } while (level.whole.info() != Eigen::Success && damping < 1e6 * mean);
 }
 
-void Multigrid::restrict_to(const Level& level, const std::vector<double>& fine,
-                            std::vector<double>& coarse) const {
-    const std::size_t pieces = level.first_member.size() - 1;
-    coarse.resize(3 * pieces);
-    each_row(pieces, [&](std::size_t piece) {
+void Multigrid::restrict_to(Level& level, const std::vector<double>& fine) const {
+    level.residual.resize(3 * level.rows);
+    each_row(level.rows, [&](std::size_t piece) {
         double sum[3]{};
         for (std::uint32_t m = level.first_member[piece]; m < level.first_member[piece + 1]; ++m) {
             const std::size_t row = level.members[m];
-            const Shares& shares = level.shares[row];
-            const double weight = shares.of[0] == piece ? shares.weight[0] : shares.weight[1];
+            const double weight = share_of(level.shares[row], piece);
             for (std::size_t k = 0; k < 3; ++k) sum[k] += weight * fine[3 * row + k];
         }
-        for (std::size_t k = 0; k < 3; ++k) coarse[3 * piece + k] = sum[k];
+        for (std::size_t k = 0; k < 3; ++k) level.residual[3 * piece + k] = sum[k];
     });
 }
 
-void Multigrid::add_pieces(const Level& level, const std::vector<double>& coarse,
-                           std::vector<double>& fine) const {
-    each_row(level.rows, [&](std::size_t row) {
+void Multigrid::add_pieces(const Level& level, std::vector<double>& fine) const {
+    each_row(level.shares.size(), [&](std::size_t row) {
         const Shares& shares = level.shares[row];
-        const double *one = &coarse[3 * std::size_t(shares.of[0])],
-                     *other = &coarse[3 * std::size_t(shares.of[1])];
-        for (std::size_t k = 0; k < 3; ++k)
-            fine[3 * row + k] += shares.weight[0] * one[k] + shares.weight[1] * other[k];
+        for (std::size_t s = 0; s < 4; ++s) {
+            if (shares.weight[s] == 0) continue;
+            for (std::size_t k = 0; k < 3; ++k)
+                fine[3 * row + k] += shares.weight[s] * level.step[3 * std::size_t(shares.of[s]) + k];
+        }
     });
 }
 
 void Multigrid::solve(std::size_t number, const std::vector<double>& residual, std::vector<double>& step) {
     Level& level = m_levels[number];
     step.resize(residual.size());
-    if (number + 1 == m_levels.size()) {
+    if (level.coarser.empty()) {
         const auto size = static_cast<Eigen::Index>(residual.size());
         Eigen::Map<Eigen::VectorXd>(step.data(), size) =
-            m_last.solve(Eigen::Map<const Eigen::VectorXd>(residual.data(), size));
+            level.whole.solve(Eigen::Map<const Eigen::VectorXd>(residual.data(), size));
         return;
     }
     each_row(level.rows, [&](std::size_t row) {
@@ -260,10 +368,12 @@ void Multigrid::solve(std::size_t number, const std::vector<double>& residual, s
         for (std::size_t k = 0; k < 3; ++k)
             step[3 * row + k] = a[k] * of[0] + a[k + 3] * of[1] + a[k + 6] * of[2];
     });
-    Level& next = m_levels[number + 1];
-    restrict_to(level, residual, next.residual);
-    solve(number + 1, next.residual, next.step);
-    add_pieces(level, next.step, step);
+    for (const std::size_t number_of_next : level.coarser) {
+        Level& next = m_levels[number_of_next];
+        restrict_to(next, residual);
+        solve(number_of_next, next.residual, next.step);
+        add_pieces(next, step);
+    }
 }
 
 void Multigrid::apply(const std::vector<double>& residual, std::vector<double>& step) {

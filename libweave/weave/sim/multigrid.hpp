@@ -23,14 +23,27 @@ struct Strand {
 template <class Real>
 std::vector<Strand> strands_of(const Fabric<Real>& fabric);
 
+/// Where rows lie, seen from above, and the periods of the cloth: 0 where it does not repeat.
+struct RowPlaces {
+    std::vector<std::array<double, 2>> at;
+    std::array<double, 2> period{};
+};
+
+template <class Real>
+RowPlaces places_of(const Fabric<Real>& fabric);
+
 /// A preconditioner that sees long waves: the sum of what single points do and of what ever longer pieces of
 /// yarn do, moving as one, up to whole yarns and bundles of them (Bramble, Pasciak, Xu 1990). A piece hands
 /// its movement on to the points between it and the next piece linearly. Symmetric and positive for every
 /// matrix, and all of it runs on any number of threads with the same result.
+///
+/// Yarns that cross do not quite move alike by pieces of each, so that a large sheet's long waves would be missed. For
+/// these, the shortest pieces also hand on to the nodes of a grid over the cloth, the same for all yarns, and
+/// that to ever coarser grids.
 class Multigrid : public Preconditioner {
   public:
-    /// Strands follow one another and cover all rows.
-    Multigrid(const Executor& executor, std::vector<Strand> strands);
+    /// Strands follow one another and cover all rows. Without `places` there are no grids.
+    Multigrid(const Executor& executor, std::vector<Strand> strands, RowPlaces places = {});
 
     void factor(const BlockMatrix& matrix);
     void apply(const std::vector<double>& residual, std::vector<double>& step) override;
@@ -38,35 +51,41 @@ class Multigrid : public Preconditioner {
     [[nodiscard]] std::size_t levels() const { return m_levels.size(); }
 
   private:
-    /// One or two pieces that a row belongs to, and how much.
+    /// Pieces that a row belongs to, and how much to each: two along a yarn, four nodes of a grid.
     struct Shares {
-        std::array<std::uint32_t, 2> of{};
-        std::array<double, 2> weight{1, 0};
+        std::array<std::uint32_t, 4> of{};
+        std::array<double, 4> weight{1, 0, 0, 0};
     };
-    /// Rows, the pivots of their matrix, and the pieces of the next level that they form.
+    /// Rows, the pivots of their matrix, and the levels that they hand on to. All but the first are pieces formed of the
+    /// rows of a finer level.
     struct Level {
         std::size_t rows = 0;
+        std::vector<Shares> shares;                        ///< per row of the finer level: its pieces here
+        std::vector<std::uint32_t> first_member, members;  ///< per piece: its rows in the finer level
+        std::vector<std::size_t> coarser;                  ///< indices of levels; none: solved as a whole
         std::vector<double> inverse;                       ///< of each pivot, 9 a row
-        std::vector<Shares> shares;                        ///< empty on the last level
-        std::vector<std::uint32_t> first_member, members;  ///< per piece: its rows
         BlockMatrix matrix;                                ///< not on the first level, whose matrix is given
+        Eigen::LLT<Eigen::MatrixXd> whole;
         std::vector<double> residual, step;
     };
 
-    void add_level(std::vector<Strand>& strands);
-    void list_members(Level& level, std::size_t pieces) const;
+    void add_pieces_of_yarns(std::size_t finer, std::vector<Strand>& strands);
+    bool add_grid(std::size_t finer, double spacing, RowPlaces& places);
+    void add_grids(std::size_t finer, RowPlaces places);
+    void add_level(std::size_t finer, std::vector<Shares> shares, std::size_t pieces);
+    [[nodiscard]] static RowPlaces places_of_pieces(const Level& pieces, const RowPlaces& places);
     void invert_pivots(const BlockMatrix& matrix, Level& level) const;
     void coarsen(const BlockMatrix& fine, const Level& level, BlockMatrix& coarse) const;
-    void factor_last(const BlockMatrix& matrix);
-    void restrict_to(const Level& level, const std::vector<double>& fine, std::vector<double>& coarse) const;
-    void add_pieces(const Level& level, const std::vector<double>& coarse, std::vector<double>& fine) const;
+    void factor(std::size_t number, const BlockMatrix& matrix);
+    static void factor_whole(const BlockMatrix& matrix, Level& level);
+    void restrict_to(Level& level, const std::vector<double>& fine) const;
+    void add_pieces(const Level& level, std::vector<double>& fine) const;
     void solve(std::size_t number, const std::vector<double>& residual, std::vector<double>& step);
     template <class Body>
     void each_row(std::size_t rows, const Body& body) const;
 
     const Executor& m_executor;
     std::vector<Level> m_levels;
-    Eigen::LLT<Eigen::MatrixXd> m_last;  ///< of the whole matrix of the last level
 };
 
 }  // namespace weave::sim

@@ -1,8 +1,11 @@
 #include <weave/sim/order.hpp>
 
+#include <Eigen/Geometry>
+
 #include <algorithm>
 #include <array>
 #include <cmath>
+#include <limits>
 #include <optional>
 
 namespace weave::sim {
@@ -73,6 +76,48 @@ std::optional<CrossingSpot> spot_by_search(const Thread& weft, const Thread& war
     return spot;
 }
 
+/// The places near their planned crossing at which two yarns are nearest.
+CrossingSpot nearest_spot(const Thread& weft, const Thread& warp, double t0, double s0) {
+    constexpr int pieces = 12;
+    constexpr double farthest = 1.5;  ///< key points
+    double least = std::numeric_limits<double>::infinity();
+    CrossingSpot spot;
+    for (int i = -pieces; i <= pieces; ++i) {
+        for (int j = -pieces; j <= pieces; ++j) {
+            const double t = clamped(weft, t0 + farthest * i / pieces * weft.per_key),
+                         s = clamped(warp, s0 + farthest * j / pieces * warp.per_key);
+            const Vec3 apart = weft.spline.place(t) - warp.spline.place(s);
+            if (apart.norm() >= least) continue;
+            least = apart.norm();
+            spot = {t, s, apart.z()};
+        }
+    }
+    return spot;
+}
+
+/// Upwards across both yarns where the cloth lies as woven, `weft_way` being 1 where the weft runs along y.
+Vec3 across_both(const Thread& weft, const Thread& warp, const CrossingSpot& at, double weft_way) {
+    return warp.spline.tangent(at.warp_at).cross(weft.spline.tangent(at.weft_at)) * weft_way;
+}
+
+/// Whether a crossing lies as the card says. Cloth that stands on edge or hangs over, as an opened pocket's does, shows
+/// nothing from above: there the yarns are looked at across both of them, where they are nearest.
+bool lies_as_planned(const Thread& weft, const Thread& warp, const std::optional<CrossingSpot>& spot,
+                     const CrossingSpot& nearest, double weft_way, bool weft_over) {
+    constexpr double steepest = 0.5;
+    const Vec3 up = across_both(weft, warp, spot.value_or(nearest), weft_way);
+    if (up.z() > steepest * up.norm()) return spot && (spot->height_mm > 0) == weft_over;
+    const Vec3 apart = weft.spline.place(nearest.weft_at) - warp.spline.place(nearest.warp_at);
+    return (across_both(weft, warp, nearest, weft_way).dot(apart) > 0) == weft_over;
+}
+
+/// 1 where a weft was planned to run along y, -1 where it runs back. Warps all run along x.
+double way_of(const YarnCurve& weft, std::size_t key) {
+    const std::size_t before = key > 0 ? key - 1 : key, after = std::min(key + 1, weft.keys.size() - 1);
+    if (before == after) return weft.shift.y() < 0 ? -1 : 1;
+    return weft.keys[after].place.y() < weft.keys[before].place.y() ? -1 : 1;
+}
+
 }  // namespace
 
 std::optional<CrossingSpot> find_crossing(const Thread& weft, const Thread& warp, std::size_t weft_key, std::size_t warp_key) {
@@ -91,8 +136,14 @@ std::vector<LostCrossing> lost_crossings(const ClothCurves& curves, const std::v
     std::vector<LostCrossing> lost;
     for (const Crossing& crossing : curves.crossings) {
         if (splines[crossing.weft].control.empty() || splines[crossing.warp].control.empty()) continue;
-        const std::optional<CrossingSpot> spot = find_crossing(curves, splines, crossing);
-        if (!spot || (spot->height_mm > 0) != crossing.weft_over) lost.push_back({crossing, spot.has_value()});
+        const YarnCurve& curve = curves.yarns[crossing.weft];
+        const Thread weft = thread_of(splines[crossing.weft], curve),
+                     warp = thread_of(splines[crossing.warp], curves.yarns[crossing.warp]);
+        const std::optional<CrossingSpot> spot = find_crossing(weft, warp, crossing.weft_key, crossing.warp_key);
+        const CrossingSpot nearest = nearest_spot(weft, warp, weft.per_key * static_cast<double>(crossing.weft_key),
+                                                  warp.per_key * static_cast<double>(crossing.warp_key));
+        if (!lies_as_planned(weft, warp, spot, nearest, way_of(curve, crossing.weft_key), crossing.weft_over))
+            lost.push_back({crossing, spot.has_value()});
     }
     return lost;
 }

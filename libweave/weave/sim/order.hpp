@@ -36,7 +36,8 @@ std::optional<CrossingSpot> find_crossing(const ClothCurves& curves, const std::
                                           const Crossing& crossing);
 
 /// Looks every crossing up in the relaxed yarns: where the projections of its two yarns cross, from the planned place
-/// on, and which lies above. `splines` has one entry for each yarn of `curves`; an empty one was left out, and so are
+/// on, and which lies above; where cloth stands on edge or hangs over, which lies on which side where they are nearest.
+/// `splines` has one entry for each yarn of `curves`; an empty one was left out, and so are
 /// its crossings.
 std::vector<LostCrossing> lost_crossings(const ClothCurves& curves, const std::vector<Spline>& splines);
 

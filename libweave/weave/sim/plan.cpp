@@ -285,24 +285,28 @@ class Planner {
         });
         if (pinned) return std::vector<std::uint8_t>(points, 1);
         const std::size_t axis = curve.system == System::warp ? 0 : 1;
-        const bool rims = !curve.is_periodic && m_rim[axis] == Boundary::frozen;
-        if (!rims && m_held[c].empty()) return {};
+        const bool ends = !curve.is_periodic && m_rim[axis] == Boundary::frozen;
         std::vector<std::uint8_t> frozen(points, 0);
-        if (m_request.region) freeze_rim(curve, frozen);
-        for (std::size_t i = 0; rims && i < std::min(rim_points, points); ++i) frozen[i] = frozen[points - 1 - i] = 1;
+        freeze_rim(curve, frozen);
+        for (std::size_t i = 0; ends && i < std::min(rim_points, points); ++i) frozen[i] = frozen[points - 1 - i] = 1;
         for (const std::size_t key : m_held[c]) hold(curve, key, frozen);
+        if (std::ranges::none_of(frozen, [](std::uint8_t held) { return held != 0; })) return {};
         return frozen;
     }
 
-    /// A cut-out is held all round: the yarns along its rim would slide off the cut ends of those that they cross.
+    /// A frozen rim holds the yarns along it too: they would slide off the cut ends of those that they cross.
     void freeze_rim(const YarnCurve& curve, std::vector<std::uint8_t>& frozen) const {
         const Region& region = m_plan.curves.region;
-        const double per_key = curve.keys.size() < 2 ? 1 : double(frozen.size() - 1) / double(curve.keys.size() - 1);
+        const bool rows = m_rim[0] == Boundary::frozen && !m_plan.curves.is_periodic[0],
+                   columns = m_rim[1] == Boundary::frozen && !m_plan.curves.is_periodic[1];
+        if (!rows && !columns) return;
+        const std::size_t pieces = curve.keys.size() - (curve.is_periodic ? 0 : 1);
+        const double per_key = double(frozen.size() - (curve.is_periodic ? 0 : 1)) / double(std::max<std::size_t>(1, pieces));
         for (std::size_t i = 0; i < frozen.size(); ++i) {
             const auto nearest = static_cast<std::size_t>(std::lround(static_cast<double>(i) / per_key));
             const KeyPoint& key = curve.keys[std::min(nearest, curve.keys.size() - 1)];
-            if (key.row == region.first_row || key.row == region.last_row || key.column == region.first_column ||
-                key.column == region.last_column)
+            if ((rows && (key.row == region.first_row || key.row == region.last_row)) ||
+                (columns && (key.column == region.first_column || key.column == region.last_column)))
                 frozen[i] = 1;
         }
     }

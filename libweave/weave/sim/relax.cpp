@@ -61,7 +61,7 @@ class Newton {
           m_state(state),
           m_options(options),
           m_hessian(energy.fabric()),
-          m_preconditioner(energy.executor(), strands_of(energy.fabric())) {}
+          m_preconditioner(energy.executor(), strands_of(energy.fabric()), places_of(energy.fabric())) {}
 
     RelaxResult run() {
         m_value = m_energy.evaluate(m_state, m_gradient);
@@ -118,8 +118,10 @@ class Newton {
         for (double& force : m_force) force = -force;
         m_result.curves_down = false;
         if (m_result.residual < exact_below && m_convex_steps == 0) {
-            if (step_with(Curvature::exact)) return true;
-            m_convex_steps = convex_run;
+            const bool done = step_with(Curvature::exact);
+            // Yarns still have far to go, or lie on a saddle: what is convex leads on faster.
+            if (!done || m_was_cut || m_result.curves_down) m_convex_steps = convex_run;
+            if (done) return true;
         }
         m_convex_steps -= m_convex_steps > 0 ? 1 : 0;
         return step_with(Curvature::convex);
@@ -145,7 +147,7 @@ class Newton {
                 damping += std::max(1.5 * lack(cg.negative_direction), damping);
                 continue;
             }
-            if (accept_step(damping)) return true;
+            if (make_safe(damping, attempt < most_solves) && accept_step(damping)) return true;
             damping = std::max(8 * damping, 1e-6);
         }
         if (curvature == Curvature::exact) damping = most_exact_damping / 8;
@@ -180,15 +182,52 @@ class Newton {
         return size > 0 ? std::max(0.0, -curvature / size) : 0;
     }
 
-    bool accept_step(double& damping) {
+    /// Makes a step such that no yarns can pass through one another: as a whole shorter, or shorter only where it must
+    /// be, whichever promises more. Yarn hardly stretches, so a step that is cut at places may be worth little: then
+    /// more damping, which shortens it evenly, serves better. False if it `may_damp` and asks for that.
+    bool make_safe(double& damping, bool may_damp) {
         m_hessian.to_slots(m_change_rows, m_change);
-        if (m_energy.safe_share(m_state, m_change, 1) < 0.5) {
-            m_energy.shorten(m_state, m_change);
-            m_hessian.to_rows(m_change, m_change_rows);
+        m_slope = slope_of(m_change_rows);
+        m_was_cut = false;
+        const double safe = m_energy.safe_share(m_state, m_change, 1);
+        if (safe >= 1) return m_slope < 0;
+        m_was_cut = safe < 0.5;
+        const double wanted = -m_slope / 2, whole = -m_slope * safe * (1 - safe / 2);
+        std::vector<Real> cut = m_change;
+        m_energy.shorten(m_state, cut);
+        std::vector<double> cut_rows;
+        m_hessian.to_rows(cut, cut_rows);
+        const double slope = slope_of(cut_rows), curvature = curvature_of(cut_rows),
+                     share = curvature > 0 ? std::min(1.0, -slope / curvature) : 1,
+                     parts = -share * slope - share * share * curvature / 2;
+        if (std::max(whole, parts) < least_kept * wanted && damping < most_damping) {
+            if (may_damp) return false;
+            damping = std::max(4 * damping, 1e-6);
         }
-        m_slope = 0;
-        for (std::size_t i = 0; i < m_change_rows.size(); ++i) m_slope -= m_force[i] * m_change_rows[i];
-        if (!(m_slope < 0)) return false;
+        if (parts > whole) {
+            for (Real& change : cut) change *= static_cast<Real>(share);
+            for (double& change : cut_rows) change *= share;
+            m_slope = share * slope;
+            m_change.swap(cut);
+            m_change_rows.swap(cut_rows);
+        }
+        return m_slope < 0;
+    }
+
+    [[nodiscard]] double slope_of(const std::vector<double>& change) const {
+        double slope = 0;
+        for (std::size_t i = 0; i < change.size(); ++i) slope -= m_force[i] * change[i];
+        return slope;
+    }
+
+    double curvature_of(const std::vector<double>& change) {
+        m_matrix.multiply(m_energy.executor(), change, m_product);
+        double curvature = 0;
+        for (std::size_t i = 0; i < change.size(); ++i) curvature += change[i] * m_product[i];
+        return curvature;
+    }
+
+    bool accept_step(double& damping) {
         const double most = m_energy.safe_share(m_state, m_change, longest_stretch);
         double share = std::min(1.0, most);
         m_before = m_state;
@@ -199,7 +238,7 @@ class Newton {
             const bool settles = std::abs(gain) <= noise && residual_of(m_trial) < m_result.residual;
             if (!falls && !settles) continue;
             const double expected = -share * m_slope * (1 - share / 2);
-            if (halving == 0 && gain > 0.5 * expected) damping = damping < 1e-8 ? 0 : damping / 4;
+            if (halving == 0 && gain > 0.5 * expected && !m_was_cut) damping = damping < 1e-8 ? 0 : damping / 4;
             if (halving > 1 || gain < 0.1 * expected) damping = std::max(4 * damping, 1e-6);
             const bool goes_on = falls && halving == 0 && gain > 1.5 * expected;
             take(value);
@@ -242,7 +281,8 @@ class Newton {
     }
 
     static constexpr double longest_stretch = 64, most_exact_damping = 1;
-    static constexpr int convex_run = 4;
+    static constexpr int convex_run = 4, most_solves = 3;
+    static constexpr double least_kept = 0.2, most_damping = 0.1;
     static constexpr std::size_t most_cg = 1500;
 
     Energy<Real>& m_energy;
@@ -257,6 +297,7 @@ class Newton {
     std::vector<float> m_scale;
     double m_value = 0, m_damping = 1e-3, m_exact_damping = 0, m_damped = 0;
     int m_convex_steps = 0;
+    bool m_was_cut = false;  ///< the step would have gone further than is safe
     std::size_t m_referred = 0;  ///< iteration whose state the reference force is of
     RelaxResult m_result;
     std::chrono::steady_clock::time_point m_start = std::chrono::steady_clock::now();
