@@ -320,6 +320,41 @@ TEST_CASE("damaged, foreign and oversized pictures are refused, whatever is in t
     });
 }
 
+/// A fax picture (CCITT group 4) of 8 by 8 pixels, a twill 2/2, of which libtiff gets these bytes to decode.
+std::string fax(const std::string& pixels) {
+    const auto number = [](std::size_t value, int bytes) {
+        std::string text;
+        for (int k = 0; k < bytes; ++k) text.push_back(static_cast<char>(value >> 8 * k & 0xff));
+        return text;
+    };
+    const std::vector<std::pair<std::size_t, std::size_t>> fields{{256, 8}, {257, 8}, {258, 1}, {259, 4},
+                                                                  {262, 0}, {273, 8}, {277, 1}, {278, 8},
+                                                                  {279, pixels.size()}};
+    std::string file = "II" + number(42, 2) + number(8 + pixels.size(), 4) + pixels + number(fields.size(), 2);
+    for (const auto& [tag, value] : fields) file += number(tag, 2) + number(4, 2) + number(1, 4) + number(value, 4);
+    return file + number(0, 4);
+}
+
+TEST_CASE("a damaged fax picture is refused, where libtiff makes up rows and reports success") {
+    const std::string pixels(
+        "\x26\xb9\x7c\xb8\x6e\x47\xcb\xe4\x70\xdc\xbe\x5f\x26\xa8\xbe\x5d\x13\x5c\xbe\x5c\x37\x23"
+        "\xe5\xf2\x38\x6e\x5f\x2f\x93\x54\x5f\x2e\x80\x04\x00\x40",
+        36);
+    const auto card = read_bitmap(fax(pixels));
+    REQUIRE(card);
+    for (std::size_t pick = 0; pick < 8; ++pick) {
+        for (std::size_t end = 0; end < 8; ++end) CHECK(card->card.weft_over(pick, end) == ((pick + end + 3) % 4 < 2));
+    }
+    CHECK_THAT(read_bitmap(fax(pixels.substr(0, 18))).error().message, Catch::Contains("is not a readable TIFF"));
+    std::size_t refused = 0;
+    for (std::size_t at = 0; at < 30; ++at) {
+        std::string damaged = pixels;
+        damaged[at] = static_cast<char>(damaged[at] ^ 0xff);
+        refused += read_bitmap(fax(damaged)) ? 0 : 1;
+    }
+    CHECK(refused > 20);
+}
+
 TEST_CASE("a few bytes that claim a picture of endless rows cost no memory") {
     // A PNG of two rows of 2^25 pixels in colours, as far as the start of its pixels.
     const std::string claim(

@@ -88,6 +88,8 @@ Status import_design(Program& program, const ImportRequest& request) {
                      request.given_option + " is for pictures; WIF says itself how it is to be read",
                      request.in};
     }
+    if (!wif && !is_bitmap(bytes))
+        return Error{ErrorCode::bad_input, "is neither a PNG, TIFF or BMP picture nor a WIF file", request.in};
     Result<DesignFromWif> read = wif ? read_wif(bytes) : design_from_bitmap(request, bytes);
     if (!read) return std::move(read).error().in(request.in);
     Design& design = read->design;

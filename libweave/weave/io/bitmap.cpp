@@ -65,17 +65,26 @@ bool starts_with(std::string_view bytes, std::string_view magic) {
     return bytes.substr(0, magic.size()) == magic;
 }
 
+using Decoder = Status (*)(std::string_view, RasterSink&);
+
+/// By the first bytes; nothing where they are no picture's.
+Decoder decoder_for(std::string_view bytes) {
+    if (starts_with(bytes, "\x89PNG\r\n\x1a\n")) return decode_png;
+    if (starts_with(bytes, std::string_view("II*\0", 4)) || starts_with(bytes, std::string_view("MM\0*", 4)))
+        return decode_tiff;
+    return starts_with(bytes, "BM") ? decode_bmp : nullptr;
+}
+
 Status decode(std::string_view bytes, RasterSink& sink) {
-    if (starts_with(bytes, "\x89PNG\r\n\x1a\n")) return decode_png(bytes, sink);
-    if (starts_with(bytes, std::string_view("II*\0", 4)) ||
-        starts_with(bytes, std::string_view("MM\0*", 4))) {
-        return decode_tiff(bytes, sink);
-    }
-    if (starts_with(bytes, "BM")) return decode_bmp(bytes, sink);
-    return bad_input("is neither a PNG, a TIFF nor a BMP picture");
+    const Decoder decoder = decoder_for(bytes);
+    return decoder != nullptr ? decoder(bytes, sink) : bad_input("is neither a PNG, a TIFF nor a BMP picture");
 }
 
 }  // namespace
+
+bool is_bitmap(std::string_view bytes) {
+    return decoder_for(bytes) != nullptr;
+}
 
 Result<BitmapFormat> bitmap_format_of(const std::filesystem::path& path) {
     const std::string extension = lower_extension(path);

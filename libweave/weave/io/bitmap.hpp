@@ -30,6 +30,9 @@ Result<BitmapFormat> bitmap_format_of(const std::filesystem::path& path);
 Result<std::string> write_bitmap(const CardImage& card, BitmapFormat format,
                                  const BitmapReading& reading = {});
 
+/// Whether bytes begin as a PNG, TIFF or BMP picture does.
+bool is_bitmap(std::string_view bytes);
+
 /// A card from such a file, whatever its format, recognised by its first bytes. Pictures that are not bilevel
 /// (two colours, black and white) are refused, with the first pixel that is neither. Warnings tell what was
 /// odd.

@@ -19,6 +19,8 @@ struct TiffTalk {
     bool writing = false;
     std::size_t at = 0;
     std::string error = "the file is damaged";
+    bool decoding = false;  ///< pixels are being read
+    bool guessed = false;   ///< libtiff went on after what it could not decode: the pixels are its invention
 
     [[nodiscard]] std::size_t size() const { return writing ? out.size() : in.size(); }
 };
@@ -71,13 +73,17 @@ int on_map(thandle_t handle, void** memory, toff_t* size) {
 void on_unmap(thandle_t, void*, toff_t) {}
 
 int on_error(TIFF*, void* user, const char*, const char* format, va_list words) {
+    TiffTalk& talk = *static_cast<TiffTalk*>(user);
     char line[200];
     std::vsnprintf(line, sizeof line, format, words);
-    static_cast<TiffTalk*>(user)->error = line;
+    talk.error = line;
+    talk.guessed = talk.guessed || talk.decoding;
     return 1;  // handled: libtiff prints nothing
 }
 
-int on_warning(TIFF*, void*, const char*, const char*, va_list) {
+/// Of fax pictures libtiff only warns where a row does not come out, makes one up, and reports success.
+int on_warning(TIFF* tiff, void* user, const char* module, const char* format, va_list words) {
+    if (static_cast<TiffTalk*>(user)->decoding) on_error(tiff, user, module, format, words);
     return 1;
 }
 
@@ -110,7 +116,7 @@ Status read_bilevel(TIFF* tiff, TiffTalk& talk, std::size_t width, std::size_t h
     std::vector<std::uint8_t> packed(static_cast<std::size_t>(line));
     std::vector<Colour> pixels(width);
     for (std::size_t y = 0; y < height; ++y) {
-        if (TIFFReadScanline(tiff, packed.data(), static_cast<std::uint32_t>(y), 0) != 1)
+        if (TIFFReadScanline(tiff, packed.data(), static_cast<std::uint32_t>(y), 0) != 1 || talk.guessed)
             return damaged(talk);
         for (std::size_t x = 0; x < width; ++x) {
             const bool one = (packed[x / 8] >> (7 - x % 8) & 1) != 0;
@@ -128,7 +134,8 @@ Status read_any(TIFF* tiff, TiffTalk& talk, std::size_t width, std::size_t heigh
             "is a TIFF of a kind that is too large to hold; save it with one bit a pixel, in strips");
     std::vector<std::uint32_t> raster(width * height);
     if (TIFFReadRGBAImageOriented(tiff, static_cast<std::uint32_t>(width), static_cast<std::uint32_t>(height),
-                                  raster.data(), ORIENTATION_TOPLEFT, 1) != 1) {
+                                  raster.data(), ORIENTATION_TOPLEFT, 1) != 1 ||
+        talk.guessed) {
         return damaged(talk);
     }
     std::vector<Colour> pixels(width);
@@ -181,6 +188,7 @@ Status decode_tiff(std::string_view bytes, RasterSink& sink) {
                        (photometric == PHOTOMETRIC_MINISWHITE || photometric == PHOTOMETRIC_MINISBLACK) &&
                        (orientation == ORIENTATION_TOPLEFT || orientation == ORIENTATION_BOTLEFT);
     if (!says) sink.warnings.push_back("the file does not say whether 0 is white; taken so");
+    talk.decoding = true;
     if (!plain) return read_any(tiff.get(), talk, width, height, sink);
     return read_bilevel(tiff.get(), talk, width, height, photometric == PHOTOMETRIC_MINISWHITE,
                         orientation == ORIENTATION_BOTLEFT, sink);

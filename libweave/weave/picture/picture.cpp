@@ -69,7 +69,7 @@ Result<PictureRequest> parse_view(std::string_view text, const Block& block) {
     }
     return Error{ErrorCode::usage,
                  "there is no view '" + std::string(text.substr(0, 40)) +
-                     "': choose card, face, back, floats, layers, weft:N, warp:N or block",
+                     "': choose card, face, back, floats, layers, weft:N, warp:N or block, or 3d of a .yarns file",
                  {}};
 }
 
