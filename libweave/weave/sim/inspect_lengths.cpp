@@ -27,8 +27,8 @@ double length_from_above(const Spline& spline) {
 /// Crimp of a yarn. One of several picks goes there and back, so of that the planned way as seen from above
 /// counts.
 double crimp_of(const SimulatedYarn& yarn, bool several_picks) {
-    if (!several_picks || yarn.spline.is_periodic) return take_up_of(yarn);
-    const double way = length_from_above({yarn.planned, false, {}});
+    if (!several_picks) return take_up_of(yarn);
+    const double way = length_from_above({yarn.planned, yarn.spline.is_periodic, yarn.spline.shift});
     return way > 0 ? (yarn.length_mm - way) / way : 0;
 }
 
