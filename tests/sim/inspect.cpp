@@ -80,6 +80,32 @@ TEST_CASE("take-up of a sine and of circle arcs is that of their formulas") {
     CHECK(take_up_of(arc) == Approx(pi / 2 - 1));
 }
 
+TEST_CASE("the crimp of a weft that wraps round counts its way there and back, in cloth that is periodic along the warp") {
+    Yarns yarns = straight_cloth({.rows = 2, .columns = 4, .layers = 1});
+    // One yarn of both picks: pick 1 to the right, pick 2 back, and on to the next repeat.
+    SimulatedYarn& weft = yarns.yarns[0];
+    weft.spline.control.clear();
+    for (int k = 0; k < 8; ++k) weft.spline.control.push_back(Vec3(0, 0.5 * k, 0.125));
+    for (int k = 0; k < 8; ++k) weft.spline.control.push_back(Vec3(1, 3.5 - 0.5 * k, 0.125));
+    weft.spline.shift = Vec3(2, 0, 0);
+    weft.planned = weft.spline.control;
+    weft.strain.assign(16, 0.01);
+    weft.contact_N.assign(16, 0);
+    weft.length_mm = 1.1 * sim::testing::length_of(weft.spline);
+    weft.planned_length_mm = 2;
+    for (Crossing& crossing : yarns.crossings) {
+        if (crossing.weft == 1) crossing.weft_key = 7 - crossing.weft_key;
+        crossing.weft = 0;
+        if (crossing.pick == 0) crossing.weft_key = crossing.end;
+        crossing.warp -= 1;
+    }
+    yarns.yarns.erase(yarns.yarns.begin() + 1);
+    const Result<Inspection> inspection = inspect(yarns);
+    REQUIRE(inspection);
+    REQUIRE(inspection->weft_crimp);
+    CHECK(inspection->weft_crimp->mean == Approx(0.1).margin(0.03));  // turns are rounded
+}
+
 TEST_CASE("take-up is told by beam, and whether ends that run alike take up alike") {
     StraightCloth wish;
     wish.layers = 1;
