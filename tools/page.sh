@@ -6,7 +6,7 @@ page_head() { # TITLE COMMAND
 <!doctype html><html lang="en"><head><meta charset="utf-8"><title>weave: $1</title>
 <meta name="viewport" content="width=device-width, initial-scale=1"><style>
 body{font:16px/1.5 "DejaVu Sans",system-ui,sans-serif;color:#222;background:#faf9f7;max-width:1200px;margin:2rem auto;padding:0 1.5rem}
-h1{font-weight:600;margin-bottom:0}h2{margin-top:3rem;border-top:1px solid #ddd;padding-top:1.5rem}pre{background:#f0eee9;padding:.8rem 1rem;overflow:auto;font-size:13px}
+h1{font-weight:600;margin-bottom:0}h2{margin-top:3rem;border-top:1px solid #ddd;padding-top:1.5rem}pre{background:#f0eee9;padding:.8rem 1rem;white-space:pre-wrap;overflow-wrap:anywhere;font-size:13px}
 section{display:grid;grid-template-columns:repeat(auto-fill,minmax(340px,1fr));gap:1.2rem}figure{margin:0;background:#fff;border:1px solid #e3e0da;border-radius:6px;padding:.8rem}
 img{width:100%;height:280px;object-fit:contain}figcaption{font-size:14px;color:#555;margin-top:.5rem}</style></head><body>
 <h1>$1</h1><p>Made by <code>$2</code>. Click a picture to see it whole.</p>
