@@ -5,6 +5,7 @@
 
 #include <csignal>
 #include <semaphore.h>
+#include <support/memory.hpp>
 #include <sys/resource.h>
 #include <sys/stat.h>
 #include <sys/wait.h>
@@ -131,6 +132,16 @@ TEST_CASE("the log is told of another name that keeps the old content") {
     REQUIRE(heard.size() == 1);
     CHECK_THAT(heard[0], Catch::StartsWith(file.string() + ": ") && Catch::Contains("hard link"));
     CHECK(read_file(folder.path / "b").value() == "older");
+}
+
+TEST_CASE("a file that is too large is refused by its size, before it is read") {
+    const Folder folder;
+    const fs::path file = folder.path / "hollow";
+    REQUIRE(write_file(file, ""));
+    fs::resize_file(file, std::uintmax_t{1} << 30);  // takes no room on the disk
+    const double before = testing::peak_mb();
+    REQUIRE_THAT(read_file(file, std::uint64_t{1} << 29).error().text(), Catch::Contains("larger than the limit"));
+    CHECK(testing::peak_mb() - before < 100);
 }
 
 TEST_CASE("what cannot be read is refused with its name") {

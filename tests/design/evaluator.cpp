@@ -417,6 +417,53 @@ TEST_CASE("an evaluator holds no more than its budget and computes what it forgo
     CHECK(lavish.held() == fresh.held());  // what a removed block held is counted no more
 }
 
+namespace {
+
+/// The least limit, to 20 cells, within which the cloth can be made.
+std::size_t least_limit(const Design& design) {
+    std::size_t limit = 0;
+    while (!Evaluator(0, limit).evaluate(design)) limit += 20;
+    return limit;
+}
+
+}  // namespace
+
+TEST_CASE("blocks that are needed at the same time stay within the limit, or the one beyond it is named") {
+    Design design = design_of({{"unit", plain()}}, "cloth");  // 2 by 2
+    std::vector<std::string> parts;
+    for (std::size_t k = 0; k < 6; ++k) {
+        parts.push_back("t" + std::to_string(k));
+        design.blocks[parts.back()] = node(TileOperation{"unit", 5, 5 + k, 1});  // 10 by 10, 12, … 20
+    }
+    design.blocks["cloth"] = stencil_of(parts, 1, 6, {0, 1, 2, 3, 4, 5});
+    const std::size_t least = least_limit(design);
+    const Error error = Evaluator(0, least / 2).evaluate(design).error();
+    CHECK(error.code == ErrorCode::bad_input);
+    CHECK_THAT(error.where, Catch::StartsWith("blocks.t"));
+    CHECK_THAT(error.message, Catch::Contains("limit of " + std::to_string(least / 2) + " cells"));
+    Evaluator tight(0, least / 2);
+    REQUIRE_FALSE(tight.evaluate(design));
+    CHECK(tight.computed() < 7);  // what is refused is not made, nor what comes after it
+    edited(design, SetRoot{"t0"});
+    CHECK(tight.evaluate(design));
+}
+
+TEST_CASE("a chain of blocks holds two at a time, whatever its length; flips need one more") {
+    const std::size_t least = least_limit(renumbered(10, 10, 10));
+    Design design = renumbered(10, 10, 20);
+    CHECK(least_limit(design) < least + 400);  // its stacks become more, its blocks do not
+    Node last = *design.blocks.at("b20");
+    last.flips.push_back({0, 0, true});
+    edited(design, PutBlock{"b20", std::make_shared<const Node>(last)});
+    CHECK(least_limit(design) > least + 100);
+}
+
+TEST_CASE("what is larger than any block may be is refused for that, not for the limit") {
+    const Design design =
+        design_of({{"unit", plain()}, {"cloth", node(TileOperation{"unit", 1 << 20, 1 << 20, 1})}}, "cloth");
+    CHECK_THAT(evaluate(design).error().message, Catch::Contains("crossings"));
+}
+
 TEST_CASE("whatever the budget, the cloth and its lost flips are the same") {
     for_all(
         [](Random& random) {

@@ -195,6 +195,18 @@ TEST_CASE("tile refuses a cloth that is larger than any card may be") {
                  {"crossings"});
 }
 
+TEST_CASE("a card that no file of its kind holds is refused with the file's name and what to do") {
+    const Workshop shop;
+    shop.must({"preset", "plain", "-o", "plain.weave"});
+    shop.must({"tile", "plain.weave", "--x", "2100000", "-o", "tall.weave"});
+    shop.must({"tile", "plain.weave", "--x", "1050000", "-o", "less.weave"});
+    shop.refused({"card", "tall.weave", "-o", "tall.png"}, 3, {"tall.png", "4200000", "4194304"});
+    shop.refused({"card", "tall.weave", "-o", "tall.wif"}, 3, {"tall.wif", "2097152", "smaller repeat"});
+    shop.refused({"card", "less.weave", "-o", "less.wif"}, 3, {"less.wif", "2097152", "bitmap"});
+    CHECK(shop.json({"card", "tall.weave", "-o", "tall.png"}, 3).at("error").at("where") == "tall.png");
+    shop.must({"card", "less.weave", "-o", "less.png"});
+}
+
 TEST_CASE("a bare card finds its rows and columns by itself") {
     const Workshop shop;
     shop.must({"samples", "layer-to-layer", "-o", "l.weave"});

@@ -88,6 +88,8 @@ TEST_CASE("a call that makes no sense ends with 2 and says what is wrong with it
         {{"samples", "plain"}, {"-o"}},
         {{"samples", "-o", "new.weave"}, {"NAME"}},
         {{"tile", "t.weave", "--x", "0", "-o", "new.weave"}, {"--x"}},
+        {{"tile", "t.weave", "--x", "16777217", "-o", "new.weave"}, {"--x", "16777216"}},
+        {{"tile", "t.weave", "--z", "16777217", "-o", "new.weave"}, {"--z", "16777216"}},
         {{"tile", "t.weave", "--x", "two", "-o", "new.weave"}, {"--x", "two"}},
         {{"attach", "t.weave", "t.weave", "--face", "up", "-o", "new.weave"}, {"--face", "up", "+z"}},
         {{"attach", "t.weave", "t.weave", "-o", "new.weave"}, {"--face"}},

@@ -83,13 +83,12 @@ void add_info(CLI::App& app, Program& program) {
 }
 
 /// The design as WIF, read back and its card compared. WIF fixes the orientation itself.
-Result<std::string> card_as_wif(const Cloth& cloth, const CardImage& card, const std::string& out) {
+Result<std::string> card_as_wif(const Cloth& cloth, const CardImage& card) {
     WEAVE_TRY(std::string bytes, write_wif(cloth.design, *cloth.evaluation.block, card));
     WEAVE_TRY(const DesignFromWif back, read_wif(bytes));
     WEAVE_TRY(const Evaluation again, evaluate(back.design));
     if (again.block->card_image() != card)
-        return system_fault("the WIF file does not read back as the card that it was; nothing is written",
-                            out);
+        return system_fault("the WIF file does not read back as the card that it was; nothing is written");
     return bytes;
 }
 
@@ -105,9 +104,10 @@ Status write_card(Program& program, const std::string& file, const std::string& 
     WEAVE_TRY(const Cloth cloth, load_cloth(program, file));
     const Progress progress("writing " + out);
     const CardImage card = cloth.evaluation.block->card_image();
-    WEAVE_TRY(const std::string bytes,
-              wif ? card_as_wif(cloth, card, out) : write_proven_bitmap(card, *format, reading));
-    WEAVE_CHECK_OK(write_file(out, bytes));
+    const Result<std::string> bytes =
+        wif ? card_as_wif(cloth, card) : write_proven_bitmap(card, *format, reading);
+    if (!bytes) return Error(bytes.error()).in(out);
+    WEAVE_CHECK_OK(write_file(out, *bytes));
     program.answer(
         {{"file", out}, {"picks", card.picks()}, {"ends", card.ends()}, {"card_sha256", card.sha256()}},
         on_one_line(out) + ": " + counted(card.picks(), "pick") + " and " + counted(card.ends(), "end") +

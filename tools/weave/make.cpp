@@ -119,7 +119,7 @@ void add_tile(CLI::App& app, Program& program) {
     const auto file = std::make_shared<std::string>();
     const auto out = std::make_shared<std::string>();
     const auto times = std::make_shared<TileOperation>();
-    const CLI::Validator range = between(std::size_t{1}, std::size_t{1} << 30);
+    const CLI::Validator range = between(std::size_t{1}, most_times);
     command->add_option("FILE", *file, "the .weave file to repeat")->required();
     command->add_option("--x", times->x, "times along the warp, 1 if left out")->check(range)->type_name("N");
     command->add_option("--y", times->y, "times along the weft")->check(range)->type_name("N");

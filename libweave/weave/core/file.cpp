@@ -223,8 +223,12 @@ Result<std::string> read_file(const fs::path& path, std::uint64_t limit) {
     struct stat facts {};
     if (::fstat(file.number(), &facts) != 0) return fault(path, "examine");
     if (!S_ISREG(facts.st_mode)) return bad_input("is not a regular file", path.string());
+    const auto too_large = [&] {
+        return bad_input("is larger than the limit of " + std::to_string(limit) + " bytes", path.string());
+    };
+    if (static_cast<std::uint64_t>(facts.st_size) > limit) return too_large();  // without reading it first
     std::string bytes;
-    bytes.reserve(std::min<std::uint64_t>(static_cast<std::uint64_t>(facts.st_size), limit) + 1);
+    bytes.reserve(static_cast<std::size_t>(facts.st_size) + 1);
     char buffer[1 << 16];
     while (true) {
         const ssize_t got = ::read(file.number(), buffer, sizeof buffer);
@@ -232,10 +236,7 @@ Result<std::string> read_file(const fs::path& path, std::uint64_t limit) {
         if (got < 0) return fault(path, "read");
         if (got == 0) return bytes;
         bytes.append(buffer, static_cast<std::size_t>(got));
-        if (bytes.size() > limit) {
-            return bad_input("is larger than the limit of " + std::to_string(limit) + " bytes",
-                             path.string());
-        }
+        if (bytes.size() > limit) return too_large();  // it grew meanwhile, or its size is not told
     }
 }
 

@@ -50,11 +50,89 @@ Result<BlockPtr> block_of(const Node& node, const std::vector<BlockPtr>& childre
 
 constexpr std::size_t most_versions = 8;
 
-/// What a block holds: its cells, and the slots of its stacks.
-std::size_t weight(const Block& block) {
+std::size_t slots_of(const Block& block) {
     std::size_t slots = 0;
     for (const Stack& stack : block.stacks()) slots += stack.height();
-    return block.cells().size() + slots;
+    return slots;
+}
+
+/// What a block holds: its cells, and the slots of its stacks.
+std::size_t weight(const Block& block) {
+    return block.cells().size() + slots_of(block);
+}
+
+/// What a block holds in memory.
+struct Size {
+    std::size_t lines = 0, cells = 0, stacks = 0, slots = 0;  ///< lines: rows and columns
+
+    /// In units of 4 bytes: a row or column has its count and where it begins; a stack is an object of its
+    /// own beside its slots.
+    [[nodiscard]] std::size_t units() const { return 3 * lines + cells + 16 * stacks + slots; }
+};
+
+Size size_of(const Block& block) {
+    return {block.rows() + block.columns(), block.cells().size(), block.stacks().size(), slots_of(block)};
+}
+
+Size sum(const Size& a, const Size& b) {
+    return {a.lines + b.lines, a.cells + b.cells, a.stacks + b.stacks, a.slots + b.slots};
+}
+
+/// At most what the block that is made from these will hold. Presets and slices are small, or as small as the
+/// document that holds them; nothing is said of a block that its own operation refuses, with better words.
+Size size_to_be(const StacksLeaf& leaf, const std::vector<BlockPtr>&) {
+    return size_of(*leaf.block);
+}
+Size size_to_be(const CardLeaf& leaf, const std::vector<BlockPtr>&) {
+    return {leaf.card->picks() + leaf.card->ends(), leaf.card->picks() * leaf.card->ends(), 0, 0};
+}
+Size size_to_be(const PresetLeaf&, const std::vector<BlockPtr>&) {
+    return {0, 0, 0, 0};
+}
+Size size_to_be(const SliceLeaf&, const std::vector<BlockPtr>&) {
+    return {0, 0, 0, 0};
+}
+Size size_to_be(const TileOperation& operation, const std::vector<BlockPtr>& children) {
+    const Block& block = *children[0];
+    const auto& [of, x, y, z] = operation;
+    if (x > most_yarns || y > most_yarns || z > most_yarns ||
+        !check_card_size(block.picks() * x, block.ends() * y) ||
+        !check_slots(block.stacks().size(), block.height() * z))
+        return {0, 0, 0, 0};
+    const Size one = size_of(block);
+    return {block.rows() * x + block.columns() * y, one.cells * x * y, one.stacks,
+            one.stacks * block.height() * z};
+}
+Size size_to_be(const AttachOperation& operation, const std::vector<BlockPtr>& children) {
+    const Size one = size_of(*children[0]), other = size_of(*children[1]);
+    if (operation.face != Face::plus_z && operation.face != Face::minus_z) return sum(one, other);
+    const std::size_t piles = std::min(one.cells, one.stacks * other.stacks),
+                      height = children[0]->height() + children[1]->height();
+    return {one.lines, one.cells, piles, std::min(piles * height, most_slots)};
+}
+Size size_to_be(const StencilOperation& operation, const std::vector<BlockPtr>& children) {
+    const StencilMap& map = *operation.map;
+    Size size{map.rows + map.columns, map.blocks.size(), 0, 0};
+    for (const BlockPtr& child : children) size = sum(size, {0, 0, child->stacks().size(), slots_of(*child)});
+    return size;
+}
+Size size_to_be(const RenumberOperation&, const std::vector<BlockPtr>& children) {
+    const Size size = size_of(*children[0]);
+    return sum(size, {0, 0, size.stacks, size.slots});
+}
+
+/// At most what is held, beside its children, while the block of this node is made.
+std::size_t needed_for(const Node& node, const std::vector<BlockPtr>& children) {
+    const std::size_t once =
+        std::visit([&](const auto& source) { return size_to_be(source, children).units(); }, node.source);
+    return node.flips.empty() ? once : 2 * once;  // the block without its flips, and with them
+}
+
+Error too_much(const std::string& name, std::size_t limit) {
+    return bad_input("this block and those that are needed at the same time hold more than the limit of " +
+                         std::to_string(limit) +
+                         " cells of memory; make the cloth from fewer or smaller blocks",
+                     "blocks." + name);
 }
 
 }  // namespace
@@ -106,14 +184,16 @@ void Evaluator::recognise(const std::string& name, const NodePtr& node) {
 }
 
 /// The block of the last name. Only what it needs and is not remembered is made; each block is at hand as
-/// long as something is still to be made from it, whatever the budget.
+/// long as something is still to be made from it, whatever the budget; but all of them within the limit.
 Result<BlockPtr> Evaluator::cloth(const std::vector<std::string>& order) {
     std::map<std::string, std::size_t> uses{{order.back(), 1}};
     std::map<std::string, BlockPtr> at_hand;
+    std::size_t held = 0;  // by the blocks at hand
     for (auto name = order.rbegin(); name != order.rend(); ++name) {
         if (!uses.contains(*name)) continue;
         if (const BlockPtr& block = latest(*name).block) {
             at_hand[*name] = block;
+            held += size_of(*block).units();
             touch(latest(*name));
             continue;
         }
@@ -124,10 +204,14 @@ Result<BlockPtr> Evaluator::cloth(const std::vector<std::string>& order) {
         std::vector<BlockPtr> children;
         const std::vector<std::string> child_names = children_of(*latest(name).node);
         for (const std::string& child : child_names) children.push_back(at_hand.at(child));
+        if (held + needed_for(*latest(name).node, children) > m_limit) return too_much(name, m_limit);
         WEAVE_CHECK_OK(make(name, children));
         at_hand[name] = latest(name).block;
+        held += size_of(*at_hand[name]).units();
         for (const std::string& child : child_names) {
-            if (--uses[child] == 0) at_hand.erase(child);
+            if (--uses[child] > 0) continue;
+            held -= size_of(*at_hand.at(child)).units();
+            at_hand.erase(child);
         }
         keep_within_budget();
     }

@@ -33,11 +33,18 @@ class Evaluator {
     /// Some 256 MB.
     static constexpr std::size_t standard_budget = std::size_t{1} << 26;
 
-    /// `budget` is what the remembered blocks may hold, in cells and slots of different stacks, 4 bytes each.
-    /// The block that was used last is remembered whatever its size.
-    explicit Evaluator(std::size_t budget = standard_budget) : m_budget(budget) {}
+    /// Some 6.4 GB: three of the largest blocks.
+    static constexpr std::size_t standard_limit = std::size_t{3} << 29;
 
-    /// The cloth. Errors carry the place, such as `blocks.toe`.
+    /// `budget` is what the remembered blocks may hold, in cells and slots of different stacks, 4 bytes each.
+    /// The block that was used last is remembered whatever its size. `limit` is what all blocks that are at
+    /// hand at once may hold while a cloth is made: those from which something is still to be made, and the
+    /// one that is being made; in units of 4 bytes, see FORMAT.md.
+    explicit Evaluator(std::size_t budget = standard_budget, std::size_t limit = standard_limit)
+        : m_budget(budget), m_limit(limit) {}
+
+    /// The cloth. Errors carry the place, such as `blocks.toe`; a block that does not fit within the limit
+    /// is refused before it is made.
     Result<Evaluation> evaluate(const Design& design);
     /// One named block of the design.
     Result<Evaluation> evaluate(const Design& design, const std::string& block);
@@ -66,7 +73,7 @@ class Evaluator {
     [[nodiscard]] Version& latest(const std::string& name) { return m_known.at(name).front(); }
 
     std::map<std::string, std::vector<Version>> m_known;  ///< of each name its versions, the latest first
-    std::size_t m_budget, m_held = 0;
+    std::size_t m_budget, m_limit, m_held = 0;
     std::size_t m_computed = 0, m_last_id = 0, m_clock = 0;
 };
 

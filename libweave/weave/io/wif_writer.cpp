@@ -1,6 +1,7 @@
 #include <weave/core/file.hpp>
 #include <weave/core/json.hpp>
 #include <weave/core/text.hpp>
+#include <weave/io/raster.hpp>
 #include <weave/io/wif.hpp>
 #include <weave/io/wif_private.hpp>
 
@@ -15,6 +16,10 @@ namespace {
 using namespace wif;
 
 constexpr std::string_view line_end = "\r\n";
+
+/// Each has up to three lines; what else the file says has a quarter of all.
+constexpr std::size_t most_threads_together = (most_lines - most_lines / 4) / 3;
+static_assert(most_threads_together <= most_threads);
 
 /// The file as it grows, and the sections that it holds.
 class Text {
@@ -162,7 +167,7 @@ Status write_lift_plan(Text& text, const CardImage& card, const Shafts& shafts) 
         }
         text.line(pick + 1, lifted.empty() ? "0" : lifted);
         if (text.body().size() > default_file_limit / 2)
-            return invalid("the lift plan is too large for a WIF file; export a bitmap instead");
+            return bad_input("the lift plan is too large for a WIF file; write a bitmap (.png, .tif) instead");
     }
     return {};
 }
@@ -170,11 +175,12 @@ Status write_lift_plan(Text& text, const CardImage& card, const Shafts& shafts) 
 Status check_size(const Block& block, const CardImage& card) {
     if (block.picks() != card.picks() || block.ends() != card.ends())
         return invalid("the card image is not that of the block");
-    if (3 * (card.picks() + card.ends()) > most_lines - most_lines / 4 || card.picks() > most_threads ||
-        card.ends() > most_threads) {
-        return invalid("has too many picks or ends for a WIF file; export a bitmap instead");
-    }
-    return {};
+    if (card.picks() + card.ends() <= most_threads_together) return {};
+    const bool fits_a_bitmap = std::max(card.picks(), card.ends()) <= longest_side;
+    return bad_input("a card of " + std::to_string(card.picks()) + " picks and " + std::to_string(card.ends()) +
+                     " ends is larger than the limit of a WIF file, " + std::to_string(most_threads_together) +
+                     " together; write " + (fits_a_bitmap ? "a bitmap (.png, .tif)" : "a smaller repeat") +
+                     " instead");
 }
 
 }  // namespace
@@ -184,7 +190,7 @@ Result<std::string> write_wif(const Design& design, const Block& block, const Ca
     WEAVE_CHECK_OK(check_size(block, card));
     const Shafts shafts = shafts_of(card);
     const std::size_t count = shafts.first_end.size();
-    if (count > most_shafts) return invalid("lifts its ends in too many ways for a WIF file");
+    if (count > most_shafts) return bad_input("lifts its ends in too many ways for a WIF file; write a bitmap (.png, .tif) instead");
     const ThreadLooks warp = looks_of_ends(design.warp, card.ends()),
                       weft = looks_of_picks(design.weft, block);
     Text text;
