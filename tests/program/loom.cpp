@@ -174,6 +174,10 @@ TEST_CASE("export writes card, pick table and manifest, and what the manifest sa
         const std::string profile = *weave::read_file(loom(name));
         CHECK(said.at("loom").at("name") == weave::parse_json(profile)->at("name"));
         CHECK(said.at("loom").at("maker") == weave::parse_json(profile)->at("maker"));
+        CHECK(said.at("loom").at("revision") == weave::parse_json(profile)->at("revision"));
+        CHECK_FALSE(said.at("loom").contains("version"));
+        CHECK(said.at("loom").at("sha256") ==
+              weave::sha256_hex(weave::canonical_json(*weave::parse_json(profile))));
         CHECK(said.at("files")[0].at("format") == (tiff ? "tiff" : "png"));
         CHECK(said.at("files")[1].at("format") == "pick-table-csv");
         for (const Json& file : said.at("files"))

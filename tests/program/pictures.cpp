@@ -98,3 +98,34 @@ TEST_CASE("a card written as WIF is imported again as the same card, whatever it
         CHECK(shop.json({"info", "back.weave"}).at("card_sha256") == card.at("card_sha256"));
     }
 }
+
+TEST_CASE("card tells in one line what WIF cannot hold of a design, and only what the design has") {
+    const Workshop shop;
+    const auto lost = [&](const Json& scene, const std::string& sample, const std::string& out) {
+        shop.must({"samples", sample, "-o", "d.weave"});
+        Json design = Json::parse(shop.get("d.weave"));
+        design["scene"].update(scene);
+        shop.put("d.weave", design.dump());
+        const program_tests::Ended ended = shop.run({"card", "d.weave", "-o", out});
+        CHECK(ended.exit == 0);
+        CHECK(shop.has(out));
+        return ended.complaints();
+    };
+    using Lines = std::vector<std::string>;
+    const std::string head = "weave: c.wif: WIF cannot hold, and the file does not say: ";
+    CHECK(lost({}, "twill-g", "c.wif") == Lines{});
+    CHECK(lost({}, "shoe-baby", "c.png") == Lines{});
+    CHECK(lost({}, "shoe-baby", "c.wif") == Lines{head + "which yarns are loose on purpose, that the wefts turn "
+                                                         "(weft_mode wraparound), the boundaries"});
+    CHECK(lost({{"pins", {{{"system", "pick"}, {"number", 1}}}}}, "twill-g", "c.wif") == Lines{head + "the pins"});
+    CHECK(lost({{"gravity", true}}, "twill-g", "c.wif") == Lines{head + "the rest of the scene"});
+    CHECK(lost({{"fields",
+                 {{{"centre_mm", {1, 1, 0}}, {"radius_mm", 1}, {"strength_N_per_mm", 1}}}}},
+               "twill-g", "c.wif") == Lines{head + "the fields"});
+    CHECK(lost({{"boundary_x", "frozen"}}, "twill-g", "c.wif") == Lines{head + "the boundaries"});
+    // What is told is true: these are not there when the file comes back.
+    shop.must({"samples", "shoe-baby", "-o", "d.weave"});
+    shop.must({"card", "d.weave", "-o", "c.wif"});
+    shop.must({"import", "c.wif", "-o", "back.weave"});
+    CHECK(Json::parse(shop.get("back.weave")).at("scene").at("weft_mode") == "periodic");
+}

@@ -208,3 +208,35 @@ TEST_CASE("pinned yarns and crossings stay where they are planned") {
         }
     }
 }
+
+TEST_CASE("a pin on a yarn that the cloth does not have is refused, and told by info and check") {
+    const Workshop shop;
+    shop.must({"samples", "twill-g", "-o", "d.weave"});
+    const Json info = shop.json({"info", "d.weave"});
+    const std::size_t picks = info.at("picks"), ends = info.at("ends");
+    const std::string loom = std::string(WEAVE_SOURCE_DIR) + "/db/looms/tc2.json";
+    const auto pin = [&](const char* system, std::size_t number) {
+        Json design = Json::parse(shop.get("d.weave"));
+        design["scene"]["pins"] = {{{"system", "pick"}, {"number", 0}}, {{"system", system}, {"number", number}}};
+        shop.put("p.weave", design.dump());
+    };
+    for (const auto& [system, count] : {std::pair{"pick", picks}, {"end", ends}}) {
+        INFO(system);
+        const std::vector<std::string> pieces{"p.weave: scene.pins[1].number",
+                                              "is " + std::to_string(count) + ",",
+                                              std::string(system) + "s count from 0 to " + std::to_string(count - 1)};
+        pin(system, count);
+        shop.refused({"simulate", "p.weave", "-o", "p.yarns"}, 3, pieces);
+        shop.refused({"simulate", "p.weave", "--explain"}, 3, pieces);
+        for (const std::vector<std::string>& words :
+             {std::vector<std::string>{"info", "p.weave"}, {"check", "p.weave", "--loom", loom}}) {
+            const Ended ended = shop.run(words);
+            CHECK(ended.exit == 0);
+            REQUIRE(ended.complaints().size() == 1);
+            for (const std::string& piece : pieces) CHECK(ended.complaints()[0].find(piece) != std::string::npos);
+        }
+        pin(system, count - 1);
+        shop.must({"simulate", "p.weave", "--explain"});
+        CHECK(shop.run({"info", "p.weave"}).complaints().empty());
+    }
+}

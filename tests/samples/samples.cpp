@@ -13,6 +13,7 @@
 #include <filesystem>
 #include <set>
 #include <string>
+#include <string_view>
 #include <vector>
 
 using namespace weave;
@@ -130,6 +131,8 @@ TEST_CASE("Every sample validates without errors on the loom that it names") {
             if (finding.severity != Severity::error) continue;
             FAIL_CHECK(sample.name << ": " << finding.rule << ": " << finding.message);
         }
+        const bool shoe = std::string_view(sample.name).substr(0, 4) == "shoe";
+        if (shoe) CHECK(design.scene.weft_mode == WeftMode::wraparound);
         if (design.scene.weft_mode == WeftMode::wraparound) {
             CHECK(std::count(report.passed.begin(), report.passed.end(), "turn.caught") == 1);
         }
@@ -385,6 +388,18 @@ TEST_CASE(
     CHECK(block.picks() == 6000);
     CHECK(block.rows() == 1000);
     CHECK(block.columns() == 400);
+}
+
+TEST_CASE("Adult shoe: its shuttles' turns are judged on its loom, and none is loose, crossed or cut") {
+    const Sample& sample = *find_sample("shoe-adult");
+    const Design design = sample.make();
+    CHECK(design.scene.boundary_y == Boundary::free);
+    const CheckReport report = check_for_loom(design, evaluate(design).value(), loom_of(sample));
+    for (const char* rule : {"turn.caught", "turn.crossed", "turn.cut"}) {
+        INFO(rule);
+        CHECK(std::count(report.passed.begin(), report.passed.end(), rule) == 1);
+    }
+    CHECK(report.count(Severity::error) == 0);
 }
 
 TEST_CASE("Adult shoe: no float on a face is longer than its loom allows") {

@@ -4,6 +4,7 @@
 #include <weave/block/flip.hpp>
 #include <weave/core/text.hpp>
 #include <weave/design/document.hpp>
+#include <weave/design/pins.hpp>
 
 #include <iostream>
 
@@ -96,6 +97,11 @@ Result<Cloth> load_cloth(Program& program, const std::string& file) {
     if (!evaluation) return std::move(evaluation).error().in(file);
     for (const LostFlip& lost : evaluation->lost_flips) program.note(file + ": " + lost_flip_line(lost));
     return Cloth{std::move(design), std::move(evaluation).value()};
+}
+
+void note_stray_pin(const Program& program, const Cloth& cloth, const std::string& file) {
+    const Status status = check_pins(cloth.design.scene, *cloth.evaluation.block);
+    if (!status) program.note(file + ": " + status.error().text() + "; it cannot be simulated so");
 }
 
 std::string given_reading_option(const CLI::App* command) {

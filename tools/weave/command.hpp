@@ -59,6 +59,9 @@ struct Cloth {
 };
 Result<Cloth> load_cloth(Program& program, const std::string& file);
 
+/// Tells on standard error where the scene pins a yarn that the cloth does not have.
+void note_stray_pin(const Program& program, const Cloth& cloth, const std::string& file);
+
 /// Checks that a new design evaluates, saves it, and tells what came out. `sources` names what it was made
 /// from: that is where a person looks when it does not fit together.
 Status save_cloth(Program& program, const Design& design, const std::string& file, const std::string& sources,

@@ -50,6 +50,7 @@ std::string tree_in_words(const Design& design) {
 
 Status tell_info(Program& program, const std::string& file) {
     WEAVE_TRY(const Cloth cloth, load_cloth(program, file));
+    note_stray_pin(program, cloth, file);
     const Block& block = *cloth.evaluation.block;
     const std::string card = block.card_image().sha256(), design = design_sha256(cloth.design);
     const Json json{{"title", cloth.design.title},
@@ -82,6 +83,35 @@ void add_info(CLI::App& app, Program& program) {
     on_run(command, program, [=, &program] { return tell_info(program, *file); });
 }
 
+bool has_loose_yarns(const Block& block) {
+    return std::ranges::any_of(block.stacks(), [](const Stack& stack) {
+        return std::ranges::any_of(stack.slots(), [](Slot slot) { return slot.is_loose(); });
+    });
+}
+
+/// What a design has and WIF cannot hold, in the weaver's words; empty where nothing is lost but its tree.
+std::string lost_in_wif(const Cloth& cloth) {
+    const Scene usual;
+    const Scene& scene = cloth.design.scene;
+    Scene rest = scene;
+    rest.weft_mode = usual.weft_mode;
+    rest.boundary_x = usual.boundary_x;
+    rest.boundary_y = usual.boundary_y;
+    rest.pins.clear();
+    rest.fields.clear();
+    std::string lost;
+    const auto add = [&](bool has, const char* what) {
+        if (has) lost += (lost.empty() ? "" : ", ") + std::string(what);
+    };
+    add(has_loose_yarns(*cloth.evaluation.block), "which yarns are loose on purpose");
+    add(scene.weft_mode == WeftMode::wraparound, "that the wefts turn (weft_mode wraparound)");
+    add(scene.boundary_x != usual.boundary_x || scene.boundary_y != usual.boundary_y, "the boundaries");
+    add(!scene.pins.empty(), "the pins");
+    add(!scene.fields.empty(), "the fields");
+    add(rest != usual, "the rest of the scene");
+    return lost;
+}
+
 /// The design as WIF, read back and its card compared. WIF fixes the orientation itself.
 Result<std::string> card_as_wif(const Cloth& cloth, const CardImage& card) {
     WEAVE_TRY(std::string bytes, write_wif(cloth.design, *cloth.evaluation.block, card));
@@ -108,6 +138,8 @@ Status write_card(Program& program, const std::string& file, const std::string& 
         wif ? card_as_wif(cloth, card) : write_proven_bitmap(card, *format, reading);
     if (!bytes) return Error(bytes.error()).in(out);
     WEAVE_CHECK_OK(write_file(out, *bytes));
+    const std::string lost = wif ? lost_in_wif(cloth) : "";
+    if (!lost.empty()) program.note(out + ": WIF cannot hold, and the file does not say: " + lost);
     program.answer(
         {{"file", out}, {"picks", card.picks()}, {"ends", card.ends()}, {"card_sha256", card.sha256()}},
         on_one_line(out) + ": " + counted(card.picks(), "pick") + " and " + counted(card.ends(), "end") +

@@ -70,6 +70,7 @@ Result<TakeUps> load_take_ups(const Program& program, const std::string& file, c
 Status run_check(Program& program, const CheckWish& wish) {
     WEAVE_TRY(const LoomProfile profile, load_profile(wish.loom));
     WEAVE_TRY(const Cloth cloth, load_cloth(program, wish.file));
+    note_stray_pin(program, cloth, wish.file);
     std::optional<TakeUps> take_ups;
     if (!wish.yarns.empty()) {
         WEAVE_TRY(take_ups, load_take_ups(program, wish.yarns, cloth));

@@ -90,7 +90,7 @@ Result<SampleExport> make_sample_export(const Design& design, const Evaluation& 
                      {"loom",
                       {{"name", profile.name},
                        {"maker", profile.maker},
-                       {"version", profile.version},
+                       {"revision", profile.version},
                        {"sha256", profile.sha256}}},
                      {"card", reading_entry(reading, format)},
                      {"read_back", "equal"},

@@ -205,6 +205,8 @@ Design shoe_adult() {
         map.blocks.push_back(before->second);
     }
     add(design, "shoe", stencilled(names, std::move(map)));
+    design.scene.weft_mode = WeftMode::wraparound;
+    design.scene.boundary_y = Boundary::free;
     return design;
 }
 

@@ -1,6 +1,7 @@
 #include <weave/core/text.hpp>
 #include <weave/core/units.hpp>
 #include <weave/curve/spline.hpp>
+#include <weave/design/pins.hpp>
 #include <weave/loom/pick_table.hpp>
 #include <weave/sim/fabric.hpp>
 #include <weave/sim/plan.hpp>
@@ -51,11 +52,11 @@ bool feeds_alike(const std::vector<Pick>& picks, std::size_t a, std::size_t b) {
     return picks[a].feeders == picks[b].feeders;
 }
 
-/// Which picks, or which ends, the scene pins.
+/// Which picks, or which ends, the scene pins; each of them must be there, see check_pins().
 std::vector<std::uint8_t> pinned(const Design& design, bool picks, std::size_t count) {
     std::vector<std::uint8_t> numbers(count, 0);
     for (const Pin& pin : design.scene.pins) {
-        if (pin.is_pick == picks && pin.number < count) numbers[pin.number] = 1;
+        if (pin.is_pick == picks) numbers[pin.number] = 1;
     }
     return numbers;
 }
@@ -150,7 +151,7 @@ class Planner {
     /// Better no answer than one that leaves out what the scene asks for.
     [[nodiscard]] Status check_terms() const {
         if (m_design.scene.friction > 0) return invalid("friction is not simulated yet: set it to 0", "scene.friction");
-        return {};
+        return check_pins(m_design.scene, m_block);
     }
 
     Status lay_curves() {
