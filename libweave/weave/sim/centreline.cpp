@@ -43,6 +43,13 @@ CurveFinder::CurveFinder(Spline spline) : m_spline(std::move(spline)) {
     const std::size_t looks = std::max<std::size_t>(looks_a_segment * m_spline.segments(), 1);
     for (std::size_t k = 0; k <= looks; ++k)
         m_places.push_back(m_spline.place(static_cast<double>(k) / static_cast<double>(looks_a_segment)));
+    // A spline's speed is a mean of its control differences, so no place lies further than this from the nearest look.
+    const std::size_t points = m_spline.control.size();
+    for (std::size_t i = 0; i + 1 < points; ++i)
+        m_reach = std::max(m_reach, (m_spline.control[i + 1] - m_spline.control[i]).norm());
+    if (m_spline.is_periodic && points > 0)
+        m_reach = std::max(m_reach, (m_spline.control.front() + m_spline.shift - m_spline.control.back()).norm());
+    m_reach /= 2.0 * looks_a_segment;
     for (const Vec3& place : m_places) m_middle += place / static_cast<double>(m_places.size());
     for (std::size_t first = 0; first < m_places.size(); first += places_a_box) {
         Box box{{}, first, std::min(first + places_a_box, m_places.size() - 1)};
@@ -68,6 +75,27 @@ void CurveFinder::search(const Vec3& place, double from, double& best, double& a
                 if (distance >= best) continue;
                 best = distance;
                 at = from + static_cast<double>(k) / static_cast<double>(looks_a_segment);
+            }
+        }
+    }
+}
+
+/// The nearest look need not lead to the nearest place: each of the others may hide one nearer than `found`.
+void CurveFinder::search_again(const Vec3& place, const Vec3& by, double from, OnCurve& found) const {
+    const Vec3 own = place - by;
+    const auto far = [&](const Box& box) {
+        const double limit = found.distance + m_reach;
+        return box.bounds.squaredExteriorDistance(own) >= limit * limit;
+    };
+    for (const Box& group : m_groups) {
+        if (far(group)) continue;
+        for (std::size_t b = group.first; b <= group.last; ++b) {
+            if (far(m_boxes[b])) continue;
+            for (std::size_t k = m_boxes[b].first; k <= m_boxes[b].last; ++k) {
+                if ((m_places[k] - own).norm() >= found.distance + m_reach) continue;
+                const double t = from + static_cast<double>(k) / static_cast<double>(looks_a_segment);
+                const OnCurve other = refined(place, m_spline.is_periodic ? t : std::min(t, static_cast<double>(m_spline.segments())));
+                if (other.distance < found.distance) found = other;
             }
         }
     }
@@ -108,7 +136,12 @@ OnCurve CurveFinder::nearest(const Vec3& place) const {
         search(place - turns * m_spline.shift, turns * static_cast<double>(m_spline.segments()), best, at);
     }
     if (!m_spline.is_periodic) at = std::min(at, static_cast<double>(m_spline.segments()));
-    return refined(place, at);
+    OnCurve found = refined(place, at);
+    for (long turn = middle - beside; turn <= middle + beside; ++turn) {
+        const auto turns = static_cast<double>(turn);
+        search_again(place, turns * m_spline.shift, turns * static_cast<double>(m_spline.segments()), found);
+    }
+    return found;
 }
 
 std::vector<Vec3> CurveFinder::even_places(std::size_t count) const {

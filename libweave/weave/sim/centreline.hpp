@@ -49,12 +49,14 @@ class CurveFinder {
         std::size_t first = 0, last = 0;  ///< of the places, or of the boxes, both included
     };
     void search(const Vec3& place, double from, double& best, double& at) const;
+    void search_again(const Vec3& place, const Vec3& by, double from, OnCurve& found) const;
     [[nodiscard]] OnCurve refined(const Vec3& place, double t) const;
 
     Spline m_spline;
     std::vector<Vec3> m_places;          ///< along the spline at even parameters
     std::vector<Box> m_boxes, m_groups;  ///< of places, and of boxes
     Vec3 m_middle{0, 0, 0};
+    double m_reach = 0;  ///< greatest distance from a place of the curve to the nearest of m_places, mm
 };
 
 /// Places evenly spread over the length of a polyline, both its ends among them.
