@@ -28,6 +28,12 @@ constexpr std::size_t first_samples = 32;      ///< of one yarn, for the first g
 constexpr std::size_t most_candidates = 32;    ///< simulated yarns that are tried on a measured one
 constexpr std::size_t most_tries = 1'000'000;  ///< pairs of yarns that matching by nearness looks at
 constexpr int fitting_rounds = 60, matching_rounds = 8;
+
+Vec3 middle_of(const std::vector<Vec3>& places) {
+    Vec3 middle(0, 0, 0);
+    for (const Vec3& place : places) middle += place / static_cast<double>(places.size());
+    return middle;
+}
 /// The other handedness must fit so much better before it is believed: most cloth is nearly its own mirror
 /// image.
 constexpr double clearly_better = 0.9;
@@ -78,7 +84,9 @@ class Fitter {
         std::array<Fit, 2> fits;
         for (const bool mirrored : {false, true}) {
             std::vector<Alignment> starts{shifted(pairs, mirrored)};
-            if (!parallel) starts.push_back(along_the_yarns(pairs, mirrored));
+            for (const bool by_middles : {false, true}) {
+                if (!parallel) starts.push_back(along_the_yarns(pairs, mirrored, by_middles));
+            }
             for (const Alignment& start : starts) {
                 const Fit fit = fitted(pairs, start);
                 if (fit.rms < fits[mirrored ? 1 : 0].rms) fits[mirrored ? 1 : 0] = fit;
@@ -194,8 +202,9 @@ class Fitter {
         return alignment;
     }
 
-    /// Lays yarn on yarn from end to end; those that fit better backwards are then turned round.
-    [[nodiscard]] Alignment along_the_yarns(const std::vector<Pair>& pairs, bool mirrored) const {
+    /// Lays yarn on yarn from end to end; those that fit better backwards are then turned round. Where many run
+    /// backwards the first try can be far off: the yarns' middles, laid on one another first, know no direction.
+    [[nodiscard]] Alignment along_the_yarns(const std::vector<Pair>& pairs, bool mirrored, bool by_middles) const {
         std::vector<std::vector<Vec3>> from, to;
         for (const Pair& pair : pairs) {
             from.push_back(sim::even_places(m_measured.yarns[pair.measured].places, first_samples));
@@ -205,6 +214,11 @@ class Fitter {
         for (int round = 0; round < 3; ++round) {
             std::vector<Vec3> all_from, all_to;
             for (std::size_t k = 0; k < pairs.size(); ++k) {
+                if (by_middles && round == 0) {
+                    all_from.push_back(middle_of(from[k]));
+                    all_to.push_back(middle_of(to[k]));
+                    continue;
+                }
                 all_from.insert(all_from.end(), from[k].begin(), from[k].end());
                 all_to.insert(all_to.end(), to[k].begin(), to[k].end());
             }
