@@ -244,10 +244,9 @@ Json Measured::json() const {
             steps[name] = snapshot.iterations;
         }
     }
-    constexpr const char* endings[]{"converged", "stopped", "iterations", "time", "stuck"};
     return {{"points", points},
             {"samples", samples},
-            {"ending", endings[static_cast<std::size_t>(result.ending)]},
+            {"ending", std::string(sim::name_of(result.ending))},
             {"residual", result.residual},
             {"energy_N_mm", result.energy},
             {"steps", result.iterations},

@@ -18,6 +18,11 @@ double seconds_since(std::chrono::steady_clock::time_point start) {
 
 }  // namespace
 
+std::string_view name_of(Ending ending) {
+    constexpr std::string_view names[]{"converged", "stopped", "iterations", "time", "stuck"};
+    return names[static_cast<std::size_t>(ending)];
+}
+
 template <class Real>
 double greatest_force(const Executor& executor, const std::vector<Real>& gradient) {
     return std::sqrt(executor.greatest(gradient.size() / 3, [&](std::size_t slot) {

@@ -5,7 +5,7 @@
 
 #include <cstddef>
 #include <functional>
-#include <string>
+#include <string_view>
 #include <vector>
 
 namespace weave::sim {
@@ -27,6 +27,9 @@ struct RelaxOptions {
 };
 
 enum class Ending : std::uint8_t { converged, stopped, iterations, time, stuck };
+
+/// `converged` and so on, as reports write it.
+std::string_view name_of(Ending ending);
 
 struct RelaxResult {
     Ending ending = Ending::converged;

@@ -26,11 +26,6 @@ std::uint64_t peak_bytes() {
     return 0;
 }
 
-std::string_view name_of(Ending ending) {
-    constexpr std::string_view names[]{"converged", "stopped", "iterations", "time", "stuck"};
-    return names[static_cast<std::size_t>(ending)];
-}
-
 struct Contacts {
     std::size_t touching = 0;  ///< pairs of segments
     double overlap = 0;        ///< greatest 1 - d/D
@@ -379,7 +374,7 @@ class Simulation {
                         {"fidelity", std::string(sim::name_of(m_plan.fidelity))},
                         {"points_per_key", m_plan.points_per_key},
                         {"converged", m_last.ending == Ending::converged && balanced},
-                        {"ending", std::string(name_of(m_last.ending))},
+                        {"ending", std::string(sim::name_of(m_last.ending))},
                         {"goal", m_options.residual.value_or(m_plan.goal)},
                         {"residual", m_last.residual},
                         {"reference_N", m_last.reference_N},
