@@ -31,6 +31,14 @@ std::size_t BlockMatrix::find(std::uint32_t row, std::uint32_t column) const {
     return static_cast<std::size_t>(at - begin);
 }
 
+void BlockMatrix::add_to_pivots(float share) {
+    for (std::size_t row = 0; row < rows(); ++row) {
+        float* pivot = value(diagonal(row));
+        const float mean = (std::abs(pivot[0]) + std::abs(pivot[4]) + std::abs(pivot[8])) / 3;
+        for (int k = 0; k < 9; k += 4) pivot[k] += share * std::max(1e-12F, mean);
+    }
+}
+
 void BlockMatrix::multiply(const Executor& executor, const std::vector<double>& x, std::vector<double>& result) const {
     result.resize(3 * rows());
     executor.each(rows(), [&](std::size_t row) {

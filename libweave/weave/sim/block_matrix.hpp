@@ -28,6 +28,8 @@ class BlockMatrix {
     [[nodiscard]] float* value(std::size_t at) { return &m_values[9 * at]; }
     [[nodiscard]] const float* value(std::size_t at) const { return &m_values[9 * at]; }
     [[nodiscard]] std::uint32_t diagonal(std::size_t row) const { return m_diagonal[row]; }
+    /// Adds a share of the mean of each pivot's diagonal to it.
+    void add_to_pivots(float share);
     /// Where the block of a row and column lies; it must be part of the shape.
     [[nodiscard]] std::size_t find(std::uint32_t row, std::uint32_t column) const;
     [[nodiscard]] std::size_t bytes() const { return m_values.capacity() * 4 + m_columns.capacity() * 4 + m_first.capacity() * 8; }

@@ -9,6 +9,8 @@ namespace {
 
 /// Below a tenth of the reach the contact law goes on linearly.
 constexpr double contact_floor = 0.01;
+/// Share of their distance by which yarns may come closer in one step: below a half, so that both may.
+constexpr double closest = 0.45;
 
 }  // namespace
 
@@ -130,38 +132,68 @@ double Energy<Real>::add_weight(const std::vector<Real>& state, std::vector<Real
 }
 
 template <class Real>
-void Energy<Real>::move_samples(const std::vector<Real>& change) {
+void Energy<Real>::move_samples(const std::vector<Real>& state, const std::vector<Real>& change) {
     m_moved.resize(3 * m_fabric.samples());
+    m_tangent.resize(3 * m_fabric.samples());
     const std::vector<SegmentPlace>& segments = m_fabric.segment_places();
     m_executor.each(segments.size(), [&](std::size_t s) {
         const YarnConstants<Real>& yarn = m_fabric.constants()[segments[s].yarn];
         for (std::uint32_t k = 0; k < yarn.samples; ++k) {
-            const Vec<Real> moved =
-                combine(m_fabric.bases()[yarn.basis + k].value, &change[3 * std::size_t(segments[s].slot)]);
-            for (std::size_t axis = 0; axis < 3; ++axis)
-                m_moved[3 * (segments[s].sample + k) + axis] = moved[static_cast<Eigen::Index>(axis)];
+            const Basis<Real>& basis = m_fabric.bases()[yarn.basis + k];
+            const std::size_t slot = 3 * std::size_t(segments[s].slot), sample = 3 * (segments[s].sample + k);
+            const Vec<Real> moved = combine(basis.value, &change[slot]), tangent = combine(basis.slope, &state[slot]);
+            for (std::size_t axis = 0; axis < 3; ++axis) {
+                m_moved[sample + axis] = moved[static_cast<Eigen::Index>(axis)];
+                m_tangent[sample + axis] = tangent[static_cast<Eigen::Index>(axis)];
+            }
         }
     });
 }
 
+/// The share by which sample `a` may go: no near one comes closer by 0.45 of its distance. Squares alone, so that the loop
+/// over neighbours has neither roots nor divisions.
 template <class Real>
 double Energy<Real>::safe_share_of(const FabricView<Real>& fabric, std::size_t a, double most) const {
-    const Vec<Real> mine = load(&m_moved[3 * a]);
+    const SamplesView<Real>& all = fabric.samples;
+    const Vec<Real> mine = load(&m_moved[3 * a]), at(all.x[a], all.y[a], all.z[a]);
     const auto moved = static_cast<double>(mine.norm());
     double share = std::min(most, m_fabric.least_reach() / 4 / std::max(1e-300, moved));
+    Real change2 = 0, apart2 = 1;  // of the pair that allows least
     for (std::uint32_t e = fabric.first_neighbour[a]; e < fabric.first_neighbour[a + 1]; ++e) {
-        const std::uint32_t b = fabric.neighbours[e];
-        const Vec<Real> apart(fabric.samples.x[a] - fabric.samples.x[b], fabric.samples.y[a] - fabric.samples.y[b],
-                              fabric.samples.z[a] - fabric.samples.z[b]);
-        const auto change = static_cast<double>((mine - load(&m_moved[3 * std::size_t(m_neighbours.own(b))])).norm());
-        if (change > 0) share = std::min(share, 0.45 * static_cast<double>(apart.norm()) / change);
+        const std::uint32_t b = fabric.neighbours[e], own = m_neighbours.own(b);
+        const Vec<Real> apart = at - Vec<Real>(all.x[b], all.y[b], all.z[b]), change = mine - load(&m_moved[3 * std::size_t(own)]);
+        const Real near2 = apart.squaredNorm(), closing2 = change.squaredNorm(), reach = all.radius[a] + all.radius[b];
+        if (near2 < reach * reach / 4) share = std::min(share, crossing_share(a, own, apart, change, reach));
+        if (closing2 * apart2 <= change2 * near2) continue;
+        change2 = closing2;
+        apart2 = near2;
     }
+    if (change2 > 0) share = std::min(share, closest * std::sqrt(static_cast<double>(apart2) / static_cast<double>(change2)));
     return share;
+}
+
+/// Yarns that lie deep in one another may pass between their samples: there it counts how far apart the straight lines
+/// through two samples are, if these lie about where the lines are nearest. Nearer than the lines stand for the curves they
+/// do not come at all, whatever presses them together.
+template <class Real>
+double Energy<Real>::crossing_share(std::size_t a, std::size_t b, const Vec<Real>& apart, const Vec<Real>& change,
+                                    Real reach) const {
+    constexpr double none = 1e300, beside = 0.3, least_height = 0.1, least_sine = 0.1;
+    const Vec<Real> along = load(&m_tangent[3 * a]), other = load(&m_tangent[3 * b]);
+    Vec<Real> across = along.cross(other);
+    if (across.squaredNorm() < Real(least_sine * least_sine) * along.squaredNorm() * other.squaredNorm())
+        across = apart - along * (along.dot(apart) / std::max(Real(1e-30), along.squaredNorm()));
+    const auto size = static_cast<double>(across.norm());
+    if (!(size > 0)) return none;
+    const double height = static_cast<double>(apart.dot(across)) / size, rise = static_cast<double>(change.dot(across)) / size;
+    const double aside2 = static_cast<double>(apart.squaredNorm()) - height * height, most = beside * static_cast<double>(reach);
+    if (aside2 >= most * most || height * rise >= 0) return none;
+    return std::abs(height) < least_height * static_cast<double>(reach) ? 0 : closest * std::abs(height / rise);
 }
 
 template <class Real>
 double Energy<Real>::safe_share(const std::vector<Real>& state, const std::vector<Real>& change, double most) {
-    move_samples(change);
+    move_samples(state, change);
     const FabricView<Real> fabric = view(state);
     return m_executor.least(m_fabric.samples(), [&](std::size_t a) { return safe_share_of(fabric, a, most); }, most);
 }
@@ -173,7 +205,7 @@ void Energy<Real>::shorten(const std::vector<Real>& state, std::vector<Real>& ch
     std::vector<double> share(m_fabric.segments());
     const std::vector<YarnPlace>& yarns = m_fabric.yarns();
     for (int round = 0; round < rounds; ++round) {
-        move_samples(change);
+        move_samples(state, change);
         m_executor.each(share.size(), [&](std::size_t s) {
             const SegmentPlace& segment = fabric.segments[s];
             share[s] = 1;

@@ -41,8 +41,10 @@ class Energy {
     void shorten(const std::vector<Real>& state, std::vector<Real>& change);
 
   private:
-    void move_samples(const std::vector<Real>& change);
+    void move_samples(const std::vector<Real>& state, const std::vector<Real>& change);
     [[nodiscard]] double safe_share_of(const FabricView<Real>& fabric, std::size_t sample, double most) const;
+    [[nodiscard]] double crossing_share(std::size_t a, std::size_t b, const Vec<Real>& apart, const Vec<Real>& change,
+                                        Real reach) const;
     void gather(std::vector<Real>& gradient) const;
     [[nodiscard]] double image_pull(const FabricView<Real>& fabric, std::size_t sample, std::size_t axis) const;
     double add_weight(const std::vector<Real>& state, std::vector<Real>& gradient) const;
@@ -53,7 +55,7 @@ class Energy {
     Neighbours<Real> m_neighbours;
     std::vector<Sphere<Real>> m_spheres;
     std::vector<Real> m_segment_energy, m_segment_gradient;
-    std::vector<Real> m_moved;  ///< change of each sample, scratch of safe_share
+    std::vector<Real> m_moved, m_tangent;  ///< of each sample, scratch of safe_share
     std::size_t m_evaluations = 0;
 };
 

@@ -187,13 +187,13 @@ std::string report_of(const ExtremeEnd& end, Ending ending, const std::string& w
 }
 
 /// Yarns whose linking changed, in words.
-std::string passed_words(const std::vector<std::vector<int>>& before,
-                         const std::vector<std::vector<int>>& after) {
-    for (std::size_t i = 0; i < before.size(); ++i) {
-        for (std::size_t j = 0; j <= i; ++j) {
-            if (before[i][j] != after[i][j])
-                return words(", yarns %.0f and %.0f passed through one another", static_cast<double>(j + 1),
-                             static_cast<double>(i + 1));
+std::string passed_words(const Linking& before, const Linking& after) {
+    for (const auto& [now, past] : {std::pair(&after, &before), std::pair(&before, &after)}) {
+        for (const auto& [yarns, sum] : *now) {
+            const auto found = past->find(yarns);
+            if (passed_through(sum - (found == past->end() ? 0 : found->second)))
+                return words(", yarns %.0f and %.0f passed through one another", static_cast<double>(yarns.second + 1),
+                             static_cast<double>(yarns.first + 1));
         }
     }
     return "";

@@ -40,14 +40,10 @@ std::vector<std::vector<YarnNumber>> sheets_in(const InspectionSubject& subject)
     return sheets;
 }
 
-std::vector<ChangedCrossing> changed_crossings(const InspectionSubject& subject) {
+std::vector<ChangedCrossing> changed_of(const std::vector<sim::LostCrossing>& crossings) {
     std::vector<ChangedCrossing> changed;
-    for (std::size_t i = 0; i < subject.places.size(); ++i) {
-        const Crossing& crossing = subject.yarns.crossings[i];
-        const auto& spot = subject.places[i].spot;
-        if (spot && (spot->height_mm > 0) == crossing.weft_over) continue;
-        changed.push_back({crossing.pick, crossing.end, crossing.weft_over, spot.has_value()});
-    }
+    for (const auto& [crossing, found] : crossings)
+        changed.push_back({crossing.pick, crossing.end, crossing.weft_over, found});
     return changed;
 }
 
@@ -63,6 +59,8 @@ std::size_t how_many(const InspectionSubject& subject, System system) {
 
 Result<Inspection> inspect(const Yarns& yarns) {
     WEAVE_TRY(auto places, sim::crossing_places(yarns));
+    WEAVE_TRY(const auto order_subject, sim::order_subject(yarns));
+    const sim::CrossingOrder order = sim::crossing_order(yarns.crossings, order_subject);
     auto strands = sim::strands_of(yarns, places);
     const InspectionSubject subject{yarns, std::move(places), std::move(strands)};
     Inspection inspection;
@@ -70,7 +68,8 @@ Result<Inspection> inspect(const Yarns& yarns) {
     inspection.ends = how_many(subject, System::warp);
     inspection.thickness_mm = yarns.yarns.empty() ? 0 : thickness_mm(yarns);
     inspection.sheets = sheets_in(subject);
-    inspection.changed = changed_crossings(subject);
+    inspection.changed = changed_of(order.lost);
+    inspection.slid = changed_of(order.slid);
     sim::find_lengths(subject, inspection);
     sim::find_moved(subject, inspection);
     sim::find_layers(subject, inspection);

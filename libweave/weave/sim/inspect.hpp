@@ -82,7 +82,7 @@ struct JammedYarn {
     double room = 0;                       ///< their distance over the least that Peirce allows, less 1
 };
 
-/// A crossing that no longer lies as the card says.
+/// A crossing that does not lie as it was planned.
 struct ChangedCrossing {
     std::size_t pick = 0, end = 0;
     bool weft_over = false;  ///< as the card says
@@ -102,7 +102,8 @@ struct Inspection {
     std::vector<BunchedPair> bunched;  ///< nearest first
     std::vector<MovedYarn> moved;      ///< furthest first
     std::vector<JammedYarn> jammed;    ///< tightest first
-    std::vector<ChangedCrossing> changed;
+    std::vector<ChangedCrossing> changed;  ///< no longer as the card says: a yarn passed through another
+    std::vector<ChangedCrossing> slid;     ///< gone from their place, though no yarn passed through another (order.hpp)
     std::size_t picks = 0, ends = 0;  ///< that are in this piece
 };
 

@@ -124,6 +124,7 @@ Json inspection_json(const Yarns& yarns, const Inspection& inspection) {
     json["beams"] = list_json(inspection.beams, beam_json);
     json["order_kept"] = inspection.changed.empty();
     json["changed_crossings"] = list_json(inspection.changed, changed_json);
+    json["slid_crossings"] = list_json(inspection.slid, changed_json);
     json["sheets"] = list_json(inspection.sheets, sheet_json);
     json["leaning"] = list_json(inspection.leaning, leaning_json);
     json["bunched"] = list_json(inspection.bunched, bunched_json);

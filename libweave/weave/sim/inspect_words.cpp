@@ -89,11 +89,14 @@ std::string run_text(const Yarns& yarns, const Inspection& inspection) {
     if (converged != yarns.report.end() && converged->is_boolean())
         text = converged->get<bool>() ? "At rest" : "NOT at rest, so that all below may still change";
     if (residual) text += format(" (residual %.1e)", *residual);
-    if (inspection.changed.empty()) return text + "; every crossing lies as the card says\n";
-    const ChangedCrossing& first = inspection.changed.front();
-    return text + "\nCHANGED: " + counted(inspection.changed.size(), "crossing") +
-           " no longer as the card says, such as pick " + std::to_string(first.pick + 1) + " with end " +
-           std::to_string(first.end + 1) + "\n";
+    const auto such = [](const std::vector<ChangedCrossing>& crossings, const char* what) {
+        return counted(crossings.size(), "crossing") + what + ", such as pick " + std::to_string(crossings.front().pick + 1) +
+               " with end " + std::to_string(crossings.front().end + 1) + "\n";
+    };
+    text += inspection.changed.empty() ? "; no yarn passed through another\n"
+                                       : "\nCHANGED: " + such(inspection.changed, " no longer as the card says");
+    if (!inspection.slid.empty()) text += "SLID: " + such(inspection.slid, " no longer where planned, open or not held");
+    return text;
 }
 
 std::string crimp_text(const char* system, const std::optional<Spread>& crimp) {

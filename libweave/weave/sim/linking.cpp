@@ -1,8 +1,10 @@
-#include <weave/curve/spline.hpp>
 #include <weave/sim/linking.hpp>
 
 #include <algorithm>
 #include <cmath>
+#include <cstdint>
+#include <optional>
+#include <unordered_map>
 
 namespace weave::sim {
 
@@ -10,87 +12,143 @@ namespace {
 
 constexpr int pieces_a_segment = 8;
 
-struct Polyline {
-    std::vector<Vec3> places;
-    Vec3 low, high;
+/// A short straight piece of a yarn.
+struct Piece {
+    std::size_t yarn = 0;
+    Vec3 from{0, 0, 0}, along{0, 0, 0};
 };
 
-Polyline polyline_of(const Spline& spline) {
-    Polyline line;
-    const std::size_t pieces = pieces_a_segment * spline.segments();
-    // Off the knots, so that a vertex on another yarn's straight line, which would count twice or not at all,
-    // is rare.
-    for (std::size_t k = 0; k <= pieces; ++k)
-        line.places.push_back(spline.place(
-            std::min(static_cast<double>(spline.segments()),
-                     (static_cast<double>(k) + (spline.is_periodic ? 0.382 : 0)) / pieces_a_segment)));
-    line.low = line.high = line.places.front();
-    for (const Vec3& place : line.places) {
-        line.low = line.low.cwiseMin(place);
-        line.high = line.high.cwiseMax(place);
+std::vector<Piece> pieces_of(const std::vector<Spline>& yarns) {
+    std::vector<Piece> pieces;
+    for (std::size_t y = 0; y < yarns.size(); ++y) {
+        const Spline& spline = yarns[y];
+        const std::size_t count = pieces_a_segment * spline.segments();
+        // Off the knots, so that a vertex on another yarn's straight line, which would count twice or not at all, is rare.
+        const auto place = [&](std::size_t k) {
+            return spline.place((static_cast<double>(k) + (spline.is_periodic ? 0.382 : 0)) / pieces_a_segment);
+        };
+        for (std::size_t k = 0; k < count; ++k) {
+            const Vec3 from = place(k);
+            pieces.push_back({y, from, place(k + 1) - from});
+        }
     }
-    return line;
+    return pieces;
 }
 
 double turn(const Vec3& a, const Vec3& b) {
     return a.x() * b.y() - a.y() * b.x();
 }
 
-/// Signed crossings of two lines, the second moved.
-int crossings(const Polyline& first, const Polyline& second, const Vec3& moved) {
-    int sum = 0;
-    for (std::size_t i = 0; i + 1 < first.places.size(); ++i) {
-        const Vec3 &p = first.places[i], u = first.places[i + 1] - p;
-        for (std::size_t j = 0; j + 1 < second.places.size(); ++j) {
-            const Vec3 q = second.places[j] + moved, v = second.places[j + 1] - second.places[j], w = q - p;
-            const double det = turn(u, v);
-            if (det == 0) continue;
-            const double along = turn(w, v) / det, other = turn(w, u) / det;
-            if (along < 0 || along >= 1 || other < 0 || other >= 1) continue;
-            const double height = p.z() + along * u.z() - q.z() - other * v.z();
-            sum += (det > 0) == (height > 0) ? 1 : -1;
-        }
-    }
-    return sum;
+/// 1 or -1 where two pieces cross, seen from above, the second moved; else 0.
+int crossing(const Piece& first, const Piece& second, const Vec3& moved) {
+    const Vec3 &u = first.along, &v = second.along, w = second.from + moved - first.from;
+    const double det = turn(u, v);
+    if (det == 0) return 0;
+    const double along = turn(w, v) / det, other = turn(w, u) / det;
+    if (along < 0 || along >= 1 || other < 0 || other >= 1) return 0;
+    const double height = along * u.z() - w.z() - other * v.z();
+    return (det > 0) == (height > 0) ? 1 : -1;
 }
 
-/// How many periods the second line may lie away and still overlap the first.
-std::array<int, 2> images(const SimScene& scene, std::size_t axis, const Polyline& first,
-                          const Polyline& second) {
-    if (!scene.is_periodic[axis]) return {0, 0};
-    const auto at = static_cast<Eigen::Index>(axis);
-    return {static_cast<int>(std::ceil((first.low[at] - second.high[at]) / scene.period_mm[axis])),
-            static_cast<int>(std::floor((first.high[at] - second.low[at]) / scene.period_mm[axis]))};
+/// Pieces by the cell over which their middle lies, periods folded into one.
+class Cells {
+  public:
+    Cells(const std::vector<Piece>& pieces, const std::array<double, 2>& period) : m_period(period) {
+        double longest = 1e-9;
+        for (const Piece& piece : pieces) longest = std::max(longest, std::hypot(piece.along.x(), piece.along.y()));
+        for (std::size_t k = 0; k < 2; ++k) {
+            m_around[k] = period[k] > 0 ? std::max<std::int64_t>(1, static_cast<std::int64_t>(period[k] / longest)) : 0;
+            m_width[k] = m_around[k] > 0 ? period[k] / static_cast<double>(m_around[k]) : longest;
+        }
+        for (std::uint32_t p = 0; p < pieces.size(); ++p) m_members[key(cell_of(pieces[p]))].push_back(p);
+    }
+
+    /// visit(other) for each piece that may cross one, once.
+    template <class Visit>
+    void each_near(const Piece& piece, const Visit& visit) const {
+        const std::array<std::int64_t, 2> cell = cell_of(piece);
+        for (std::int64_t i = first(0); i <= 1; ++i) {
+            for (std::int64_t j = first(1); j <= 1; ++j) {
+                const auto found = m_members.find(key({folded(cell[0] + i, 0), folded(cell[1] + j, 1)}));
+                if (found == m_members.end()) continue;
+                for (const std::uint32_t other : found->second) visit(other);
+            }
+        }
+    }
+
+  private:
+    /// Around a period of one or two cells the neighbour before is the one after, or the cell itself.
+    [[nodiscard]] std::int64_t first(std::size_t k) const { return m_around[k] == 1 ? 1 : m_around[k] == 2 ? 0 : -1; }
+    [[nodiscard]] std::int64_t folded(std::int64_t cell, std::size_t k) const {
+        return m_around[k] > 0 ? ((cell % m_around[k]) + m_around[k]) % m_around[k] : cell;
+    }
+    [[nodiscard]] std::array<std::int64_t, 2> cell_of(const Piece& piece) const {
+        std::array<std::int64_t, 2> cell{};
+        for (std::size_t k = 0; k < 2; ++k) {
+            const auto axis = static_cast<Eigen::Index>(k);
+            cell[k] = folded(static_cast<std::int64_t>(std::floor((piece.from[axis] + piece.along[axis] / 2) / m_width[k])), k);
+        }
+        return cell;
+    }
+    static std::uint64_t key(const std::array<std::int64_t, 2>& cell) {
+        return (static_cast<std::uint64_t>(cell[0]) << 32U) ^ static_cast<std::uint32_t>(cell[1]);
+    }
+
+    std::array<double, 2> m_period;
+    std::array<double, 2> m_width{};
+    std::array<std::int64_t, 2> m_around{};
+    std::unordered_map<std::uint64_t, std::vector<std::uint32_t>> m_members;
+};
+
+/// By how many periods the second piece is to be moved to come nearest to the first.
+std::array<int, 2> image_near(const Piece& first, const Piece& second, const std::array<double, 2>& period) {
+    const Vec3 apart = first.from + first.along / 2 - second.from - second.along / 2;
+    std::array<int, 2> image{};
+    for (std::size_t k = 0; k < 2; ++k) {
+        if (period[k] > 0) image[k] = static_cast<int>(std::lround(apart[static_cast<Eigen::Index>(k)] / period[k]));
+    }
+    return image;
 }
 
 /// A yarn's own way on is no other strand: a loop that it lays in itself comes and goes freely.
-bool is_same_strand(const SimYarn& yarn, int x, int y) {
-    return (x == 0 && y == 0) || (yarn.is_periodic && x * yarn.turns[1] == y * yarn.turns[0]);
+bool is_same_strand(const Spline& yarn, const std::array<int, 2>& image, const std::array<double, 2>& period) {
+    if (image == std::array<int, 2>{}) return true;
+    if (!yarn.is_periodic) return false;
+    std::array<long, 2> turns{};
+    for (std::size_t k = 0; k < 2; ++k) {
+        if (period[k] > 0) turns[k] = std::lround(yarn.shift[static_cast<Eigen::Index>(k)] / period[k]);
+    }
+    return image[0] * turns[1] == image[1] * turns[0];
 }
 
 }  // namespace
 
-std::vector<std::vector<int>> linking_of(const SimScene& scene,
-                                         const std::vector<std::vector<Vec3>>& control) {
-    std::vector<Polyline> lines;
-    for (std::size_t y = 0; y < control.size(); ++y)
-        lines.push_back(polyline_of({control[y], scene.yarns[y].is_periodic, scene.yarns[y].shift}));
-    std::vector<std::vector<int>> linking(control.size());
-    for (std::size_t i = 0; i < lines.size(); ++i) {
-        linking[i].assign(i + 1, 0);
-        for (std::size_t j = 0; j <= i; ++j) {
-            const std::array<int, 2> x = images(scene, 0, lines[i], lines[j]),
-                                     y = images(scene, 1, lines[i], lines[j]);
-            for (int a = x[0]; a <= x[1]; ++a) {
-                for (int b = y[0]; b <= y[1]; ++b) {
-                    if (i == j && is_same_strand(scene.yarns[i], a, b)) continue;
-                    linking[i][j] += crossings(lines[i], lines[j],
-                                               Vec3(a * scene.period_mm[0], b * scene.period_mm[1], 0));
-                }
-            }
-        }
+Linking linking_of(const std::vector<Spline>& yarns, const std::array<double, 2>& period_mm) {
+    const std::vector<Piece> pieces = pieces_of(yarns);
+    const Cells cells(pieces, period_mm);
+    Linking linking;
+    for (std::uint32_t p = 0; p < pieces.size(); ++p) {
+        const Piece& piece = pieces[p];
+        cells.each_near(piece, [&](std::uint32_t q) {
+            const Piece& other = pieces[q];
+            if (other.yarn > piece.yarn || (other.yarn == piece.yarn && q >= p)) return;
+            const std::array<int, 2> image = image_near(piece, other, period_mm);
+            if (other.yarn == piece.yarn && is_same_strand(yarns[piece.yarn], image, period_mm)) return;
+            const int sign = crossing(piece, other, Vec3(image[0] * period_mm[0], image[1] * period_mm[1], 0));
+            if (sign != 0) linking[{piece.yarn, other.yarn}] += sign;
+        });
     }
+    std::erase_if(linking, [](const auto& entry) { return entry.second == 0; });
     return linking;
+}
+
+Linking linking_of(const SimScene& scene, const std::vector<std::vector<Vec3>>& control) {
+    std::vector<Spline> yarns;
+    for (std::size_t y = 0; y < control.size(); ++y)
+        yarns.push_back({control[y], scene.yarns[y].is_periodic, scene.yarns[y].shift});
+    std::array<double, 2> period{};
+    for (std::size_t k = 0; k < 2; ++k) period[k] = scene.is_periodic[k] ? scene.period_mm[k] : 0;
+    return linking_of(yarns, period);
 }
 
 }  // namespace weave::sim

@@ -1,3 +1,4 @@
+#include <weave/sim/linking.hpp>
 #include <weave/sim/order.hpp>
 
 #include <Eigen/Geometry>
@@ -111,13 +112,6 @@ bool lies_as_planned(const Thread& weft, const Thread& warp, const std::optional
     return (across_both(weft, warp, nearest, weft_way).dot(apart) > 0) == weft_over;
 }
 
-/// 1 where a weft was planned to run along y, -1 where it runs back. Warps all run along x.
-double way_of(const YarnCurve& weft, std::size_t key) {
-    const std::size_t before = key > 0 ? key - 1 : key, after = std::min(key + 1, weft.keys.size() - 1);
-    if (before == after) return weft.shift.y() < 0 ? -1 : 1;
-    return weft.keys[after].place.y() < weft.keys[before].place.y() ? -1 : 1;
-}
-
 }  // namespace
 
 std::optional<CrossingSpot> find_crossing(const Thread& weft, const Thread& warp, std::size_t weft_key, std::size_t warp_key) {
@@ -132,20 +126,61 @@ std::optional<CrossingSpot> find_crossing(const ClothCurves& curves, const std::
                          thread_of(splines[crossing.warp], curves.yarns[crossing.warp]), crossing.weft_key, crossing.warp_key);
 }
 
-std::vector<LostCrossing> lost_crossings(const ClothCurves& curves, const std::vector<Spline>& splines) {
-    std::vector<LostCrossing> lost;
-    for (const Crossing& crossing : curves.crossings) {
-        if (splines[crossing.weft].control.empty() || splines[crossing.warp].control.empty()) continue;
-        const YarnCurve& curve = curves.yarns[crossing.weft];
-        const Thread weft = thread_of(splines[crossing.weft], curve),
-                     warp = thread_of(splines[crossing.warp], curves.yarns[crossing.warp]);
+namespace {
+
+/// Crossings that do not show as planned where they should.
+std::vector<LostCrossing> doubtful_crossings(const std::vector<Crossing>& crossings, const OrderSubject& subject) {
+    std::vector<LostCrossing> doubtful;
+    for (const Crossing& crossing : crossings) {
+        if (subject.now[crossing.weft].control.empty() || subject.now[crossing.warp].control.empty()) continue;
+        const Thread weft{subject.now[crossing.weft], subject.per_key[crossing.weft]},
+            warp{subject.now[crossing.warp], subject.per_key[crossing.warp]};
+        const double t = weft.per_key * static_cast<double>(crossing.weft_key),
+                     s = warp.per_key * static_cast<double>(crossing.warp_key);
+        const Spline& planned = subject.planned[crossing.weft];
+        const double weft_way = planned.tangent(std::min(t, static_cast<double>(planned.segments()))).y() < 0 ? -1 : 1;
         const std::optional<CrossingSpot> spot = find_crossing(weft, warp, crossing.weft_key, crossing.warp_key);
-        const CrossingSpot nearest = nearest_spot(weft, warp, weft.per_key * static_cast<double>(crossing.weft_key),
-                                                  warp.per_key * static_cast<double>(crossing.warp_key));
-        if (!lies_as_planned(weft, warp, spot, nearest, way_of(curve, crossing.weft_key), crossing.weft_over))
-            lost.push_back({crossing, spot.has_value()});
+        if (!lies_as_planned(weft, warp, spot, nearest_spot(weft, warp, t, s), weft_way, crossing.weft_over))
+            doubtful.push_back({crossing, spot.has_value()});
     }
-    return lost;
+    return doubtful;
+}
+
+int entry(const Linking& linking, const Crossing& crossing) {
+    const auto found = linking.find({std::max(crossing.weft, crossing.warp), std::min(crossing.weft, crossing.warp)});
+    return found == linking.end() ? 0 : found->second;
+}
+
+}  // namespace
+
+CrossingOrder crossing_order(const std::vector<Crossing>& crossings, const OrderSubject& subject) {
+    CrossingOrder order;
+    const std::vector<LostCrossing> doubtful = doubtful_crossings(crossings, subject);
+    if (doubtful.empty()) return order;
+    const Linking planned = linking_of(subject.planned, subject.period_mm), now = linking_of(subject.now, subject.period_mm);
+    for (const LostCrossing& crossing : doubtful) {
+        const int change = entry(now, crossing.crossing) - entry(planned, crossing.crossing);
+        (passed_through(change) ? order.lost : order.slid).push_back(crossing);
+    }
+    return order;
+}
+
+CrossingOrder crossing_order(const ClothCurves& curves, const std::vector<Spline>& splines) {
+    OrderSubject subject{{}, splines, {}, {}};
+    for (std::size_t y = 0; y < splines.size(); ++y) {
+        subject.per_key.push_back(thread_of(splines[y], curves.yarns[y]).per_key);
+        Spline& planned = subject.planned.emplace_back();
+        if (splines[y].control.empty()) continue;
+        std::vector<Vec3> keys;
+        for (const KeyPoint& key : curves.yarns[y].keys) keys.push_back(key.place);
+        planned = resample(interpolate(keys, curves.yarns[y].is_periodic, curves.yarns[y].shift), splines[y].control.size());
+    }
+    for (std::size_t k = 0; k < 2; ++k) subject.period_mm[k] = curves.is_periodic[k] ? curves.size_mm[k] : 0;
+    return crossing_order(curves.crossings, subject);
+}
+
+std::vector<LostCrossing> lost_crossings(const ClothCurves& curves, const std::vector<Spline>& splines) {
+    return crossing_order(curves, splines).lost;
 }
 
 }  // namespace weave::sim

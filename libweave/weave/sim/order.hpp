@@ -35,9 +35,31 @@ struct LostCrossing {
     bool found = true;  ///< whether the yarns still cross near their planned place
 };
 
+/// What became of the crossings of a card image in relaxed yarns.
+struct CrossingOrder {
+    std::vector<LostCrossing> lost;  ///< a yarn passed through the other, or slipped off its end
+    /// No longer seen where they were planned, though nothing passed through anything: the yarns hang apart in cloth that
+    /// stands open, or one lay over the other without being held and slid off.
+    std::vector<LostCrossing> slid;
+};
+
+/// Yarns as planned and as they lie now, with as many control points: one entry each for what crossings index. An empty
+/// spline was left out, and so are its crossings.
+struct OrderSubject {
+    std::vector<Spline> planned, now;
+    std::vector<double> per_key;         ///< parameter from one key point of a yarn to the next
+    std::array<double, 2> period_mm{};  ///< 0 in directions that do not repeat
+};
+
 /// Looks every crossing up in the relaxed yarns: where the projections of its two yarns cross, from the planned place
 /// on, and which lies above; where cloth stands on edge or hangs over, which lies on which side where they are nearest.
-/// `splines` has one entry for each yarn of `curves`; an empty one was left out, and so are its crossings.
+/// What is in doubt so is decided by how often its two yarns pass over one another in all (linking.hpp).
+CrossingOrder crossing_order(const std::vector<Crossing>& crossings, const OrderSubject& subject);
+
+/// The same for planned curves; `splines` has one entry for each yarn of `curves`.
+CrossingOrder crossing_order(const ClothCurves& curves, const std::vector<Spline>& splines);
+
+/// Only those that are lost.
 std::vector<LostCrossing> lost_crossings(const ClothCurves& curves, const std::vector<Spline>& splines);
 
 }  // namespace weave::sim

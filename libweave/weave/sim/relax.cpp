@@ -1,16 +1,17 @@
+#include <weave/sim/descent.hpp>
 #include <weave/sim/multigrid.hpp>
+#include <weave/sim/newton.hpp>
 #include <weave/sim/relax.hpp>
 
 #include <algorithm>
 #include <chrono>
 #include <cmath>
+#include <cstdio>
+#include <cstdlib>
 
 namespace weave::sim {
 
 namespace {
-
-/// Below this residual the matrix is exact.
-constexpr double exact_below = 1;
 
 double seconds_since(std::chrono::steady_clock::time_point start) {
     return std::chrono::duration<double>(std::chrono::steady_clock::now() - start).count();
@@ -57,16 +58,18 @@ double reference_force(Energy<Real>& energy, const std::vector<Real>& state) {
 
 namespace {
 
-/// One relaxation under way.
+/// One relaxation under way: steps that learn while yarns have far to go, Newton's where the exact matrix leads home.
 template <class Real>
-class Newton {
+class Relaxing {
   public:
-    Newton(Energy<Real>& energy, std::vector<Real>& state, const RelaxOptions& options)
+    Relaxing(Energy<Real>& energy, std::vector<Real>& state, const RelaxOptions& options)
         : m_energy(energy),
           m_state(state),
           m_options(options),
           m_hessian(energy.fabric()),
-          m_preconditioner(energy.executor(), strands_of(energy.fabric()), places_of(energy.fabric())) {}
+          m_preconditioner(energy.executor(), strands_of(energy.fabric()), places_of(energy.fabric())),
+          m_descent(energy, m_hessian, m_matrix, m_preconditioner),
+          m_newton(energy, m_hessian, m_matrix, m_preconditioner) {}
 
     RelaxResult run() {
         m_value = m_energy.evaluate(m_state, m_gradient);
@@ -78,13 +81,14 @@ class Newton {
             if (m_result.residual <= m_options.residual) measure_anew();
             const Progress progress{m_result.iterations, m_result.residual, m_value, seconds_since(m_start)};
             m_result.history.push_back(progress);
+            if (getenv("TRACE")) fprintf(stderr, "  %zu t %.3f res %.4g value %.8g ev %zu\n", m_result.iterations, progress.seconds, m_result.residual, m_value, m_energy.evaluations());
             if (m_options.watch && !m_options.watch(progress)) return ended(Ending::stopped);
-            if (m_result.residual <= m_options.residual) return ended(Ending::converged);
+            if (m_result.residual <= m_options.residual && !leaves_saddle()) return ended(Ending::converged);
             if (m_result.iterations >= m_options.most_iterations) return ended(Ending::iterations);
             if (progress.seconds > m_options.most_seconds) return ended(Ending::time);
             if (!step()) return ended(Ending::stuck);
             ++m_result.iterations;
-            if (m_result.iterations % 8 == 0) renew_reference();
+            if (m_result.iterations % 32 == 0 || (m_result.iterations & (m_result.iterations - 1)) == 0) renew_reference();
         }
     }
 
@@ -111,184 +115,55 @@ class Newton {
         measure_anew();
         m_result.ending = ending;
         m_result.energy = m_value;
+        m_result.curves_down = m_newton.curves_down();
+        m_result.cg_iterations = m_newton.cg_iterations();
         m_result.evaluations = m_energy.evaluations();
         m_result.builds = m_energy.neighbours().builds();
         m_result.seconds = seconds_since(m_start);
+        if (getenv("TELL")) fprintf(stderr, "builds %zu evaluations %zu samples %zu entries %zu\n", m_result.builds, m_result.evaluations, m_energy.fabric().samples(), m_energy.neighbours().entries());
         return m_result;
     }
 
-    /// A step by the exact matrix where that is nearly convex, else by its convex part.
+    bool leaves_saddle() {
+        constexpr int most_saddles = 5;
+        if (!m_options.leaves_saddles || m_saddles == most_saddles) return false;
+        if (!m_newton.leave_saddle(m_state, m_value, m_gradient, m_options.residual * m_result.reference_N)) return false;
+        ++m_saddles;
+        m_descent.forget();
+        return true;
+    }
+
+    /// Near rest the exact matrix leads home. Farther off it is little worth, cloth being far from a quadratic form, unless
+    /// steps that learn make no way: then something is so stiff against the rest that only the matrix knows it.
     bool step() {
-        m_hessian.to_rows(m_gradient, m_force);
-        for (double& force : m_force) force = -force;
-        m_result.curves_down = false;
-        if (m_result.residual < exact_below && m_convex_steps == 0) {
-            const bool done = step_with(Curvature::exact);
-            // Yarns still have far to go, or lie on a saddle: what is convex leads on faster.
-            if (!done || m_was_cut || m_result.curves_down) m_convex_steps = convex_run;
-            if (done) return true;
+        m_best = std::min(m_best, m_result.residual);
+        if (--m_left <= 0) choose();
+        if (m_by_matrix || m_result.residual < newton_below) {
+            m_descent.forget();
+            if (m_newton.step(m_state, m_value, m_gradient, m_result.residual)) return true;
+            m_left = 0;
         }
-        m_convex_steps -= m_convex_steps > 0 ? 1 : 0;
-        return step_with(Curvature::convex);
+        // The second has forgotten what misled the first.
+        return m_descent.step(m_state, m_value, m_gradient) || m_descent.step(m_state, m_value, m_gradient);
     }
 
-    /// Damped matrix, step by conjugate gradients, then as much of it as is safe and pays. A direction of negative
-    /// curvature tells how much damping the exact matrix lacks.
-    bool step_with(Curvature curvature) {
-        m_hessian.assemble(m_energy, m_state, curvature, m_matrix);
-        double& damping = curvature == Curvature::exact ? m_exact_damping : m_damping;
-        m_damped = 0;
-        for (int attempt = 0; attempt < 20; ++attempt) {
-            if (curvature == Curvature::exact && damping > most_exact_damping) break;
-            damp(damping);
-            // More damping changes little of what the preconditioner sees.
-            if (attempt == 0) m_preconditioner.factor(m_matrix);
-            const double tolerance = std::clamp(std::sqrt(m_result.residual), 1e-3, 0.1);
-            const CgResult cg = conjugate_gradients(m_energy.executor(), m_matrix, m_preconditioner, m_force, tolerance,
-                                                    most_cg, m_change_rows);
-            m_result.cg_iterations += cg.iterations;
-            if (cg.negative) {
-                m_result.curves_down = true;
-                damping += std::max(1.5 * lack(cg.negative_direction), damping);
-                continue;
-            }
-            if (make_safe(damping, attempt < most_solves) && accept_step(damping)) return true;
-            damping = std::max(8 * damping, 1e-6);
+    /// Which steps come next: those of the matrix if the others have not halved the residual, as long as they pay.
+    void choose() {
+        const double gain = m_value_before - m_value;
+        const bool halved = m_best < 0.5 * m_best_before;
+        if (m_by_matrix) {
+            m_by_matrix = gain > 0.5 * m_gain;
+        } else {
+            m_by_matrix = !halved;
+            m_gain = gain;
         }
-        if (curvature == Curvature::exact) damping = most_exact_damping / 8;
-        return false;
+        m_left = m_by_matrix ? newtons_at_once : patience;
+        m_value_before = m_value;
+        m_best_before = m_best;
     }
 
-    /// Adds `damping` times the mean of each pivot to the diagonal, less what has been added.
-    void damp(double damping) {
-        if (m_damped == 0) {
-            m_scale.resize(m_matrix.rows());
-            for (std::size_t row = 0; row < m_matrix.rows(); ++row) {
-                const float* pivot = m_matrix.value(m_matrix.diagonal(row));
-                m_scale[row] = std::max(1e-12F, (std::abs(pivot[0]) + std::abs(pivot[4]) + std::abs(pivot[8])) / 3);
-            }
-        }
-        for (std::size_t row = 0; row < m_matrix.rows(); ++row) {
-            float* pivot = m_matrix.value(m_matrix.diagonal(row));
-            const float add = static_cast<float>(damping - m_damped) * m_scale[row];
-            for (int k = 0; k < 9; k += 4) pivot[k] += add;
-        }
-        m_damped = damping;
-    }
-
-    /// How far below nothing the matrix curves along a direction, in units of the damping.
-    double lack(const std::vector<double>& direction) {
-        m_matrix.multiply(m_energy.executor(), direction, m_product);
-        double curvature = 0, size = 0;
-        for (std::size_t i = 0; i < direction.size(); ++i) {
-            curvature += direction[i] * m_product[i];
-            size += direction[i] * direction[i] * double(m_scale[i / 3]);
-        }
-        return size > 0 ? std::max(0.0, -curvature / size) : 0;
-    }
-
-    /// Makes a step such that no yarns can pass through one another: as a whole shorter, or shorter only where it must
-    /// be, whichever promises more. Yarn hardly stretches, so a step that is cut at places may be worth little: then
-    /// more damping, which shortens it evenly, serves better. False if it `may_damp` and asks for that.
-    bool make_safe(double& damping, bool may_damp) {
-        m_hessian.to_slots(m_change_rows, m_change);
-        m_slope = slope_of(m_change_rows);
-        m_was_cut = false;
-        const double safe = m_energy.safe_share(m_state, m_change, 1);
-        if (safe >= 1) return m_slope < 0;
-        m_was_cut = safe < 0.5;
-        const double wanted = -m_slope / 2, whole = -m_slope * safe * (1 - safe / 2);
-        std::vector<Real> cut = m_change;
-        m_energy.shorten(m_state, cut);
-        std::vector<double> cut_rows;
-        m_hessian.to_rows(cut, cut_rows);
-        const double slope = slope_of(cut_rows), curvature = curvature_of(cut_rows),
-                     share = curvature > 0 ? std::min(1.0, -slope / curvature) : 1,
-                     parts = -share * slope - share * share * curvature / 2;
-        if (std::max(whole, parts) < least_kept * wanted && damping < most_damping) {
-            if (may_damp) return false;
-            damping = std::max(4 * damping, 1e-6);
-        }
-        if (parts > whole) {
-            for (Real& change : cut) change *= static_cast<Real>(share);
-            for (double& change : cut_rows) change *= share;
-            m_slope = share * slope;
-            m_change.swap(cut);
-            m_change_rows.swap(cut_rows);
-        }
-        return m_slope < 0;
-    }
-
-    [[nodiscard]] double slope_of(const std::vector<double>& change) const {
-        double slope = 0;
-        for (std::size_t i = 0; i < change.size(); ++i) slope -= m_force[i] * change[i];
-        return slope;
-    }
-
-    double curvature_of(const std::vector<double>& change) {
-        m_matrix.multiply(m_energy.executor(), change, m_product);
-        double curvature = 0;
-        for (std::size_t i = 0; i < change.size(); ++i) curvature += change[i] * m_product[i];
-        return curvature;
-    }
-
-    bool accept_step(double& damping) {
-        const double most = m_energy.safe_share(m_state, m_change, longest_stretch);
-        double share = std::min(1.0, most);
-        m_before = m_state;
-        for (int halving = 0; halving < 8; ++halving, share /= 2) {
-            const double value = try_share(share);
-            const double gain = m_value - value, noise = 1e-12 * std::abs(m_value);
-            const bool falls = gain >= -1e-4 * share * m_slope;
-            const bool settles = std::abs(gain) <= noise && residual_of(m_trial) < m_result.residual;
-            if (!falls && !settles) continue;
-            const double expected = -share * m_slope * (1 - share / 2);
-            if (halving == 0 && gain > 0.5 * expected && !m_was_cut) damping = damping < 1e-8 ? 0 : damping / 4;
-            if (halving > 1 || gain < 0.1 * expected) damping = std::max(4 * damping, 1e-6);
-            const bool goes_on = falls && halving == 0 && gain > 1.5 * expected;
-            take(value);
-            if (goes_on) stretch(share, most);
-            return true;
-        }
-        m_state = m_before;
-        m_energy.evaluate(m_state, m_trial);
-        return false;
-    }
-
-    double try_share(double share) {
-        m_state = m_before;
-        for (std::size_t i = 0; i < m_state.size(); ++i) m_state[i] += static_cast<Real>(share) * m_change[i];
-        m_energy.fabric().follow(m_state);
-        return m_energy.evaluate(m_state, m_trial);
-    }
-
-    void take(double value) {
-        m_value = value;
-        m_gradient.swap(m_trial);
-    }
-
-    /// The energy fell by more than the matrix told, so it curves less along the step: twice as far, while that pays.
-    void stretch(double share, double most) {
-        std::vector<Real> best = m_state;
-        while (share < most) {
-            const double longer = std::min(2 * share, most), before = m_value;
-            const double value = try_share(longer);
-            if (value >= before) break;
-            take(value);
-            best = m_state;
-            if (before - value < -0.1 * (longer - share) * m_slope) break;
-            share = longer;
-        }
-        if (best != m_state) {
-            m_state = best;
-            m_energy.evaluate(m_state, m_gradient);
-        }
-    }
-
-    static constexpr double longest_stretch = 64, most_exact_damping = 1;
-    static constexpr int convex_run = 4, most_solves = 3;
-    static constexpr double least_kept = 0.2, most_damping = 0.1;
-    static constexpr std::size_t most_cg = 1500;
+    static constexpr double newton_below = 1e-4;
+    static constexpr int patience = 50, newtons_at_once = 6;
 
     Energy<Real>& m_energy;
     std::vector<Real>& m_state;
@@ -296,13 +171,14 @@ class Newton {
     Hessian<Real> m_hessian;
     BlockMatrix m_matrix;
     Multigrid m_preconditioner;
-    std::vector<Real> m_gradient, m_trial, m_change, m_before;
-    double m_slope = 0;
-    std::vector<double> m_force, m_change_rows, m_product;
-    std::vector<float> m_scale;
-    double m_value = 0, m_damping = 1e-3, m_exact_damping = 0, m_damped = 0;
-    int m_convex_steps = 0;
-    bool m_was_cut = false;  ///< the step would have gone further than is safe
+    Descent<Real> m_descent;
+    Newton<Real> m_newton;
+    std::vector<Real> m_gradient;
+    double m_value = 0;
+    bool m_by_matrix = false;
+    int m_left = patience, m_saddles = 0;  ///< steps until the next choice
+    /// Least residual, energy at the last choice, and what the latest steps that learn gained.
+    double m_best = 1e300, m_best_before = 1e300, m_value_before = 1e300, m_gain = 0;
     std::size_t m_referred = 0;  ///< iteration whose state the reference force is of
     RelaxResult m_result;
     std::chrono::steady_clock::time_point m_start = std::chrono::steady_clock::now();
@@ -312,7 +188,7 @@ class Newton {
 
 template <class Real>
 RelaxResult relax(Energy<Real>& energy, std::vector<Real>& state, const RelaxOptions& options) {
-    return Newton<Real>(energy, state, options).run();
+    return Relaxing<Real>(energy, state, options).run();
 }
 
 template double greatest_force(const Executor&, const std::vector<float>&);

@@ -22,6 +22,7 @@ struct RelaxOptions {
     double residual = 1e-3;  ///< goal
     std::size_t most_iterations = 500;
     double most_seconds = 1e30;
+    bool leaves_saddles = true;  ///< a rest that is no minimum is not taken for one
     /// Called after every iteration; false stops with the last state kept.
     std::function<bool(const Progress&)> watch;
 };

@@ -363,7 +363,7 @@ class Simulation {
         for (std::size_t y = 0; y < m_scene.yarns.size(); ++y) m_plan.scene.yarns[y].shift = m_scene.yarns[y].shift;
         const RelaxedRepeat result(m_design, m_plan, *m_energy, m_state);
         const Contacts contacts = contacts_of(*m_energy, m_state);
-        const std::size_t lost_count = lost();
+        const CrossingOrder order = crossing_order(m_plan.curves, splines());
         Yarns yarns = copied_back(result.yarns(), m_plan, m_design);
         const bool balanced = !m_periods || m_periods->balanced;
         yarns.report = {{"design_sha256", yarns.design_sha256},
@@ -385,9 +385,10 @@ class Simulation {
                         {"evaluations", m_evaluations},
                         {"seconds", m_seconds},
                         {"curves_down", m_last.curves_down},
-                        {"order_kept", lost_count == 0},
+                        {"order_kept", order.lost.empty()},
                         {"crossings", m_plan.curves.crossings.size()},
-                        {"lost_crossings", lost_count},
+                        {"lost_crossings", order.lost.size()},
+                        {"slid_crossings", order.slid.size()},
                         {"max_overlap", contacts.overlap},
                         {"plan", lines_json(m_plan)},
                         {"peak_bytes", peak_bytes()}};

@@ -134,6 +134,18 @@ Result<std::vector<CrossingPlace>> crossing_places(const Yarns& yarns) {
     return places;
 }
 
+Result<OrderSubject> order_subject(const Yarns& yarns) {
+    WEAVE_TRY(const double per_key, points_per_key(yarns));
+    OrderSubject subject;
+    for (const SimulatedYarn& yarn : yarns.yarns) {
+        subject.planned.push_back({yarn.planned, yarn.spline.is_periodic, yarn.spline.shift});
+        subject.now.push_back(yarn.spline);
+        subject.per_key.push_back(per_key);
+    }
+    for (std::size_t k = 0; k < 2; ++k) subject.period_mm[k] = yarns.is_periodic[k] ? yarns.size_mm[k] : 0;
+    return subject;
+}
+
 std::vector<std::size_t> sheets_of(const Yarns& yarns) {
     return SheetFinder(yarns).run();
 }

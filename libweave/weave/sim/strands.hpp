@@ -20,6 +20,9 @@ struct CrossingPlace {
 /// which tells where the key points lie on the splines; a key point beyond its yarn.
 Result<std::vector<CrossingPlace>> crossing_places(const Yarns& yarns);
 
+/// The yarns of a cloth, planned and relaxed, for crossing_order(). Errors as those of crossing_places().
+Result<OrderSubject> order_subject(const Yarns& yarns);
+
 /// What one pick, or one end, does at its crossings. In wraparound a yarn has several picks; a pick with two
 /// feeders has two strands.
 struct Strand {

@@ -1,0 +1,28 @@
+#include <weave/sim/safe_step.hpp>
+
+#include <algorithm>
+
+namespace weave::sim {
+
+template <class Real>
+SafeStep make_safe(Energy<Real>& energy, const std::vector<Real>& state, const std::vector<Real>& gradient,
+                   std::vector<Real>& change, double most) {
+    const Executor& executor = energy.executor();
+    const double slope = dot(executor, gradient, change), safe = energy.safe_share(state, change, most);
+    if (safe >= 1) return {slope, 1, safe};
+    std::vector<Real> cut = change;
+    energy.shorten(state, cut);
+    const double kept = dot(executor, gradient, cut);
+    if (kept < safe * slope) {
+        change.swap(cut);
+        return {kept, kept / slope, 1};
+    }
+    for (Real& part : change) part *= static_cast<Real>(safe);
+    return {safe * slope, safe, 1};
+}
+
+template SafeStep make_safe(Energy<float>&, const std::vector<float>&, const std::vector<float>&, std::vector<float>&, double);
+template SafeStep make_safe(Energy<double>&, const std::vector<double>&, const std::vector<double>&, std::vector<double>&,
+                            double);
+
+}  // namespace weave::sim
