@@ -173,9 +173,11 @@ std::string ending_in_words(const Json& report) {
                   report.at("goal").get<double>(), report.at("iterations").get<std::size_t>(), report.at("seconds").get<double>(),
                   report.at("points").get<std::size_t>(), 100 * report.at("max_overlap").get<double>());
     const auto lost = report.at("lost_crossings").get<std::size_t>();
-    return line + (lost == 0 ? std::string("every crossing lies as the card says\n")
-                             : counted(lost, "crossing") + " no longer as the card says\n") +
-           coverage_in_words(report) + flips_in_words(report);
+    const auto slid = report.at("slid_crossings").get<std::size_t>();
+    std::string order = lost > 0 ? counted(lost, "crossing") + " no longer as the card says\n"
+                        : slid > 0 ? "" : "every crossing lies as the card says\n";
+    if (slid > 0) order += counted(slid, "crossing") + " no longer where planned, open or not held; no yarn passed through another there\n";
+    return line + order + coverage_in_words(report) + flips_in_words(report);
 }
 
 /// The state to go on from, out of a .yarns file.

@@ -93,6 +93,7 @@ std::string run_text(const Yarns& yarns, const Inspection& inspection) {
         return counted(crossings.size(), "crossing") + what + ", such as pick " + std::to_string(crossings.front().pick + 1) +
                " with end " + std::to_string(crossings.front().end + 1) + "\n";
     };
+    if (inspection.changed.empty() && inspection.slid.empty()) return text + "; every crossing lies as the card says\n";
     text += inspection.changed.empty() ? "; no yarn passed through another\n"
                                        : "\nCHANGED: " + such(inspection.changed, " no longer as the card says");
     if (!inspection.slid.empty()) text += "SLID: " + such(inspection.slid, " no longer where planned, open or not held");

@@ -5,8 +5,6 @@
 #include <algorithm>
 #include <cmath>
 #include <random>
-#include <cstdio>
-#include <cstdlib>
 
 namespace weave::sim {
 
@@ -117,7 +115,6 @@ bool Newton<Real>::leave_saddle(std::vector<Real>& state, double& value, std::ve
         if (there < lowest) best = way;
         lowest = std::min(lowest, there);
     }
-    if (getenv("TRACE")) fprintf(stderr, "     saddle: share %g best %g lower by %g\n", share, best, value - lowest);
     value = go(state, best);
     gradient.swap(m_trial);
     return best != 0;

@@ -153,14 +153,27 @@ int entry(const Linking& linking, const Crossing& crossing) {
 
 }  // namespace
 
+namespace {
+
+/// Whether the plan itself has a crossing as the card says; a card that changed since has not.
+bool planned_so(const Crossing& crossing, const OrderSubject& subject) {
+    const auto spot = find_crossing({subject.planned[crossing.weft], subject.per_key[crossing.weft]},
+                                    {subject.planned[crossing.warp], subject.per_key[crossing.warp]}, crossing.weft_key,
+                                    crossing.warp_key);
+    return spot && (spot->height_mm > 0) == crossing.weft_over;
+}
+
+}  // namespace
+
 CrossingOrder crossing_order(const std::vector<Crossing>& crossings, const OrderSubject& subject) {
     CrossingOrder order;
     const std::vector<LostCrossing> doubtful = doubtful_crossings(crossings, subject);
     if (doubtful.empty()) return order;
     const Linking planned = linking_of(subject.planned, subject.period_mm), now = linking_of(subject.now, subject.period_mm);
     for (const LostCrossing& crossing : doubtful) {
-        const int change = entry(now, crossing.crossing) - entry(planned, crossing.crossing);
-        (passed_through(change) ? order.lost : order.slid).push_back(crossing);
+        const bool holds = planned_so(crossing.crossing, subject) &&
+                           entry(now, crossing.crossing) == entry(planned, crossing.crossing);
+        (holds ? order.slid : order.lost).push_back(crossing);
     }
     return order;
 }

@@ -6,8 +6,6 @@
 #include <algorithm>
 #include <chrono>
 #include <cmath>
-#include <cstdio>
-#include <cstdlib>
 
 namespace weave::sim {
 
@@ -81,7 +79,6 @@ class Relaxing {
             if (m_result.residual <= m_options.residual) measure_anew();
             const Progress progress{m_result.iterations, m_result.residual, m_value, seconds_since(m_start)};
             m_result.history.push_back(progress);
-            if (getenv("TRACE")) fprintf(stderr, "  %zu t %.3f res %.4g value %.8g ev %zu\n", m_result.iterations, progress.seconds, m_result.residual, m_value, m_energy.evaluations());
             if (m_options.watch && !m_options.watch(progress)) return ended(Ending::stopped);
             if (m_result.residual <= m_options.residual && !leaves_saddle()) return ended(Ending::converged);
             if (m_result.iterations >= m_options.most_iterations) return ended(Ending::iterations);
@@ -120,7 +117,6 @@ class Relaxing {
         m_result.evaluations = m_energy.evaluations();
         m_result.builds = m_energy.neighbours().builds();
         m_result.seconds = seconds_since(m_start);
-        if (getenv("TELL")) fprintf(stderr, "builds %zu evaluations %zu samples %zu entries %zu\n", m_result.builds, m_result.evaluations, m_energy.fabric().samples(), m_energy.neighbours().entries());
         return m_result;
     }
 

@@ -12,6 +12,8 @@ SafeStep make_safe(Energy<Real>& energy, const std::vector<Real>& state, const s
     if (safe >= 1) return {slope, 1, safe};
     std::vector<Real> cut = change;
     energy.shorten(state, cut);
+    const double still = energy.safe_share(state, cut, 1);  // rounds of shortening come close, not always all the way
+    for (Real& part : cut) part *= static_cast<Real>(still);
     const double kept = dot(executor, gradient, cut);
     if (kept < safe * slope) {
         change.swap(cut);
