@@ -11,7 +11,7 @@
 
 namespace weave::sim {
 
-/// How often one yarn passes over another, seen from above, signed by the sense in which they cross: for every two yarns
+/// How often one yarn passes over another, seen from nearly above, signed by the sense in which they cross: for every two yarns
 /// (the greater index first) for which that is not 0; a yarn with itself being one with its images beside it. It changes
 /// by 2 when a yarn passes through another, by 1 when a free end slips off; however yarns move otherwise, it stays.
 using Linking = std::map<std::pair<std::size_t, std::size_t>, int>;
