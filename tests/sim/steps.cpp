@@ -34,14 +34,16 @@ std::vector<Vec3> sample_places(Bench<double>& bench) {
 struct Worst {
     double pair = 0;      ///< greatest change of a pair's difference, as a share of its distance
     double movement = 0;  ///< of a sample, mm
-    double lines = 0;     ///< the same as pair, of the straight lines through samples that lie deep in one another
-    bool crushed = false; ///< such lines come closer that are nearer than a tenth of the reach
+    double lines =
+        0;  ///< the same as pair, of the straight lines through samples that lie deep in one another
+    bool crushed = false;  ///< such lines come closer that are nearer than a tenth of the reach
 };
 
-/// What a whole change does to the lines through two samples: how far they come closer, as a share of their distance.
-void look_at_lines(const Vec3& apart, const Vec3& change, const Vec3& along, const Vec3& other, double reach, double share,
-                   Worst& worst) {
-    if (apart.norm() >= reach / 2) return;
+/// What a whole change does to the lines through two samples: how far they come closer, as a share of their
+/// distance.
+void look_at_lines(const Vec3& apart, const Vec3& change, const Vec3& along, const Vec3& other, double reach,
+                   double share, Worst& worst) {
+    if (apart.norm() >= reach / 2 || std::min(along.norm(), other.norm()) < 0.1 * reach) return;
     Vec3 across = along.normalized().cross(other.normalized());
     if (across.norm() < 0.1) across = apart - along * along.dot(apart) / along.squaredNorm();
     if (across.norm() == 0) return;

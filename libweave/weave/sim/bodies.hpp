@@ -240,7 +240,9 @@ WEAVE_HD inline void add_bending(const YarnConstants<Real>& yarn, const Gauss<Re
         const Real speed = guarded(speeds.speed[g], yarn), square = speed * speed;
         const Real scale = gauss.weight[g] * yarn.bending / (2 * square * square * speed);
         const Real along = tangent.dot(bend), own = tangent.squaredNorm(), bent = bend.squaredNorm();
-        const Real twist = own * bent - along * along;  // |y' × y''|²
+        // |y' × y''|² by its parts: |y'|²|y''|² − (y'·y'')² would leave nothing but rounding where both run alike.
+        const Real nx = tangent.y() * bend.z() - tangent.z() * bend.y(), ny = tangent.z() * bend.x() - tangent.x() * bend.z(),
+                   nz = tangent.x() * bend.y() - tangent.y() * bend.x(), twist = nx * nx + ny * ny + nz * nz;
         sum.energy += scale * twist;
         sum.add(gauss.basis[g].bend, (own * bend - along * tangent) * (2 * scale));
         const Real fall = speeds.speed[g] >= speed ? 5 * twist / square : Real(0);

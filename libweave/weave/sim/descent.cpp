@@ -61,13 +61,15 @@ void Descent<Real>::find_direction() {
 /// Energy at a share of the change; the state goes there and its gradient into m_trial.
 template <class Real>
 double Descent<Real>::go(std::vector<Real>& state, double share) {
-    m_energy.executor().each(state.size(),
-                             [&](std::size_t i) { state[i] = m_before[i] + static_cast<Real>(share) * m_change[i]; });
+    m_energy.executor().each(state.size(), [&](std::size_t i) {
+        state[i] = m_before[i] + static_cast<Real>(share) * m_change[i];
+    });
     m_energy.fabric().follow(state);
     return m_energy.evaluate(state, m_trial);
 }
 
-/// Keeps a share of the change and how it changed the gradient, unless the energy hardly curves upwards along it.
+/// Keeps a share of the change and how it changed the gradient, unless the energy hardly curves upwards along
+/// it.
 template <class Real>
 void Descent<Real>::remember(double share, const std::vector<Real>& gradient) {
     constexpr double least_bend = 1e-3;
@@ -86,7 +88,8 @@ void Descent<Real>::remember(double share, const std::vector<Real>& gradient) {
 
 template <class Real>
 bool Descent<Real>::step(std::vector<Real>& state, double& value, std::vector<Real>& gradient) {
-    if (m_steps == 0 || m_steps_of_matrix >= (m_steps < first_steps ? steps_at_first : steps_later)) renew(state);
+    if (m_steps == 0 || m_steps_of_matrix >= (m_steps < first_steps ? steps_at_first : steps_later))
+        renew(state);
     ++m_steps;
     ++m_steps_of_matrix;
     m_hessian.to_rows(gradient, m_slope);
@@ -103,7 +106,8 @@ bool Descent<Real>::step(std::vector<Real>& state, double& value, std::vector<Re
         double there = go(state, share);
         const double slope_there = dot(m_energy.executor(), m_trial, m_change), gain = value - there;
         const bool falls = gain >= -1e-4 * share * safe.slope,
-                   settles = std::abs(gain) < 1e-12 * std::abs(value) && std::abs(slope_there) < std::abs(safe.slope);
+                   settles = std::abs(gain) < 1e-12 * std::abs(value) &&
+                             std::abs(slope_there) < std::abs(safe.slope);
         if (!falls && !settles) {
             const double lowest = -safe.slope * share * share / (2 * (-gain - safe.slope * share));
             share = std::clamp(lowest, 0.1 * share, 0.5 * share);

@@ -10,17 +10,18 @@
 
 namespace weave::sim {
 
-/// Steps by what the last ones told of the energy (limited-memory BFGS; Nocedal 1980), seen through the preconditioner of a
-/// convex matrix that is made anew only now and then. A step costs one evaluation or two instead of a matrix and its
-/// solution, and soon knows how softly cloth gives way where the convex matrix is too stiff.
+/// Steps by what the last ones told of the energy (limited-memory BFGS; Nocedal 1980), seen through the
+/// preconditioner of a convex matrix that is made anew only now and then. A step costs one evaluation or two
+/// instead of a matrix and its solution, and soon knows how softly cloth gives way where the convex matrix is
+/// too stiff.
 template <class Real>
 class Descent {
   public:
     Descent(Energy<Real>& energy, Hessian<Real>& hessian, BlockMatrix& matrix, Multigrid& preconditioner)
         : m_energy(energy), m_hessian(hessian), m_matrix(matrix), m_preconditioner(preconditioner) {}
 
-    /// One step from `state`, whose energy and gradient are given and become those of where it leads. False if no step
-    /// leads down.
+    /// One step from `state`, whose energy and gradient are given and become those of where it leads. False
+    /// if no step leads down.
     bool step(std::vector<Real>& state, double& value, std::vector<Real>& gradient);
 
     /// What was learnt no longer holds: another step came between.

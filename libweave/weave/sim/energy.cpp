@@ -46,8 +46,8 @@ double Energy<Real>::evaluate(const std::vector<Real>& state, std::vector<Real>&
                                                              m_segment_gradient.data()});
     if (terms.elastic && !m_spheres.empty()) {
         m_executor.each(m_fabric.segments(),
-                        FieldForces<Real>{view(state), m_spheres.data(), m_spheres.size(), m_segment_energy.data(),
-                                          m_segment_gradient.data()});
+                        FieldForces<Real>{view(state), m_spheres.data(), m_spheres.size(),
+                                          m_segment_energy.data(), m_segment_gradient.data()});
     }
     gather(gradient);
     double energy = m_executor.sum(m_fabric.segments(),
@@ -71,12 +71,14 @@ std::array<double, 2> Energy<Real>::period_gradient(const std::vector<Real>& sta
     }
     const FabricView<Real> fabric = view(state);
     for (std::size_t k = 0; k < 2; ++k) {
-        gradient[k] += m_executor.sum(m_fabric.samples(), [&](std::size_t a) { return image_pull(fabric, a, k); });
+        gradient[k] +=
+            m_executor.sum(m_fabric.samples(), [&](std::size_t a) { return image_pull(fabric, a, k); });
     }
     return gradient;
 }
 
-/// What a sample pulls at the images of others when the period along axis `k` grows; each of a pair has half of it.
+/// What a sample pulls at the images of others when the period along axis `k` grows; each of a pair has half
+/// of it.
 template <class Real>
 double Energy<Real>::image_pull(const FabricView<Real>& fabric, std::size_t a, std::size_t k) const {
     const SamplesView<Real>& all = fabric.samples;
@@ -113,7 +115,8 @@ void Energy<Real>::gather(std::vector<Real>& gradient) const {
     });
 }
 
-/// Weight times mean height of each segment, which is ∫ of its four splines: else the tip of a yarn would weigh double.
+/// Weight times mean height of each segment, which is ∫ of its four splines: else the tip of a yarn would
+/// weigh double.
 template <class Real>
 double Energy<Real>::add_weight(const std::vector<Real>& state, std::vector<Real>& gradient) const {
     constexpr double shares[]{1.0 / 24, 11.0 / 24, 11.0 / 24, 1.0 / 24};
@@ -141,7 +144,8 @@ void Energy<Real>::move_samples(const std::vector<Real>& state, const std::vecto
         for (std::uint32_t k = 0; k < yarn.samples; ++k) {
             const Basis<Real>& basis = m_fabric.bases()[yarn.basis + k];
             const std::size_t slot = 3 * std::size_t(segments[s].slot), sample = 3 * (segments[s].sample + k);
-            const Vec<Real> moved = combine(basis.value, &change[slot]), tangent = combine(basis.slope, &state[slot]);
+            const Vec<Real> moved = combine(basis.value, &change[slot]),
+                            tangent = combine(basis.slope, &state[slot]);
             for (std::size_t axis = 0; axis < 3; ++axis) {
                 m_moved[sample + axis] = moved[static_cast<Eigen::Index>(axis)];
                 m_tangent[sample + axis] = tangent[static_cast<Eigen::Index>(axis)];
@@ -150,8 +154,8 @@ void Energy<Real>::move_samples(const std::vector<Real>& state, const std::vecto
     });
 }
 
-/// The share by which sample `a` may go: no near one comes closer by 0.45 of its distance. Squares alone, so that the loop
-/// over neighbours has neither roots nor divisions.
+/// The share by which sample `a` may go: no near one comes closer by 0.45 of its distance. Squares alone, so
+/// that the loop over neighbours has neither roots nor divisions.
 template <class Real>
 double Energy<Real>::safe_share_of(const FabricView<Real>& fabric, std::size_t a, double most) const {
     const SamplesView<Real>& all = fabric.samples;
@@ -161,41 +165,54 @@ double Energy<Real>::safe_share_of(const FabricView<Real>& fabric, std::size_t a
     Real change2 = 0, apart2 = 1;  // of the pair that allows least
     for (std::uint32_t e = fabric.first_neighbour[a]; e < fabric.first_neighbour[a + 1]; ++e) {
         const std::uint32_t b = fabric.neighbours[e], own = m_neighbours.own(b);
-        const Vec<Real> apart = at - Vec<Real>(all.x[b], all.y[b], all.z[b]), change = mine - load(&m_moved[3 * std::size_t(own)]);
-        const Real near2 = apart.squaredNorm(), closing2 = change.squaredNorm(), reach = all.radius[a] + all.radius[b];
+        const Vec<Real> apart = at - Vec<Real>(all.x[b], all.y[b], all.z[b]),
+                        change = mine - load(&m_moved[3 * std::size_t(own)]);
+        const Real near2 = apart.squaredNorm(), closing2 = change.squaredNorm(),
+                   reach = all.radius[a] + all.radius[b];
         if (near2 < reach * reach / 4) share = std::min(share, crossing_share(a, own, apart, change, reach));
         if (closing2 * apart2 <= change2 * near2) continue;
         change2 = closing2;
         apart2 = near2;
     }
-    if (change2 > 0) share = std::min(share, closest * std::sqrt(static_cast<double>(apart2) / static_cast<double>(change2)));
+    if (change2 > 0)
+        share =
+            std::min(share, closest * std::sqrt(static_cast<double>(apart2) / static_cast<double>(change2)));
     return share;
 }
 
-/// Yarns that lie deep in one another may pass between their samples: there it counts how far apart the straight lines
-/// through two samples are, if these lie about where the lines are nearest. Nearer than the lines stand for the curves they
-/// do not come at all, whatever presses them together.
+/// Yarns that lie deep in one another may pass between their samples: there it counts how far apart the
+/// straight lines through two samples are, if these lie about where the lines are nearest. Nearer than the
+/// lines stand for the curves they do not come at all, whatever presses them together.
 template <class Real>
-double Energy<Real>::crossing_share(std::size_t a, std::size_t b, const Vec<Real>& apart, const Vec<Real>& change,
-                                    Real reach) const {
-    constexpr double none = 1e300, beside = 0.3, least_height = 0.1, least_sine = 0.1;
+double Energy<Real>::crossing_share(std::size_t a, std::size_t b, const Vec<Real>& apart,
+                                    const Vec<Real>& change, Real reach) const {
+    constexpr double none = 1e300, beside = 0.3, least_height = 0.1, least_sine = 0.1, least_segment = 0.1;
     const Vec<Real> along = load(&m_tangent[3 * a]), other = load(&m_tangent[3 * b]);
+    // Segments as short as that have samples so close that nothing passes between them, and tangents that say
+    // little.
+    const auto shortest = static_cast<double>(std::min(along.squaredNorm(), other.squaredNorm()));
+    if (shortest < least_segment * least_segment * static_cast<double>(reach * reach)) return none;
     Vec<Real> across = along.cross(other);
     if (across.squaredNorm() < Real(least_sine * least_sine) * along.squaredNorm() * other.squaredNorm())
         across = apart - along * (along.dot(apart) / std::max(Real(1e-30), along.squaredNorm()));
     const auto size = static_cast<double>(across.norm());
     if (!(size > 0)) return none;
-    const double height = static_cast<double>(apart.dot(across)) / size, rise = static_cast<double>(change.dot(across)) / size;
-    const double aside2 = static_cast<double>(apart.squaredNorm()) - height * height, most = beside * static_cast<double>(reach);
+    const double height = static_cast<double>(apart.dot(across)) / size,
+                 rise = static_cast<double>(change.dot(across)) / size;
+    const double aside2 = static_cast<double>(apart.squaredNorm()) - height * height,
+                 most = beside * static_cast<double>(reach);
     if (aside2 >= most * most || height * rise >= 0) return none;
-    return std::abs(height) < least_height * static_cast<double>(reach) ? 0 : closest * std::abs(height / rise);
+    return std::abs(height) < least_height * static_cast<double>(reach) ? 0
+                                                                        : closest * std::abs(height / rise);
 }
 
 template <class Real>
-double Energy<Real>::safe_share(const std::vector<Real>& state, const std::vector<Real>& change, double most) {
+double Energy<Real>::safe_share(const std::vector<Real>& state, const std::vector<Real>& change,
+                                double most) {
     move_samples(state, change);
     const FabricView<Real> fabric = view(state);
-    return m_executor.least(m_fabric.samples(), [&](std::size_t a) { return safe_share_of(fabric, a, most); }, most);
+    return m_executor.least(
+        m_fabric.samples(), [&](std::size_t a) { return safe_share_of(fabric, a, most); }, most);
 }
 
 template <class Real>
@@ -217,7 +234,8 @@ void Energy<Real>::shorten(const std::vector<Real>& state, std::vector<Real>& ch
             const std::size_t within = slot - yarn.first_slot;
             double least = 1;
             for (std::size_t c = 0; c < 4 && c <= within; ++c) {
-                if (within - c < yarn.segments) least = std::min(least, share[yarn.first_segment + within - c]);
+                if (within - c < yarn.segments)
+                    least = std::min(least, share[yarn.first_segment + within - c]);
             }
             for (std::size_t k = 0; k < 3; ++k) change[3 * slot + k] *= static_cast<Real>(least);
         });

@@ -21,8 +21,8 @@ class Energy {
     /// Energy in N·mm; `gradient` is resized to the state and holds ∂E/∂q, zero at slots that do not move.
     double evaluate(const std::vector<Real>& state, std::vector<Real>& gradient, Terms terms = {});
 
-    /// ∂E/∂P of the periods in x and y at fixed control points, N: what the piece pulls its rims together with. At rest it
-    /// is the derivative of the relaxed energy. 0 where a direction is not periodic.
+    /// ∂E/∂P of the periods in x and y at fixed control points, N: what the piece pulls its rims together
+    /// with. At rest it is the derivative of the relaxed energy. 0 where a direction is not periodic.
     std::array<double, 2> period_gradient(const std::vector<Real>& state);
 
     /// The samples and their neighbours as the latest evaluation left them.
@@ -33,8 +33,9 @@ class Energy {
     [[nodiscard]] const Executor& executor() const { return m_executor; }
     [[nodiscard]] std::size_t evaluations() const { return m_evaluations; }
 
-    /// How much of a change of state, at most `most`, may be made at once so that no two yarns can pass through one another: no pair of
-    /// near samples comes closer by half its distance or more, and no sample moves by a quarter of the least reach.
+    /// How much of a change of state, at most `most`, may be made at once so that no two yarns can pass
+    /// through one another: no pair of near samples comes closer by half its distance or more, and no sample
+    /// moves by a quarter of the least reach.
     double safe_share(const std::vector<Real>& state, const std::vector<Real>& change, double most);
 
     /// Shortens a change where it is not safe: each control point goes as far as the samples near it allow.
@@ -43,10 +44,11 @@ class Energy {
   private:
     void move_samples(const std::vector<Real>& state, const std::vector<Real>& change);
     [[nodiscard]] double safe_share_of(const FabricView<Real>& fabric, std::size_t sample, double most) const;
-    [[nodiscard]] double crossing_share(std::size_t a, std::size_t b, const Vec<Real>& apart, const Vec<Real>& change,
-                                        Real reach) const;
+    [[nodiscard]] double crossing_share(std::size_t a, std::size_t b, const Vec<Real>& apart,
+                                        const Vec<Real>& change, Real reach) const;
     void gather(std::vector<Real>& gradient) const;
-    [[nodiscard]] double image_pull(const FabricView<Real>& fabric, std::size_t sample, std::size_t axis) const;
+    [[nodiscard]] double image_pull(const FabricView<Real>& fabric, std::size_t sample,
+                                    std::size_t axis) const;
     double add_weight(const std::vector<Real>& state, std::vector<Real>& gradient) const;
 
     const Fabric<Real>& m_fabric;

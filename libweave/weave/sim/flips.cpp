@@ -17,7 +17,7 @@ constexpr double contact_shares[]{0.02, 0.2};
 /// The spring has done its work when the height is within this share of what it leads to.
 constexpr double height_share = 0.1;
 constexpr double stage_residual = 3e-2;
-constexpr std::size_t spring_iterations = 40, contact_iterations = 5, last_iterations = 15, wide_iterations = 60;
+constexpr std::size_t spring_iterations = 200, contact_iterations = 20, last_iterations = 60, wide_iterations = 300;
 /// How far around the crossing yarns move, in spacings of the cloth: while the two change sides, and then while the cloth
 /// there comes to rest, so that the rest of it has little left to do.
 constexpr double near_spacings = 1.5, wide_spacings = 5;
@@ -178,6 +178,7 @@ class Flipping {
         RelaxOptions options;
         options.residual = residual;
         options.most_iterations = most_iterations;
+        options.leaves_saddles = false;  // the cloth as a whole comes to rest afterwards
         options.watch = [&](const Progress&) {
             m_stopped = m_go_on && !m_go_on();
             return !m_stopped && !is_lifted(fabric, state);

@@ -25,9 +25,11 @@ std::vector<Piece> pieces_of(const std::vector<Spline>& yarns) {
     for (std::size_t y = 0; y < yarns.size(); ++y) {
         const Spline& spline = yarns[y];
         const std::size_t count = pieces_a_segment * spline.segments();
-        // Off the knots, so that a vertex on another yarn's straight line, which would count twice or not at all, is rare.
+        // Off the knots, so that a vertex on another yarn's straight line, which would count twice or not at
+        // all, is rare.
         const auto place = [&](std::size_t k) {
-            const Vec3 at = spline.place((static_cast<double>(k) + (spline.is_periodic ? 0.382 : 0)) / pieces_a_segment);
+            const Vec3 at =
+                spline.place((static_cast<double>(k) + (spline.is_periodic ? 0.382 : 0)) / pieces_a_segment);
             return Vec3(at.x() + aside_x * at.z(), at.y() + aside_y * at.z(), at.z());
         };
         for (std::size_t k = 0; k < count; ++k) {
@@ -58,9 +60,11 @@ class Cells {
   public:
     Cells(const std::vector<Piece>& pieces, const std::array<double, 2>& period) : m_period(period) {
         double longest = 1e-9;
-        for (const Piece& piece : pieces) longest = std::max(longest, std::hypot(piece.along.x(), piece.along.y()));
+        for (const Piece& piece : pieces)
+            longest = std::max(longest, std::hypot(piece.along.x(), piece.along.y()));
         for (std::size_t k = 0; k < 2; ++k) {
-            m_around[k] = period[k] > 0 ? std::max<std::int64_t>(1, static_cast<std::int64_t>(period[k] / longest)) : 0;
+            m_around[k] =
+                period[k] > 0 ? std::max<std::int64_t>(1, static_cast<std::int64_t>(period[k] / longest)) : 0;
             m_width[k] = m_around[k] > 0 ? period[k] / static_cast<double>(m_around[k]) : longest;
         }
         for (std::uint32_t p = 0; p < pieces.size(); ++p) m_members[key(cell_of(pieces[p]))].push_back(p);
@@ -81,7 +85,9 @@ class Cells {
 
   private:
     /// Around a period of one or two cells the neighbour before is the one after, or the cell itself.
-    [[nodiscard]] std::int64_t first(std::size_t k) const { return m_around[k] == 1 ? 1 : m_around[k] == 2 ? 0 : -1; }
+    [[nodiscard]] std::int64_t first(std::size_t k) const {
+        return m_around[k] == 1 ? 1 : m_around[k] == 2 ? 0 : -1;
+    }
     [[nodiscard]] std::int64_t folded(std::int64_t cell, std::size_t k) const {
         return m_around[k] > 0 ? ((cell % m_around[k]) + m_around[k]) % m_around[k] : cell;
     }
@@ -89,7 +95,9 @@ class Cells {
         std::array<std::int64_t, 2> cell{};
         for (std::size_t k = 0; k < 2; ++k) {
             const auto axis = static_cast<Eigen::Index>(k);
-            cell[k] = folded(static_cast<std::int64_t>(std::floor((piece.from[axis] + piece.along[axis] / 2) / m_width[k])), k);
+            cell[k] = folded(static_cast<std::int64_t>(
+                                 std::floor((piece.from[axis] + piece.along[axis] / 2) / m_width[k])),
+                             k);
         }
         return cell;
     }
@@ -108,13 +116,15 @@ std::array<int, 2> image_near(const Piece& first, const Piece& second, const std
     const Vec3 apart = first.from + first.along / 2 - second.from - second.along / 2;
     std::array<int, 2> image{};
     for (std::size_t k = 0; k < 2; ++k) {
-        if (period[k] > 0) image[k] = static_cast<int>(std::lround(apart[static_cast<Eigen::Index>(k)] / period[k]));
+        if (period[k] > 0)
+            image[k] = static_cast<int>(std::lround(apart[static_cast<Eigen::Index>(k)] / period[k]));
     }
     return image;
 }
 
 /// A yarn's own way on is no other strand: a loop that it lays in itself comes and goes freely.
-bool is_same_strand(const Spline& yarn, const std::array<int, 2>& image, const std::array<double, 2>& period) {
+bool is_same_strand(const Spline& yarn, const std::array<int, 2>& image,
+                    const std::array<double, 2>& period) {
     if (image == std::array<int, 2>{}) return true;
     if (!yarn.is_periodic) return false;
     std::array<long, 2> turns{};
@@ -137,7 +147,8 @@ Linking linking_of(const std::vector<Spline>& yarns, const std::array<double, 2>
             if (other.yarn > piece.yarn || (other.yarn == piece.yarn && q >= p)) return;
             const std::array<int, 2> image = image_near(piece, other, period_mm);
             if (other.yarn == piece.yarn && is_same_strand(yarns[piece.yarn], image, period_mm)) return;
-            const int sign = crossing(piece, other, Vec3(image[0] * period_mm[0], image[1] * period_mm[1], 0));
+            const int sign =
+                crossing(piece, other, Vec3(image[0] * period_mm[0], image[1] * period_mm[1], 0));
             if (sign != 0) linking[{piece.yarn, other.yarn}] += sign;
         });
     }

@@ -13,6 +13,9 @@ namespace {
 
 /// Skin as a share of the smallest reach: wide enough that a list lasts for tens of steps near rest.
 constexpr double skin_share = 0.25;
+/// How much farther the wide list reaches, from which lists are made anew: it lasts while samples have gone
+/// half of it.
+constexpr double travel_share = 0.5;
 /// Radii within this factor share a grid: a cell is then never more than twice too wide.
 constexpr double class_ratio = 1.5;
 
@@ -20,8 +23,8 @@ using Cell = std::array<std::int32_t, 3>;
 
 std::uint64_t key_of(const Cell& cell) {
     constexpr std::uint64_t mask = (std::uint64_t{1} << 21) - 1;
-    return (static_cast<std::uint64_t>(cell[0]) & mask) << 42 | (static_cast<std::uint64_t>(cell[1]) & mask) << 21 |
-           (static_cast<std::uint64_t>(cell[2]) & mask);
+    return (static_cast<std::uint64_t>(cell[0]) & mask) << 42 |
+           (static_cast<std::uint64_t>(cell[1]) & mask) << 21 | (static_cast<std::uint64_t>(cell[2]) & mask);
 }
 
 std::uint64_t mixed(std::uint64_t key) {
@@ -40,7 +43,7 @@ struct Neighbours<Real>::Grid {
     std::size_t mask = 0;
     std::vector<std::uint32_t> first;  ///< per bucket, and one more
     std::vector<std::uint32_t> samples;
-    std::vector<std::uint64_t> keys;  ///< cell of each entry: buckets may be shared
+    std::vector<std::uint64_t> keys;   ///< cell of each entry: buckets may be shared
     std::vector<Real> x, y, z, radii;  ///< of each entry
 
     [[nodiscard]] std::int32_t cell(double at) const {
@@ -86,12 +89,14 @@ struct Neighbours<Real>::Grid {
 };
 
 template <class Real>
-Neighbours<Real>::Neighbours(const Fabric<Real>& fabric, const Executor& executor, const Transition<Real>& transition)
+Neighbours<Real>::Neighbours(const Fabric<Real>& fabric, const Executor& executor,
+                             const Transition<Real>& transition)
     : m_fabric(fabric),
       m_executor(executor),
       m_transition(transition),
       m_own(fabric.samples()),
       m_skin(skin_share * fabric.least_reach()),
+      m_wide_skin(m_skin + travel_share * fabric.least_reach()),
       m_x(m_own),
       m_y(m_own),
       m_z(m_own),
@@ -123,14 +128,19 @@ Neighbours<Real>::Neighbours(const Fabric<Real>& fabric, const Executor& executo
     }
 }
 
+/// The farthest that a sample has gone since, squared.
 template <class Real>
-bool Neighbours<Real>::holds() const {
-    if (m_builds == 0) return false;
-    const double far = m_executor.greatest(m_own, [&](std::size_t s) {
-        const double dx = m_x[s] - m_built[3 * s], dy = m_y[s] - m_built[3 * s + 1], dz = m_z[s] - m_built[3 * s + 2];
+double Neighbours<Real>::gone_since(const std::vector<Real>& places) const {
+    return m_executor.greatest(m_own, [&](std::size_t s) {
+        const double dx = m_x[s] - places[3 * s], dy = m_y[s] - places[3 * s + 1],
+                     dz = m_z[s] - places[3 * s + 2];
         return dx * dx + dy * dy + dz * dz;
     });
-    return far <= m_skin * m_skin / 4;
+}
+
+template <class Real>
+bool Neighbours<Real>::holds() const {
+    return m_builds > 0 && gone_since(m_built) <= m_skin * m_skin / 4;
 }
 
 template <class Real>
@@ -156,7 +166,21 @@ void Neighbours<Real>::move_halo() {
 
 template <class Real>
 void Neighbours<Real>::build() {
-    if (m_builds == 0) m_first_weight.assign(m_weight.begin(), m_weight.begin() + static_cast<std::ptrdiff_t>(m_own));
+    if (m_builds == 0)
+        m_first_weight.assign(m_weight.begin(), m_weight.begin() + static_cast<std::ptrdiff_t>(m_own));
+    const double travel = m_wide_skin - m_skin;
+    if (m_builds == 0 || gone_since(m_wide_built) > travel * travel / 4) {
+        build_wide();
+    } else {
+        move_halo();
+    }
+    list_neighbours();
+    keep_places(m_built);
+    ++m_builds;
+}
+
+template <class Real>
+void Neighbours<Real>::build_wide() {
     find_halo();
     std::vector<Grid> grids(m_classes.size());
     std::vector<std::vector<std::uint32_t>> members(m_classes.size());
@@ -164,17 +188,21 @@ void Neighbours<Real>::build() {
         members[m_class_of_yarn[m_fabric.segment_places()[m_segment_of[own(s)]].yarn]].push_back(s);
     for (std::size_t c = 0; c < grids.size(); ++c) {
         grids[c].radius = m_classes[c];
-        grids[c].width = std::max(1e-9, 2 * m_classes[c] + m_skin);
+        grids[c].width = std::max(1e-9, 2 * m_classes[c] + m_wide_skin);
         grids[c].fill(members[c], *this);
     }
-    list_neighbours(grids);
-    m_built.resize(3 * m_own);
+    list_candidates(grids);
+    keep_places(m_wide_built);
+}
+
+template <class Real>
+void Neighbours<Real>::keep_places(std::vector<Real>& places) const {
+    places.resize(3 * m_own);
     for (std::size_t s = 0; s < m_own; ++s) {
-        m_built[3 * s] = m_x[s];
-        m_built[3 * s + 1] = m_y[s];
-        m_built[3 * s + 2] = m_z[s];
+        places[3 * s] = m_x[s];
+        places[3 * s + 1] = m_y[s];
+        places[3 * s + 2] = m_z[s];
     }
-    ++m_builds;
 }
 
 /// Images of samples that come within reach of the box that holds all own samples.
@@ -182,11 +210,12 @@ template <class Real>
 void Neighbours<Real>::find_halo() {
     m_halo.clear();
     const SimScene& scene = m_fabric.scene();
-    const double reach = 2 * m_fabric.greatest_radius() + m_skin;
+    const double reach = 2 * m_fabric.greatest_radius() + m_wide_skin;
     const std::array<const std::vector<Real>*, 2> axis{&m_x, &m_y};
     std::array<double, 2> low{}, high{};
     for (std::size_t k = 0; k < 2 && m_own > 0; ++k) {
-        const auto [least, most] = std::minmax_element(axis[k]->begin(), axis[k]->begin() + static_cast<std::ptrdiff_t>(m_own));
+        const auto [least, most] =
+            std::minmax_element(axis[k]->begin(), axis[k]->begin() + static_cast<std::ptrdiff_t>(m_own));
         low[k] = *least - reach;
         high[k] = *most + reach;
     }
@@ -200,7 +229,8 @@ void Neighbours<Real>::find_halo() {
         const std::array<int, 2> along_x = images(0, m_x[s]), along_y = images(1, m_y[s]);
         for (int i = along_x[0]; i <= along_x[1]; ++i) {
             for (int j = along_y[0]; j <= along_y[1]; ++j) {
-                if (i != 0 || j != 0) m_halo.push_back({s, {static_cast<std::int16_t>(i), static_cast<std::int16_t>(j)}});
+                if (i != 0 || j != 0)
+                    m_halo.push_back({s, {static_cast<std::int16_t>(i), static_cast<std::int16_t>(j)}});
             }
         }
     }
@@ -210,8 +240,8 @@ void Neighbours<Real>::find_halo() {
     move_halo();
 }
 
-/// Whether another sample lies on the same stretch of the same yarn: within half a turn along it. Lengths are those of
-/// the first list: were they of now, the energy would jump whenever a list is made anew.
+/// Whether another sample lies on the same stretch of the same yarn: within half a turn along it. Lengths are
+/// those of the first list: were they of now, the energy would jump whenever a list is made anew.
 template <class Real>
 bool Neighbours<Real>::same_stretch(std::size_t sample, std::uint32_t other) const {
     const std::uint32_t of = own(other);
@@ -221,7 +251,8 @@ bool Neighbours<Real>::same_stretch(std::size_t sample, std::uint32_t other) con
     const SimYarn& yarn = m_fabric.scene().yarns[mine.yarn];
     const YarnPlace& place = m_fabric.yarns()[mine.yarn];
     const YarnConstants<Real>& constants = m_fabric.constants()[mine.yarn];
-    if (!(constants.root_k > 0)) return true;  // it does not feel itself, and lengths cannot be told from weights
+    if (!(constants.root_k > 0))
+        return true;  // it does not feel itself, and lengths cannot be told from weights
     std::int64_t apart = static_cast<std::int64_t>(of) - static_cast<std::int64_t>(sample);
     if (other >= m_own) {
         const HaloSample& halo = m_halo[other - m_own];
@@ -236,8 +267,10 @@ bool Neighbours<Real>::same_stretch(std::size_t sample, std::uint32_t other) con
         }
         apart += turns * static_cast<std::int64_t>(place.segments) * constants.samples;
     }
-    const double step = (m_first_weight[sample] + m_first_weight[of]) / (2 * static_cast<double>(constants.root_k));
-    return std::abs(static_cast<double>(apart)) * step < std::numbers::pi * static_cast<double>(constants.radius_mm);
+    const double step =
+        (m_first_weight[sample] + m_first_weight[of]) / (2 * static_cast<double>(constants.root_k));
+    return std::abs(static_cast<double>(apart)) * step <
+           std::numbers::pi * static_cast<double>(constants.radius_mm);
 }
 
 /// Samples that may be near those of one segment, and where they are: what a thread needs while it lists.
@@ -250,41 +283,53 @@ struct Neighbours<Real>::Candidates {
         samples.clear();
         x.clear(), y.clear(), z.clear(), radius.clear();
     }
-    void add(const Grid& grid, std::size_t at) {
-        samples.push_back(grid.samples[at]);
-        x.push_back(grid.x[at]);
-        y.push_back(grid.y[at]);
-        z.push_back(grid.z[at]);
-        radius.push_back(grid.radii[at]);
+};
+
+/// The box around the samples of one segment.
+template <class Real>
+struct Neighbours<Real>::Box {
+    std::array<double, 3> low{}, high{};
+
+    [[nodiscard]] bool holds(double x, double y, double z, double reach) const {
+        return x >= low[0] - reach && x <= high[0] + reach && y >= low[1] - reach && y <= high[1] + reach &&
+               z >= low[2] - reach && z <= high[2] + reach;
     }
 };
 
-/// The samples of a segment lie close together, so cells are looked up once for all of them.
 template <class Real>
-void Neighbours<Real>::find_candidates(const std::vector<Grid>& grids, std::size_t segment, Candidates& found) const {
+typename Neighbours<Real>::Box Neighbours<Real>::box_of(std::size_t segment) const {
     const SegmentPlace& place = m_fabric.segment_places()[segment];
     const std::size_t begin = place.sample, end = begin + m_fabric.constants()[place.yarn].samples;
-    std::array<double, 3> low{}, high{};
+    Box box;
     const std::array<const std::vector<Real>*, 3> axis{&m_x, &m_y, &m_z};
     for (std::size_t k = 0; k < 3; ++k) {
         const auto [least, most] = std::minmax_element(axis[k]->begin() + static_cast<std::ptrdiff_t>(begin),
                                                        axis[k]->begin() + static_cast<std::ptrdiff_t>(end));
-        low[k] = static_cast<double>(*least);
-        high[k] = static_cast<double>(*most);
+        box.low[k] = static_cast<double>(*least);
+        box.high[k] = static_cast<double>(*most);
     }
-    found.clear();
+    return box;
+}
+
+/// The samples of a segment lie close together, so cells are looked up once for all of them.
+template <class Real>
+void Neighbours<Real>::find_candidates(const std::vector<Grid>& grids, std::size_t segment,
+                                       std::vector<std::uint32_t>& found) const {
+    const Box box = box_of(segment);
+    const auto radius = static_cast<double>(m_radius[m_fabric.segment_places()[segment].sample]);
     for (const Grid& grid : grids) {
-        const double reach = static_cast<double>(m_radius[begin]) + grid.radius + m_skin;
+        const double reach = radius + grid.radius + m_wide_skin;
         const auto add = [&](std::size_t at) {
-            const double x = grid.x[at], y = grid.y[at], z = grid.z[at];
-            if (x >= low[0] - reach && x <= high[0] + reach && y >= low[1] - reach && y <= high[1] + reach &&
-                z >= low[2] - reach && z <= high[2] + reach)
-                found.add(grid, at);
+            if (box.holds(grid.x[at], grid.y[at], grid.z[at], reach)) found.push_back(grid.samples[at]);
         };
-        const Cell first{grid.cell(low[0] - reach), grid.cell(low[1] - reach), grid.cell(low[2] - reach)},
-            last{grid.cell(high[0] + reach), grid.cell(high[1] + reach), grid.cell(high[2] + reach)};
-        // A thick yarn spans more cells of thin ones than there are thin samples: then each of these is looked at.
-        const double cells = double(last[0] - first[0] + 1) * double(last[1] - first[1] + 1) * double(last[2] - first[2] + 1);
+        const Cell first{grid.cell(box.low[0] - reach), grid.cell(box.low[1] - reach),
+                         grid.cell(box.low[2] - reach)},
+            last{grid.cell(box.high[0] + reach), grid.cell(box.high[1] + reach),
+                 grid.cell(box.high[2] + reach)};
+        // A thick yarn spans more cells of thin ones than there are thin samples: then each of these is
+        // looked at.
+        const double cells =
+            double(last[0] - first[0] + 1) * double(last[1] - first[1] + 1) * double(last[2] - first[2] + 1);
         if (cells > static_cast<double>(grid.samples.size())) {
             for (std::size_t at = 0; at < grid.samples.size(); ++at) add(at);
             continue;
@@ -297,29 +342,72 @@ void Neighbours<Real>::find_candidates(const std::vector<Grid>& grids, std::size
     }
 }
 
+/// Fills lists that follow one another, of `counts` entries, part by part: fill(part, list) appends those of
+/// its part, which begin with list number first_of(part).
 template <class Real>
-void Neighbours<Real>::list_neighbours(const std::vector<Grid>& grids) {
-    constexpr std::size_t at_once = 64;
+template <class Fill, class FirstOf>
+void Neighbours<Real>::join(std::size_t parts, std::vector<std::uint32_t>& first,
+                            std::vector<std::uint32_t>& all, const Fill& fill,
+                            const FirstOf& first_of) const {
+    std::vector<std::vector<std::uint32_t>> lists(parts);
+    m_executor.each(parts, [&](std::size_t part) { fill(part, lists[part]); });
+    for (std::size_t i = 0; i + 1 < first.size(); ++i) first[i + 1] += first[i];
+    all.resize(first.back());
+    m_executor.each(parts, [&](std::size_t part) {
+        std::ranges::copy(lists[part], all.begin() + first[first_of(part)]);
+    });
+}
+
+/// The wide list: for each segment what may come near it before samples have gone far.
+template <class Real>
+void Neighbours<Real>::list_candidates(const std::vector<Grid>& grids) {
+    const std::size_t segments = m_fabric.segments();
+    m_first_candidate.assign(segments + 1, 0);
+    join((segments + at_once - 1) / at_once, m_first_candidate, m_candidates,
+         [&](std::size_t part, std::vector<std::uint32_t>& list) {
+             for (std::size_t s = part * at_once; s < std::min(segments, (part + 1) * at_once); ++s) {
+                 const std::size_t before = list.size();
+                 find_candidates(grids, s, list);
+                 m_first_candidate[s + 1] = static_cast<std::uint32_t>(list.size() - before);
+             }
+         },
+         [&](std::size_t part) { return part * at_once; });
+}
+
+template <class Real>
+void Neighbours<Real>::gather_candidates(std::size_t segment, Candidates& near) const {
+    near.clear();
+    const Box box = box_of(segment);
+    const auto radius = static_cast<double>(m_radius[m_fabric.segment_places()[segment].sample]);
+    for (std::uint32_t e = m_first_candidate[segment]; e < m_first_candidate[segment + 1]; ++e) {
+        const std::uint32_t b = m_candidates[e];
+        if (!box.holds(m_x[b], m_y[b], m_z[b], radius + m_radius[b] + m_skin)) continue;
+        near.samples.push_back(b);
+        near.x.push_back(m_x[b]);
+        near.y.push_back(m_y[b]);
+        near.z.push_back(m_z[b]);
+        near.radius.push_back(m_radius[b]);
+    }
+}
+
+template <class Real>
+void Neighbours<Real>::list_neighbours() {
     const std::vector<SegmentPlace>& segments = m_fabric.segment_places();
-    std::vector<std::vector<std::uint32_t>> parts((segments.size() + at_once - 1) / at_once);
     m_first.assign(m_own + 1, 0);
-    m_executor.each(parts.size(), [&](std::size_t part) {
-        Candidates candidates;
-        for (std::size_t s = part * at_once; s < std::min(segments.size(), (part + 1) * at_once); ++s) {
-            find_candidates(grids, s, candidates);
-            const std::uint32_t samples = m_fabric.constants()[segments[s].yarn].samples;
-            for (std::uint32_t a = segments[s].sample; a < segments[s].sample + samples; ++a) {
-                const std::size_t before = parts[part].size();
-                list_near(a, candidates, parts[part]);
-                m_first[a + 1] = static_cast<std::uint32_t>(parts[part].size() - before);
-            }
-        }
-    });
-    for (std::size_t s = 0; s < m_own; ++s) m_first[s + 1] += m_first[s];
-    m_others.resize(m_first.back());
-    m_executor.each(parts.size(), [&](std::size_t part) {
-        std::ranges::copy(parts[part], m_others.begin() + m_first[segments[part * at_once].sample]);
-    });
+    join((segments.size() + at_once - 1) / at_once, m_first, m_others,
+         [&](std::size_t part, std::vector<std::uint32_t>& list) {
+             Candidates near;
+             for (std::size_t s = part * at_once; s < std::min(segments.size(), (part + 1) * at_once); ++s) {
+                 gather_candidates(s, near);
+                 const std::uint32_t samples = m_fabric.constants()[segments[s].yarn].samples;
+                 for (std::uint32_t a = segments[s].sample; a < segments[s].sample + samples; ++a) {
+                     const std::size_t before = list.size();
+                     list_near(a, near, list);
+                     m_first[a + 1] = static_cast<std::uint32_t>(list.size() - before);
+                 }
+             }
+         },
+         [&](std::size_t part) { return segments[part * at_once].sample; });
 }
 
 template <class Real>
@@ -337,8 +425,12 @@ void Neighbours<Real>::list_near(std::uint32_t sample, const Candidates& candida
 
 template <class Real>
 std::size_t Neighbours<Real>::bytes() const {
-    return (m_x.capacity() * 5 + m_built.capacity() + m_first_weight.capacity()) * sizeof(Real) +
-           (m_segment_of.capacity() + m_first.capacity() + m_others.capacity()) * 4 + m_halo.capacity() * sizeof(HaloSample);
+    return (m_x.capacity() * 5 + m_built.capacity() + m_wide_built.capacity() + m_first_weight.capacity()) *
+               sizeof(Real) +
+           (m_segment_of.capacity() + m_first.capacity() + m_others.capacity() +
+            m_first_candidate.capacity() + m_candidates.capacity()) *
+               4 +
+           m_halo.capacity() * sizeof(HaloSample);
 }
 
 template class Neighbours<float>;

@@ -11,17 +11,18 @@
 
 namespace weave::sim {
 
-/// Contact samples with their halo, and for each own sample those that may touch it: every sample nearer than the sum
-/// of the two radii and a skin, but for those of the same yarn within half a turn of it along the yarn (π r). The list
-/// holds until a sample has moved by half the skin.
+/// Contact samples with their halo, and for each own sample those that may touch it: every sample nearer than
+/// the sum of the two radii and a skin, but for those of the same yarn within half a turn of it along the
+/// yarn (π r). The list holds until a sample has moved by half the skin. A wider list of what may come near
+/// each segment lasts longer, so that most lists are made from it and only few by sorting all samples anew.
 template <class Real>
 class Neighbours {
   public:
     /// `transition` tells which pairs are left out besides, and must live as long.
     Neighbours(const Fabric<Real>& fabric, const Executor& executor, const Transition<Real>& transition);
 
-    /// Own samples are placed by the body PlaceSamples, then update() moves the halo along, and builds the list anew
-    /// where it no longer holds.
+    /// Own samples are placed by the body PlaceSamples, then update() moves the halo along, and builds the
+    /// list anew where it no longer holds.
     void update();
     /// Only the halo: the list is known to hold.
     void move_halo();
@@ -43,7 +44,9 @@ class Neighbours {
     [[nodiscard]] std::array<std::int16_t, 2> image(std::uint32_t sample) const {
         return sample < m_own ? std::array<std::int16_t, 2>{} : m_halo[sample - m_own].image;
     }
-    [[nodiscard]] std::uint32_t segment_of(std::uint32_t own_sample) const { return m_segment_of[own_sample]; }
+    [[nodiscard]] std::uint32_t segment_of(std::uint32_t own_sample) const {
+        return m_segment_of[own_sample];
+    }
     /// Bumped by each rebuild.
     [[nodiscard]] std::size_t builds() const { return m_builds; }
     [[nodiscard]] double skin_mm() const { return m_skin; }
@@ -52,26 +55,41 @@ class Neighbours {
   private:
     struct Grid;
     struct Candidates;
+    struct Box;
+    static constexpr std::size_t at_once = 64;  ///< segments that a thread lists at once
+
     void build();
+    void build_wide();
     void find_halo();
-    void list_neighbours(const std::vector<Grid>& grids);
-    void find_candidates(const std::vector<Grid>& grids, std::size_t segment, Candidates& found) const;
-    void list_near(std::uint32_t sample, const Candidates& candidates, std::vector<std::uint32_t>& list) const;
+    [[nodiscard]] double gone_since(const std::vector<Real>& places) const;
+    void keep_places(std::vector<Real>& places) const;
+    [[nodiscard]] Box box_of(std::size_t segment) const;
+    template <class Fill, class FirstOf>
+    void join(std::size_t parts, std::vector<std::uint32_t>& first, std::vector<std::uint32_t>& all,
+              const Fill& fill, const FirstOf& first_of) const;
+    void list_candidates(const std::vector<Grid>& grids);
+    void list_neighbours();
+    void find_candidates(const std::vector<Grid>& grids, std::size_t segment,
+                         std::vector<std::uint32_t>& found) const;
+    void gather_candidates(std::size_t segment, Candidates& near) const;
+    void list_near(std::uint32_t sample, const Candidates& candidates,
+                   std::vector<std::uint32_t>& list) const;
     [[nodiscard]] bool same_stretch(std::size_t sample, std::uint32_t other) const;
 
     const Fabric<Real>& m_fabric;
     const Executor& m_executor;
     const Transition<Real>& m_transition;
     std::size_t m_own;
-    double m_skin;
+    double m_skin, m_wide_skin;
     std::vector<Real> m_x, m_y, m_z, m_weight, m_radius;
-    std::vector<Real> m_built;  ///< places when the list was built, x y z of own samples
-    std::vector<Real> m_first_weight;  ///< of own samples when the first list was made
+    std::vector<Real> m_built, m_wide_built;  ///< places when each list was made, x y z of own samples
+    std::vector<Real> m_first_weight;         ///< of own samples when the first list was made
     std::vector<std::uint32_t> m_segment_of;
     std::vector<std::uint32_t> m_class_of_yarn;
     std::vector<double> m_classes;  ///< greatest radius of each class, rising
     std::vector<HaloSample> m_halo;
     std::vector<std::uint32_t> m_first, m_others;
+    std::vector<std::uint32_t> m_first_candidate, m_candidates;  ///< of each segment, samples and images
     std::size_t m_builds = 0;
 };
 

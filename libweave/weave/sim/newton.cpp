@@ -10,7 +10,8 @@ namespace weave::sim {
 
 namespace {
 
-/// Above this residual the energy is far from what exact second derivatives tell; their convex part leads on better.
+/// Above this residual the energy is far from what exact second derivatives tell; their convex part leads on
+/// better.
 constexpr double exact_below = 1;
 
 /// How far along `direction` from a step of which (size², step·M·direction) is known the radius is reached.
@@ -22,7 +23,8 @@ double to_border(double size2, double along, double direction2, double radius) {
 }  // namespace
 
 RadiusStep step_within(const Executor& executor, const BlockMatrix& matrix, Preconditioner& preconditioner,
-                       const std::vector<double>& b, double radius, double tolerance, std::size_t most_iterations) {
+                       const std::vector<double>& b, double radius, double tolerance,
+                       std::size_t most_iterations) {
     RadiusStep result;
     std::vector<double> residual = b, solved, direction, product;
     result.step.assign(b.size(), 0);
@@ -62,8 +64,9 @@ RadiusStep step_within(const Executor& executor, const BlockMatrix& matrix, Prec
     return result;
 }
 
-std::vector<double> downward_direction(const Executor& executor, const BlockMatrix& matrix, Preconditioner& preconditioner,
-                                       double least, std::size_t most_iterations) {
+std::vector<double> downward_direction(const Executor& executor, const BlockMatrix& matrix,
+                                       Preconditioner& preconditioner, double least,
+                                       std::size_t most_iterations) {
     std::vector<double> residual(3 * matrix.rows()), solved, direction, product;
     std::mt19937 random(1);
     for (double& entry : residual) entry = static_cast<double>(random()) / 0x80000000U - 1;
@@ -79,7 +82,8 @@ std::vector<double> downward_direction(const Executor& executor, const BlockMatr
         executor.each(residual.size(), [&](std::size_t k) { residual[k] -= share * product[k]; });
         preconditioner.apply(residual, solved);
         const double next = dot(executor, residual, solved), turn = next / work;
-        executor.each(residual.size(), [&](std::size_t k) { direction[k] = solved[k] + turn * direction[k]; });
+        executor.each(residual.size(),
+                      [&](std::size_t k) { direction[k] = solved[k] + turn * direction[k]; });
         size2 = next + turn * turn * size2;
         work = next;
     }
@@ -95,12 +99,14 @@ void Newton<Real>::make_matrix(const std::vector<Real>& state, Curvature curvatu
 }
 
 template <class Real>
-bool Newton<Real>::leave_saddle(std::vector<Real>& state, double& value, std::vector<Real>& gradient, double force) {
+bool Newton<Real>::leave_saddle(std::vector<Real>& state, double& value, std::vector<Real>& gradient,
+                                double force) {
     constexpr double least = 1e-3, far = 0.05;  // of the preconditioner's norm; of the least reach
     constexpr std::size_t most_cg = 80;
     if (m_hessian.rows() == 0) return false;
     make_matrix(state, Curvature::exact);
-    const std::vector<double> down = downward_direction(m_energy.executor(), m_matrix, m_preconditioner, least, most_cg);
+    const std::vector<double> down =
+        downward_direction(m_energy.executor(), m_matrix, m_preconditioner, least, most_cg);
     m_curves_down = !down.empty();
     if (down.empty()) return false;
     m_hessian.to_slots(down, m_change);
@@ -122,8 +128,9 @@ bool Newton<Real>::leave_saddle(std::vector<Real>& state, double& value, std::ve
 
 template <class Real>
 double Newton<Real>::go(std::vector<Real>& state, double share) {
-    m_energy.executor().each(state.size(),
-                             [&](std::size_t i) { state[i] = m_before[i] + static_cast<Real>(share) * m_change[i]; });
+    m_energy.executor().each(state.size(), [&](std::size_t i) {
+        state[i] = m_before[i] + static_cast<Real>(share) * m_change[i];
+    });
     m_energy.fabric().follow(state);
     return m_energy.evaluate(state, m_trial);
 }
@@ -138,7 +145,8 @@ double Newton<Real>::fall_of(const SafeStep& safe) {
 }
 
 template <class Real>
-bool Newton<Real>::step(std::vector<Real>& state, double& value, std::vector<Real>& gradient, double residual) {
+bool Newton<Real>::step(std::vector<Real>& state, double& value, std::vector<Real>& gradient,
+                        double residual) {
     constexpr std::size_t most_cg = 500;
     constexpr int most_attempts = 10;
     const bool exact = residual < exact_below;
@@ -160,17 +168,20 @@ bool Newton<Real>::step(std::vector<Real>& state, double& value, std::vector<Rea
         m_curves_down = m_curves_down || found.curves_down;
         m_hessian.to_slots(found.step, m_change);
         const SafeStep safe = make_safe(m_energy, state, gradient, m_change, 1);
-        const double fall = safe.kept < 1 ? fall_of(safe) : found.fall, there = go(state, 1), gain = value - there;
+        const double fall = safe.kept < 1 ? fall_of(safe) : found.fall, there = go(state, 1),
+                     gain = value - there;
         const double held = fall > 0 ? gain / fall : -1;
-        const bool settles = std::abs(gain) <= 1e-12 * std::abs(value) &&
-                             greatest_force(m_energy.executor(), m_trial) < greatest_force(m_energy.executor(), gradient);
+        const bool settles =
+            std::abs(gain) <= 1e-12 * std::abs(value) &&
+            greatest_force(m_energy.executor(), m_trial) < greatest_force(m_energy.executor(), gradient);
         if (exact) {
-            if (held > 0.75 && found.at_border) m_radius *= 3;
+            if (held > 0.75 && found.at_border)
+                m_radius *= 3;
             else if (held < 0.25 && !settles)
                 m_radius = std::max(0.25 * held, 0.1) * std::min(1.0, safe.kept) * found.size;
         } else if (held < 0.25) {
             m_matrix.add_to_pivots(7 * m_damping);
-            m_damping *= 8;
+            m_damping = std::min(8 * m_damping, 1e3F);
         } else if (held > 0.75 && safe.kept > 0.5) {
             m_damping = std::max(m_damping / 4, 1e-7F);
         }

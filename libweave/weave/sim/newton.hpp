@@ -10,40 +10,45 @@
 
 namespace weave::sim {
 
-/// A step found by conjugate gradients within a radius (Steihaug 1983), measured in the preconditioner's norm.
+/// A step found by conjugate gradients within a radius (Steihaug 1983), measured in the preconditioner's
+/// norm.
 struct RadiusStep {
     std::vector<double> step;
-    double fall = 0;    ///< of the quadratic model
-    double size = 0;    ///< of the step
+    double fall = 0;  ///< of the quadratic model
+    double size = 0;  ///< of the step
     bool at_border = false;
-    bool curves_down = false;  ///< it met a direction in which the matrix does not curve upwards, and went along it
+    bool curves_down =
+        false;  ///< it met a direction in which the matrix does not curve upwards, and went along it
     std::size_t iterations = 0;
 };
 
 /// Least of ½ x·A·x − b·x among the x no farther out than `radius`, until the residual has fallen to
 /// `tolerance` in the preconditioner's norm.
 RadiusStep step_within(const Executor& executor, const BlockMatrix& matrix, Preconditioner& preconditioner,
-                       const std::vector<double>& b, double radius, double tolerance, std::size_t most_iterations);
+                       const std::vector<double>& b, double radius, double tolerance,
+                       std::size_t most_iterations);
 
-/// A direction in which the matrix curves downwards by more than `least` of what the preconditioner holds it for; empty if
-/// a search of so many iterations from a random start finds none.
-std::vector<double> downward_direction(const Executor& executor, const BlockMatrix& matrix, Preconditioner& preconditioner,
-                                       double least, std::size_t most_iterations);
+/// A direction in which the matrix curves downwards by more than `least` of what the preconditioner holds it
+/// for; empty if a search of so many iterations from a random start finds none.
+std::vector<double> downward_direction(const Executor& executor, const BlockMatrix& matrix,
+                                       Preconditioner& preconditioner, double least,
+                                       std::size_t most_iterations);
 
-/// Newton steps by the exact second derivatives, or far from rest their convex part, no farther than these have proved to hold.
+/// Newton steps by the exact second derivatives, or far from rest their convex part, no farther than these
+/// have proved to hold.
 template <class Real>
 class Newton {
   public:
     Newton(Energy<Real>& energy, Hessian<Real>& hessian, BlockMatrix& matrix, Multigrid& preconditioner)
         : m_energy(energy), m_hessian(hessian), m_matrix(matrix), m_preconditioner(preconditioner) {}
 
-    /// One step from `state`, whose energy and gradient are given and become those of where it leads; `residual` tells how
-    /// exact it should be. False if no step leads down.
+    /// One step from `state`, whose energy and gradient are given and become those of where it leads;
+    /// `residual` tells how exact it should be. False if no step leads down.
     bool step(std::vector<Real>& state, double& value, std::vector<Real>& gradient, double residual);
 
-    /// Leaves a state of rest that is none but a saddle, where the energy falls to both sides: moves by a little to the side
-    /// that is lower. False if no such direction is found, or none that is worth it: the energy must fall as it would against
-    /// `force`, N, which is what counts as none.
+    /// Leaves a state of rest that is none but a saddle, where the energy falls to both sides: moves by a
+    /// little to the side that is lower. False if no such direction is found, or none that is worth it: the
+    /// energy must fall as it would against `force`, N, which is what counts as none.
     bool leave_saddle(std::vector<Real>& state, double& value, std::vector<Real>& gradient, double force);
 
     /// Whether the last matrix had a direction in which it does not curve upwards.

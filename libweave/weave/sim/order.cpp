@@ -40,7 +40,9 @@ std::optional<CrossingSpot> spot_by_newton(const Thread& weft, const Thread& war
         const double share = size > 0.5 ? 0.5 / size : 1;
         t = clamped(weft, t + share * dt);
         s = clamped(warp, s + share * ds);
-        if (std::abs(t - t0) > farthest_keys * weft.per_key || std::abs(s - s0) > farthest_keys * warp.per_key) return {};
+        if (std::abs(t - t0) > farthest_keys * weft.per_key ||
+            std::abs(s - s0) > farthest_keys * warp.per_key)
+            return {};
     }
     return {};
 }
@@ -62,10 +64,12 @@ std::optional<CrossingSpot> spot_by_search(const Thread& weft, const Thread& war
     for (int i = 0; i < pieces; ++i) {
         for (int j = 0; j < pieces; ++j) {
             const Vec3 &p = a[static_cast<std::size_t>(i)], &q = b[static_cast<std::size_t>(j)];
-            const Vec3 u = a[static_cast<std::size_t>(i) + 1] - p, v = b[static_cast<std::size_t>(j) + 1] - q, w = q - p;
+            const Vec3 u = a[static_cast<std::size_t>(i) + 1] - p, v = b[static_cast<std::size_t>(j) + 1] - q,
+                       w = q - p;
             const double det = u.x() * v.y() - u.y() * v.x();
             if (det == 0) continue;
-            const double along = (w.x() * v.y() - w.y() * v.x()) / det, other = (w.x() * u.y() - w.y() * u.x()) / det;
+            const double along = (w.x() * v.y() - w.y() * v.x()) / det,
+                         other = (w.x() * u.y() - w.y() * u.x()) / det;
             if (along < 0 || along > 1 || other < 0 || other > 1) continue;
             const int far = std::abs(2 * i - pieces) + std::abs(2 * j - pieces);
             if (far >= nearest) continue;
@@ -101,8 +105,8 @@ Vec3 across_both(const Thread& weft, const Thread& warp, const CrossingSpot& at,
     return warp.spline.tangent(at.warp_at).cross(weft.spline.tangent(at.weft_at)) * weft_way;
 }
 
-/// Whether a crossing lies as the card says. Cloth that stands on edge or hangs over, as an opened pocket's does, shows
-/// nothing from above: there the yarns are looked at across both of them, where they are nearest.
+/// Whether a crossing lies as the card says. Cloth that stands on edge or hangs over, as an opened pocket's
+/// does, shows nothing from above: there the yarns are looked at across both of them, where they are nearest.
 bool lies_as_planned(const Thread& weft, const Thread& warp, const std::optional<CrossingSpot>& spot,
                      const CrossingSpot& nearest, double weft_way, bool weft_over) {
     constexpr double steepest = 0.5;
@@ -114,8 +118,10 @@ bool lies_as_planned(const Thread& weft, const Thread& warp, const std::optional
 
 }  // namespace
 
-std::optional<CrossingSpot> find_crossing(const Thread& weft, const Thread& warp, std::size_t weft_key, std::size_t warp_key) {
-    const double t = weft.per_key * static_cast<double>(weft_key), s = warp.per_key * static_cast<double>(warp_key);
+std::optional<CrossingSpot> find_crossing(const Thread& weft, const Thread& warp, std::size_t weft_key,
+                                          std::size_t warp_key) {
+    const double t = weft.per_key * static_cast<double>(weft_key),
+                 s = warp.per_key * static_cast<double>(warp_key);
     const std::optional<CrossingSpot> spot = spot_by_newton(weft, warp, t, s);
     return spot ? spot : spot_by_search(weft, warp, t, s);
 }
@@ -123,23 +129,28 @@ std::optional<CrossingSpot> find_crossing(const Thread& weft, const Thread& warp
 std::optional<CrossingSpot> find_crossing(const ClothCurves& curves, const std::vector<Spline>& splines,
                                           const Crossing& crossing) {
     return find_crossing(thread_of(splines[crossing.weft], curves.yarns[crossing.weft]),
-                         thread_of(splines[crossing.warp], curves.yarns[crossing.warp]), crossing.weft_key, crossing.warp_key);
+                         thread_of(splines[crossing.warp], curves.yarns[crossing.warp]), crossing.weft_key,
+                         crossing.warp_key);
 }
 
 namespace {
 
 /// Crossings that do not show as planned where they should.
-std::vector<LostCrossing> doubtful_crossings(const std::vector<Crossing>& crossings, const OrderSubject& subject) {
+std::vector<LostCrossing> doubtful_crossings(const std::vector<Crossing>& crossings,
+                                             const OrderSubject& subject) {
     std::vector<LostCrossing> doubtful;
     for (const Crossing& crossing : crossings) {
-        if (subject.now[crossing.weft].control.empty() || subject.now[crossing.warp].control.empty()) continue;
+        if (subject.now[crossing.weft].control.empty() || subject.now[crossing.warp].control.empty())
+            continue;
         const Thread weft{subject.now[crossing.weft], subject.per_key[crossing.weft]},
             warp{subject.now[crossing.warp], subject.per_key[crossing.warp]};
         const double t = weft.per_key * static_cast<double>(crossing.weft_key),
                      s = warp.per_key * static_cast<double>(crossing.warp_key);
         const Spline& planned = subject.planned[crossing.weft];
-        const double weft_way = planned.tangent(std::min(t, static_cast<double>(planned.segments()))).y() < 0 ? -1 : 1;
-        const std::optional<CrossingSpot> spot = find_crossing(weft, warp, crossing.weft_key, crossing.warp_key);
+        const double weft_way =
+            planned.tangent(std::min(t, static_cast<double>(planned.segments()))).y() < 0 ? -1 : 1;
+        const std::optional<CrossingSpot> spot =
+            find_crossing(weft, warp, crossing.weft_key, crossing.warp_key);
         if (!lies_as_planned(weft, warp, spot, nearest_spot(weft, warp, t, s), weft_way, crossing.weft_over))
             doubtful.push_back({crossing, spot.has_value()});
     }
@@ -147,7 +158,8 @@ std::vector<LostCrossing> doubtful_crossings(const std::vector<Crossing>& crossi
 }
 
 int entry(const Linking& linking, const Crossing& crossing) {
-    const auto found = linking.find({std::max(crossing.weft, crossing.warp), std::min(crossing.weft, crossing.warp)});
+    const auto found =
+        linking.find({std::max(crossing.weft, crossing.warp), std::min(crossing.weft, crossing.warp)});
     return found == linking.end() ? 0 : found->second;
 }
 
@@ -158,8 +170,8 @@ namespace {
 /// Whether the plan itself has a crossing as the card says; a card that changed since has not.
 bool planned_so(const Crossing& crossing, const OrderSubject& subject) {
     const auto spot = find_crossing({subject.planned[crossing.weft], subject.per_key[crossing.weft]},
-                                    {subject.planned[crossing.warp], subject.per_key[crossing.warp]}, crossing.weft_key,
-                                    crossing.warp_key);
+                                    {subject.planned[crossing.warp], subject.per_key[crossing.warp]},
+                                    crossing.weft_key, crossing.warp_key);
     return spot && (spot->height_mm > 0) == crossing.weft_over;
 }
 
@@ -169,7 +181,8 @@ CrossingOrder crossing_order(const std::vector<Crossing>& crossings, const Order
     CrossingOrder order;
     const std::vector<LostCrossing> doubtful = doubtful_crossings(crossings, subject);
     if (doubtful.empty()) return order;
-    const Linking planned = linking_of(subject.planned, subject.period_mm), now = linking_of(subject.now, subject.period_mm);
+    const Linking planned = linking_of(subject.planned, subject.period_mm),
+                  now = linking_of(subject.now, subject.period_mm);
     for (const LostCrossing& crossing : doubtful) {
         const bool holds = planned_so(crossing.crossing, subject) &&
                            entry(now, crossing.crossing) == entry(planned, crossing.crossing);
@@ -186,7 +199,8 @@ CrossingOrder crossing_order(const ClothCurves& curves, const std::vector<Spline
         if (splines[y].control.empty()) continue;
         std::vector<Vec3> keys;
         for (const KeyPoint& key : curves.yarns[y].keys) keys.push_back(key.place);
-        planned = resample(interpolate(keys, curves.yarns[y].is_periodic, curves.yarns[y].shift), splines[y].control.size());
+        planned = resample(interpolate(keys, curves.yarns[y].is_periodic, curves.yarns[y].shift),
+                           splines[y].control.size());
     }
     for (std::size_t k = 0; k < 2; ++k) subject.period_mm[k] = curves.is_periodic[k] ? curves.size_mm[k] : 0;
     return crossing_order(curves.crossings, subject);

@@ -21,9 +21,10 @@ struct CrossingSpot {
     double height_mm = 0;             ///< of the weft above the warp
 };
 
-/// The crossing of two yarns nearest to their key points, at most three key points away; nothing where they do not
-/// cross there.
-std::optional<CrossingSpot> find_crossing(const Thread& weft, const Thread& warp, std::size_t weft_key, std::size_t warp_key);
+/// The crossing of two yarns nearest to their key points, at most three key points away; nothing where they
+/// do not cross there.
+std::optional<CrossingSpot> find_crossing(const Thread& weft, const Thread& warp, std::size_t weft_key,
+                                          std::size_t warp_key);
 
 /// The same for a crossing of planned curves, from its planned place on. `splines` as for lost_crossings().
 std::optional<CrossingSpot> find_crossing(const ClothCurves& curves, const std::vector<Spline>& splines,
@@ -38,22 +39,23 @@ struct LostCrossing {
 /// What became of the crossings of a card image in relaxed yarns.
 struct CrossingOrder {
     std::vector<LostCrossing> lost;  ///< a yarn passed through the other, or slipped off its end
-    /// No longer seen where they were planned, though nothing passed through anything: the yarns hang apart in cloth that
-    /// stands open, or one lay over the other without being held and slid off.
+    /// No longer seen where they were planned, though nothing passed through anything: the yarns hang apart
+    /// in cloth that stands open, or one lay over the other without being held and slid off.
     std::vector<LostCrossing> slid;
 };
 
-/// Yarns as planned and as they lie now, with as many control points: one entry each for what crossings index. An empty
-/// spline was left out, and so are its crossings.
+/// Yarns as planned and as they lie now, with as many control points: one entry each for what crossings
+/// index. An empty spline was left out, and so are its crossings.
 struct OrderSubject {
     std::vector<Spline> planned, now;
-    std::vector<double> per_key;         ///< parameter from one key point of a yarn to the next
+    std::vector<double> per_key;        ///< parameter from one key point of a yarn to the next
     std::array<double, 2> period_mm{};  ///< 0 in directions that do not repeat
 };
 
-/// Looks every crossing up in the relaxed yarns: where the projections of its two yarns cross, from the planned place
-/// on, and which lies above; where cloth stands on edge or hangs over, which lies on which side where they are nearest.
-/// What is in doubt so is decided by how often its two yarns pass over one another in all (linking.hpp).
+/// Looks every crossing up in the relaxed yarns: where the projections of its two yarns cross, from the
+/// planned place on, and which lies above; where cloth stands on edge or hangs over, which lies on which side
+/// where they are nearest. What is in doubt so is decided by how often its two yarns pass over one another in
+/// all (linking.hpp).
 CrossingOrder crossing_order(const std::vector<Crossing>& crossings, const OrderSubject& subject);
 
 /// The same for planned curves; `splines` has one entry for each yarn of `curves`.

@@ -2,6 +2,7 @@
 #include <weave/sim/multigrid.hpp>
 #include <weave/sim/newton.hpp>
 #include <weave/sim/relax.hpp>
+#include <weave/sim/spread.hpp>
 
 #include <algorithm>
 #include <chrono>
@@ -37,7 +38,8 @@ double reference_force(Energy<Real>& energy, const std::vector<Real>& state) {
         const SimYarn& yarn = fabric.scene().yarns[y];
         const double tension = yarn.is_fed ? yarn.stretch_N * (yarn.strain - 1) : 0;
         const double segment = 2 * yarn.radius_mm;
-        reference = std::max({reference, tension, yarn.bending_N_mm2 / (segment * segment), 1e-6 * yarn.stretch_N});
+        reference =
+            std::max({reference, tension, yarn.bending_N_mm2 / (segment * segment), 1e-6 * yarn.stretch_N});
     }
     std::vector<Real> force;
     energy.evaluate(state, force, {.elastic = false, .contact = true});
@@ -56,7 +58,8 @@ double reference_force(Energy<Real>& energy, const std::vector<Real>& state) {
 
 namespace {
 
-/// One relaxation under way: steps that learn while yarns have far to go, Newton's where the exact matrix leads home.
+/// One relaxation under way: steps that learn while yarns have far to go, Newton's where the exact matrix
+/// leads home.
 template <class Real>
 class Relaxing {
   public:
@@ -71,6 +74,7 @@ class Relaxing {
 
     RelaxResult run() {
         m_value = m_energy.evaluate(m_state, m_gradient);
+        if (spread_points(m_energy, m_state)) m_energy.evaluate(m_state, m_gradient);
         m_result.reference_N = reference_force(m_energy, m_state);
         m_value = m_energy.evaluate(m_state, m_gradient);
         while (true) {
@@ -85,7 +89,8 @@ class Relaxing {
             if (progress.seconds > m_options.most_seconds) return ended(Ending::time);
             if (!step()) return ended(Ending::stuck);
             ++m_result.iterations;
-            if (m_result.iterations % 32 == 0 || (m_result.iterations & (m_result.iterations - 1)) == 0) renew_reference();
+            if (m_result.iterations % 32 == 0 || (m_result.iterations & (m_result.iterations - 1)) == 0)
+                renew_reference();
         }
     }
 
@@ -123,14 +128,16 @@ class Relaxing {
     bool leaves_saddle() {
         constexpr int most_saddles = 5;
         if (!m_options.leaves_saddles || m_saddles == most_saddles) return false;
-        if (!m_newton.leave_saddle(m_state, m_value, m_gradient, m_options.residual * m_result.reference_N)) return false;
+        if (!m_newton.leave_saddle(m_state, m_value, m_gradient, m_options.residual * m_result.reference_N))
+            return false;
         ++m_saddles;
         m_descent.forget();
         return true;
     }
 
-    /// Near rest the exact matrix leads home. Farther off it is little worth, cloth being far from a quadratic form, unless
-    /// steps that learn make no way: then something is so stiff against the rest that only the matrix knows it.
+    /// Near rest the exact matrix leads home. Farther off it is little worth, cloth being far from a
+    /// quadratic form, unless steps that learn make no way: then something is so stiff against the rest that
+    /// only the matrix knows it.
     bool step() {
         m_best = std::min(m_best, m_result.residual);
         if (--m_left <= 0) choose();
@@ -140,10 +147,13 @@ class Relaxing {
             m_left = 0;
         }
         // The second has forgotten what misled the first.
-        return m_descent.step(m_state, m_value, m_gradient) || m_descent.step(m_state, m_value, m_gradient);
+        if (m_descent.step(m_state, m_value, m_gradient) || m_descent.step(m_state, m_value, m_gradient))
+            return true;
+        return m_newton.step(m_state, m_value, m_gradient, m_result.residual);
     }
 
-    /// Which steps come next: those of the matrix if the others have not halved the residual, as long as they pay.
+    /// Which steps come next: those of the matrix if the others have not halved the residual, as long as they
+    /// pay.
     void choose() {
         const double gain = m_value_before - m_value;
         const bool halved = m_best < 0.5 * m_best_before;

@@ -20,7 +20,7 @@ struct Progress {
 
 struct RelaxOptions {
     double residual = 1e-3;  ///< goal
-    std::size_t most_iterations = 500;
+    std::size_t most_iterations = 5000;
     double most_seconds = 1e30;
     bool leaves_saddles = true;  ///< a rest that is no minimum is not taken for one
     /// Called after every iteration; false stops with the last state kept.
@@ -37,12 +37,13 @@ struct RelaxResult {
     double residual = 0, energy = 0, reference_N = 0;
     std::size_t iterations = 0, evaluations = 0, cg_iterations = 0, builds = 0;
     double seconds = 0;
-    bool curves_down = false;  ///< the last matrix had a direction of negative curvature: a saddle, not a minimum
+    bool curves_down =
+        false;  ///< the last matrix had a direction of negative curvature: a saddle, not a minimum
     std::vector<Progress> history;
 };
 
-/// The force that residuals are measured by: the greatest of warp tension, median contact force of the segments that
-/// touch, EI/L² and 1e-6·EA, in N; 0 for an empty scene.
+/// The force that residuals are measured by: the greatest of warp tension, median contact force of the
+/// segments that touch, EI/L² and 1e-6·EA, in N; 0 for an empty scene.
 template <class Real>
 double reference_force(Energy<Real>& energy, const std::vector<Real>& state);
 

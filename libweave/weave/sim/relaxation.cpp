@@ -11,7 +11,7 @@ namespace {
 constexpr double strain_step = 0.02, radius_factor = 1.2, stiffness_factor = 4;
 /// How far yarns give way between two moves.
 constexpr double passing_residual = 0.1;
-constexpr std::size_t passing_iterations = 12;
+constexpr std::size_t passing_iterations = 60;
 
 double towards(double now, double wanted, double factor) {
     return std::clamp(wanted, now / factor, now * factor);
@@ -79,6 +79,7 @@ RelaxResult Relaxation::run(const RelaxOptions& options) {
     RelaxOptions passing = options;
     passing.residual = std::max(options.residual, passing_residual);
     passing.most_iterations = passing_iterations;
+    passing.leaves_saddles = false;
     while (approach()) {
         apply();
         const RelaxResult passed = relax_now(passing);

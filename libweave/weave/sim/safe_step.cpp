@@ -12,7 +12,8 @@ SafeStep make_safe(Energy<Real>& energy, const std::vector<Real>& state, const s
     if (safe >= 1) return {slope, 1, safe};
     std::vector<Real> cut = change;
     energy.shorten(state, cut);
-    const double still = energy.safe_share(state, cut, 1);  // rounds of shortening come close, not always all the way
+    const double still =
+        energy.safe_share(state, cut, 1);  // rounds of shortening come close, not always all the way
     for (Real& part : cut) part *= static_cast<Real>(still);
     const double kept = dot(executor, gradient, cut);
     if (kept < safe * slope) {
@@ -23,8 +24,9 @@ SafeStep make_safe(Energy<Real>& energy, const std::vector<Real>& state, const s
     return {safe * slope, safe, 1};
 }
 
-template SafeStep make_safe(Energy<float>&, const std::vector<float>&, const std::vector<float>&, std::vector<float>&, double);
-template SafeStep make_safe(Energy<double>&, const std::vector<double>&, const std::vector<double>&, std::vector<double>&,
-                            double);
+template SafeStep make_safe(Energy<float>&, const std::vector<float>&, const std::vector<float>&,
+                            std::vector<float>&, double);
+template SafeStep make_safe(Energy<double>&, const std::vector<double>&, const std::vector<double>&,
+                            std::vector<double>&, double);
 
 }  // namespace weave::sim

@@ -26,7 +26,7 @@ struct SimulationOptions {
     Solver solver = Solver::relax;
     std::size_t threads = 0;            ///< 0: one a core
     std::optional<double> residual;     ///< instead of the fidelity's
-    std::size_t most_iterations = 2000;
+    std::size_t most_iterations = 20000;
     double most_seconds = 1e30;
     std::function<bool(const Progress&)> watch;  ///< see RelaxOptions
     std::optional<StartState> start;             ///< instead of the planned curves
