@@ -29,7 +29,7 @@ TEST_CASE("every extreme ends at rest, or with a report of what and where") {
 }
 
 TEST_CASE("the long extremes end at rest, or with a report of what and where", "[.][long]") {
-    check_extremes(true, {.most_iterations = 100, .most_seconds = 600, .threads = 0});
+    check_extremes(true, {.most_iterations = 2000, .most_seconds = 600, .threads = 0});
 }
 
 TEST_CASE("extremes have names of their own, and a bad end is told from a good one") {

@@ -10,7 +10,7 @@ namespace weave::sim {
 /// How the simulator stands up to what it should never be asked: one catalogue, run by `weave bench
 /// stability` and, the quick ones, by the tests.
 struct ExtremeLimits {
-    std::size_t most_iterations = 1000;
+    std::size_t most_iterations = 5000;
     double most_seconds = 30;
     std::size_t threads = 1;
 };

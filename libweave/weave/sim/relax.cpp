@@ -152,16 +152,18 @@ class Relaxing {
         return m_newton.step(m_state, m_value, m_gradient, m_result.residual);
     }
 
-    /// Which steps come next: those of the matrix if the others have not halved the residual, as long as they
-    /// pay.
+    /// Which steps come next. Where those that learn have not halved the residual some of the matrix are tried, if the last of
+    /// them paid as well; as time goes by they are trusted again. They go on for a while where they pay far more.
     void choose() {
         const double gain = m_value_before - m_value;
-        const bool halved = m_best < 0.5 * m_best_before;
         if (m_by_matrix) {
-            m_by_matrix = gain > 0.5 * m_gain;
+            m_matrix_gain = gain;
+            m_by_matrix = gain > 2 * m_gain && ++m_runs < most_runs;
         } else {
-            m_by_matrix = !halved;
             m_gain = gain;
+            m_runs = 0;
+            m_by_matrix = m_best >= 0.5 * m_best_before && m_matrix_gain >= gain;
+            m_matrix_gain *= 2;
         }
         m_left = m_by_matrix ? newtons_at_once : patience;
         m_value_before = m_value;
@@ -169,7 +171,7 @@ class Relaxing {
     }
 
     static constexpr double newton_below = 1e-4;
-    static constexpr int patience = 50, newtons_at_once = 6;
+    static constexpr int patience = 50, newtons_at_once = 6, most_runs = 8;
 
     Energy<Real>& m_energy;
     std::vector<Real>& m_state;
@@ -183,8 +185,9 @@ class Relaxing {
     double m_value = 0;
     bool m_by_matrix = false;
     int m_left = patience, m_saddles = 0;  ///< steps until the next choice
-    /// Least residual, energy at the last choice, and what the latest steps that learn gained.
-    double m_best = 1e300, m_best_before = 1e300, m_value_before = 1e300, m_gain = 0;
+    /// Least residual, energy at the last choice, and how far it fell by the latest steps of either kind.
+    double m_best = 1e300, m_best_before = 1e300, m_value_before = 1e300, m_gain = 0, m_matrix_gain = 1e300;
+    int m_runs = 0;
     std::size_t m_referred = 0;  ///< iteration whose state the reference force is of
     RelaxResult m_result;
     std::chrono::steady_clock::time_point m_start = std::chrono::steady_clock::now();
