@@ -8,6 +8,7 @@
 #include <weave/design/document.hpp>
 #include <weave/design/edit.hpp>
 #include <weave/design/merge.hpp>
+#include <weave/design/outline.hpp>
 #include <weave/io/bitmap.hpp>
 #include <weave/samples/samples.hpp>
 
@@ -284,16 +285,32 @@ void add_stencil(CLI::App& app, Program& program) {
 
 /// Tells a program which yarns stand in the way of a flip, picks and ends from 1 and from the bottom up.
 /// People read it in the error.
-void answer_blocked(Program& program, const Block& block, std::size_t pick, std::size_t end,
+void answer_blocked(Program& program, const PlacedStack& at, std::size_t pick, std::size_t end,
                     const Error& error) {
-    const std::size_t row = block.row_of_pick(pick), column = block.column_of_end(end);
-    const std::size_t first_pick = block.first_pick(row), first_end = block.first_end(column);
     Json picks = Json::array(), ends = Json::array();
-    for (const Slot yarn : flip(block.stack(row, column), pick - first_pick, end - first_end).in_the_way) {
-        if (yarn.is_weft()) picks.push_back(first_pick + yarn.index() + 1);
-        if (yarn.is_warp()) ends.push_back(first_end + yarn.index() + 1);
+    for (const Slot yarn : flip(at.stack, pick - at.first_pick, end - at.first_end).in_the_way) {
+        if (yarn.is_weft()) picks.push_back(at.first_pick + yarn.index() + 1);
+        if (yarn.is_warp()) ends.push_back(at.first_end + yarn.index() + 1);
     }
-    program.answer({{"picks", std::move(picks)}, {"ends", std::move(ends)}, {"error", error_json(error)}}, "");
+    program.answer({{"picks", std::move(picks)}, {"ends", std::move(ends)}, {"error", error_json(error)}},
+                   "");
+}
+
+/// The flip of this crossing, if it can be made; both from 0.
+Result<Flip> flip_wished(Program& program, const Design& design, std::size_t pick, std::size_t end,
+                         const std::string& file) {
+    const Progress progress("looking at " + file);
+    Result<Outline> cloth = outline(design, Crossing{pick, end});
+    if (!cloth) return std::move(cloth).error().in(file);
+    note_lost_flips(program, cloth->lost_flips, file);
+    if (!cloth->at) return no_crossing(cloth->grid, pick, end).in(file);
+    const PlacedStack& at = *cloth->at;
+    if (Result<Stack> flipped = flip(at, pick, end); !flipped) {
+        Error error = std::move(flipped).error().in(file);
+        answer_blocked(program, at, pick, end, error);
+        return error;
+    }
+    return Flip{pick, end, !at.stack.weft_over(pick - at.first_pick, end - at.first_end)};
 }
 
 void add_flip(CLI::App& app, Program& program) {
@@ -304,22 +321,16 @@ void add_flip(CLI::App& app, Program& program) {
     const auto out = std::make_shared<std::string>();
     const auto pick = std::make_shared<std::size_t>(0);
     const auto end = std::make_shared<std::size_t>(0);
-    const CLI::Validator from_1 = between(std::size_t{1}, std::size_t{1} << 28);
+    const CLI::Validator from_1 = between(std::size_t{1}, std::size_t{most_yarns});
     command->add_option("FILE", *file, "the .weave file")->required();
     command->add_option("--pick", *pick, "the pick, from 1")->required()->check(from_1)->type_name("N");
     command->add_option("--end", *end, "the end, from 1")->required()->check(from_1)->type_name("N");
     command->add_option("-o,--out", *out, "the .weave file to write")->type_name("FILE")->required();
     on_run(command, program, [=, &program]() -> Status {
-        WEAVE_TRY(Cloth cloth, load_cloth(program, *file));
-        const Block& block = *cloth.evaluation.block;
-        if (Result<Block> flipped = flip(block, *pick - 1, *end - 1); !flipped) {
-            const Error error = std::move(flipped).error().in(*file);
-            if (error.code == ErrorCode::invalid) answer_blocked(program, block, *pick - 1, *end - 1, error);
-            return error;
-        }
-        const Flip wish{*pick - 1, *end - 1, !block.weft_over(*pick - 1, *end - 1)};
-        WEAVE_CHECK_OK(apply_edit(cloth.design, PutFlip{cloth.design.root, wish}));
-        return save_cloth(program, cloth.design, *out, *file);
+        WEAVE_TRY(Design design, load_design(*file));
+        WEAVE_TRY(const Flip wish, flip_wished(program, design, *pick - 1, *end - 1, *file));
+        WEAVE_CHECK_OK(apply_edit(design, PutFlip{design.root, wish}));
+        return save_cloth(program, design, *out, *file);
     });
 }
 

@@ -1,6 +1,7 @@
 #pragma once
 
 #include <weave/block/block.hpp>
+#include <weave/block/extent.hpp>
 
 #include <cstddef>
 #include <cstdint>
@@ -14,6 +15,9 @@ namespace weave {
 /// 5 without its misprinted factor). Within each source stack the yarns keep their order. Counts must be at
 /// least 1.
 Result<Block> tile(const Block& block, std::size_t x, std::size_t y, std::size_t z);
+
+/// What tile() refuses of a block of this extent.
+Status check_tile(const Extent& of, std::size_t x, std::size_t y, std::size_t z);
 
 /// A face of a block. +x lies after the last row, +y after the last column, +z on top.
 enum class Face : std::uint8_t { plus_x, minus_x, plus_y, minus_y, plus_z, minus_z };
