@@ -24,7 +24,7 @@ void check_same_flips(const std::vector<LostFlip>& told, const std::vector<LostF
 
 /// Whether the cloth can be woven; the outline has to say the same either way.
 bool outline_is_right(const Design& design, Random& random) {
-    const Crossing wish{random.between(0, 12), random.between(0, 12)};
+    const CardPlace wish{random.between(0, 12), random.between(0, 12)};
     const Result<Evaluation> woven = evaluate(design);
     const Result<Outline> told = outline(design, wish);
     INFO((woven ? "woven" : woven.error().text()));
@@ -155,14 +155,14 @@ TEST_CASE("a flip in a cloth of 400 million crossings is told without laying the
     Design design = large(10000);
     const double before = peak_mb();
     for (const bool over : {false, true}) {  // as in plain weave, and once flipped
-        const Result<Outline> told = outline(design, Crossing{777, 888});
+        const Result<Outline> told = outline(design, CardPlace{777, 888});
         REQUIRE(told);
         CHECK(told->grid.picks() == 20000);
         REQUIRE(told->at);
         CHECK(told->at->stack.weft_over(0, 0) == over);
         REQUIRE(apply_edit(design, PutFlip{"cloth", {777, 888, !over}}));
     }
-    CHECK_FALSE(outline(design, Crossing{20000, 0})->at);
+    CHECK_FALSE(outline(design, CardPlace{20000, 0})->at);
     CHECK(peak_mb() - before < 50);
 }
 

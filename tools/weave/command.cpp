@@ -147,7 +147,7 @@ Status save_cloth(Program& program, const Design& design, const std::string& fil
     WEAVE_CHECK_OK(save_design(design, file));
     std::vector<std::string> notes = warnings;
     for (const LostFlip& lost : woven->lost_flips) notes.push_back(lost_flip_line(lost));
-    const Grid& grid = woven->grid;
+    const BlockGrid& grid = woven->grid;
     for (const std::string& line : notes) program.note(line);
     program.answer({{"file", file},
                     {"picks", grid.picks()},

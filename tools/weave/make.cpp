@@ -215,6 +215,27 @@ Result<StencilMap> map_of(const ColourImage& image, const std::map<Colour, std::
     return map;
 }
 
+/// The map that a picture draws. A cloth that would be too large is refused before the picture's pixels are
+/// read: `block` is one of the blocks, `sources` what an error of the cloth is said of.
+Result<StencilMap> read_map(const std::string& picture, const std::map<Colour, std::uint16_t>& numbers,
+                            const Design& block, const std::string& sources) {
+    const Progress progress("reading " + picture);
+    const Result<Outline> woven = outline(block);
+    bool too_large = false;
+    const auto fits = [&](std::size_t rows, std::size_t columns) -> Status {
+        if (!woven) return {};  // which is told later, with its place
+        Status status = check_stencil_size(woven->grid, rows, columns);
+        too_large = !status;
+        return status;
+    };
+    WEAVE_TRY(const std::string bytes, read_file(picture));
+    Result<ColourImage> image = read_colour_image(bytes, fits);
+    if (!image) return std::move(image).error().in(too_large ? sources : picture);
+    Result<StencilMap> map = map_of(*image, numbers);
+    if (!map) return std::move(map).error().in(picture);
+    return map;
+}
+
 Status make_stencil(Program& program, const std::string& picture, const std::vector<std::string>& mappings,
                     const std::string& out) {
     Design design;
@@ -245,18 +266,13 @@ Status make_stencil(Program& program, const std::string& picture, const std::vec
                                ": its yarns and feeders are not those of the first design and are left out");
         stencil.of.push_back(bring_in(design, part));
     }
-    const Progress progress("reading " + picture);
-    WEAVE_TRY(const std::string bytes, read_file(picture));
-    Result<ColourImage> image = read_colour_image(bytes);
-    if (!image) return std::move(image).error().in(picture);
-    Result<StencilMap> map = map_of(*image, numbers);
-    if (!map) return std::move(map).error().in(picture);
+    WEAVE_TRY(StencilMap map, read_map(picture, numbers, design, sources));
     for (const auto& [colour, number] : numbers) {
-        if (std::find(map->blocks.begin(), map->blocks.end(), number) == map->blocks.end()) {
+        if (std::find(map.blocks.begin(), map.blocks.end(), number) == map.blocks.end()) {
             warnings.push_back(picture + ": no pixel has the mapped colour " + to_text(colour));
         }
     }
-    stencil.map = std::make_shared<const StencilMap>(std::move(map).value());
+    stencil.map = std::make_shared<const StencilMap>(std::move(map));
     design.title = std::filesystem::path(out).stem().string();
     put_root(design, "stencilled", std::move(stencil));
     return save_cloth(program, design, out, sources, warnings);
@@ -300,7 +316,7 @@ void answer_blocked(Program& program, const PlacedStack& at, std::size_t pick, s
 Result<Flip> flip_wished(Program& program, const Design& design, std::size_t pick, std::size_t end,
                          const std::string& file) {
     const Progress progress("looking at " + file);
-    Result<Outline> cloth = outline(design, Crossing{pick, end});
+    Result<Outline> cloth = outline(design, CardPlace{pick, end});
     if (!cloth) return std::move(cloth).error().in(file);
     note_lost_flips(program, cloth->lost_flips, file);
     if (!cloth->at) return no_crossing(cloth->grid, pick, end).in(file);

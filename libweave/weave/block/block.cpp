@@ -110,7 +110,7 @@ Result<Block> Block::make(std::vector<std::uint32_t> t, std::vector<std::uint32_
     assert(cells.size() == t.size() * p.size());
     WEAVE_CHECK_OK(check_counts(t, p));
     Block block;
-    block.m_grid = Grid(std::move(t), std::move(p));
+    block.m_grid = BlockGrid(std::move(t), std::move(p));
     std::vector<bool> used(stacks.size());
     for (std::size_t row = 0, cell = 0; row < block.rows(); ++row) {
         const std::uint32_t picks = block.t()[row];

@@ -1,7 +1,7 @@
 #pragma once
 
+#include <weave/block/block_grid.hpp>
 #include <weave/block/card_image.hpp>
-#include <weave/block/grid.hpp>
 #include <weave/block/stack.hpp>
 #include <weave/core/result.hpp>
 
@@ -43,7 +43,7 @@ class Block {
                               std::vector<Stack> stacks, std::vector<std::uint32_t> cells,
                               std::size_t height = 0);
 
-    [[nodiscard]] const Grid& grid() const { return m_grid; }
+    [[nodiscard]] const BlockGrid& grid() const { return m_grid; }
     [[nodiscard]] std::size_t rows() const { return m_grid.rows(); }
     [[nodiscard]] std::size_t columns() const { return m_grid.columns(); }
     [[nodiscard]] std::size_t height() const { return m_height; }
@@ -86,7 +86,7 @@ class Block {
     Block() = default;
     void leave_out_unused(const std::vector<bool>& used);
 
-    Grid m_grid;
+    BlockGrid m_grid;
     std::size_t m_height = 0;
     std::vector<Stack> m_stacks;
     std::vector<std::uint32_t> m_cells;

@@ -29,7 +29,7 @@ std::string not_alone(const Flip& wish, const FlippedStack& flipped, std::size_t
 }
 
 /// Makes one flip in the stack of its cell, or says why not.
-std::optional<std::string> refusal(const Grid& grid, Stack& stack, const Flip& wish) {
+std::optional<std::string> refusal(const BlockGrid& grid, Stack& stack, const Flip& wish) {
     const std::size_t first_pick = grid.first_pick(grid.row_of_pick(wish.pick));
     const std::size_t first_end = grid.first_end(grid.column_of_end(wish.end));
     const std::size_t weft = wish.pick - first_pick, warp = wish.end - first_end;
@@ -74,12 +74,12 @@ FlippedStack flip(const Stack& stack, std::size_t weft, std::size_t warp) {
     return {true, Stack(std::move(slots)), {}};
 }
 
-Error no_crossing(const Grid& grid, std::size_t pick, std::size_t end) {
+Error no_crossing(const BlockGrid& grid, std::size_t pick, std::size_t end) {
     return bad_input("there is no crossing of " + pair_of({pick, end, false}) + ": the block has " +
                      std::to_string(grid.picks()) + " picks and " + std::to_string(grid.ends()) + " ends");
 }
 
-std::vector<RefusedFlip> flip_stacks(const Grid& grid, std::span<const Flip> flips,
+std::vector<RefusedFlip> flip_stacks(const BlockGrid& grid, std::span<const Flip> flips,
                                      std::map<std::size_t, Stack>& stacks) {
     std::vector<RefusedFlip> refused;
     for (const Flip& wish : flips) {

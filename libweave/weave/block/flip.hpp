@@ -46,7 +46,7 @@ FlippedBlock apply_flips(Block block, std::span<const Flip> flips);
 /// The same without a block, for who knows its grid and has the stacks that the flips ask for: `stacks`
 /// holds, by the number of the cell, row by row, that of each crossing that there is, and has the flipped
 /// ones in the end.
-std::vector<RefusedFlip> flip_stacks(const Grid& grid, std::span<const Flip> flips,
+std::vector<RefusedFlip> flip_stacks(const BlockGrid& grid, std::span<const Flip> flips,
                                      std::map<std::size_t, Stack>& stacks);
 
 /// The block with the pixel of `pick` and `end` (from 0) inverted. Errors: a pick or end that the block does
@@ -54,7 +54,7 @@ std::vector<RefusedFlip> flip_stacks(const Grid& grid, std::span<const Flip> fli
 Result<Block> flip(const Block& block, std::size_t pick, std::size_t end);
 
 /// The error of it where there is no such crossing.
-Error no_crossing(const Grid& grid, std::size_t pick, std::size_t end);
+Error no_crossing(const BlockGrid& grid, std::size_t pick, std::size_t end);
 
 /// One stack of a block, and the first pick and end of its cell.
 struct PlacedStack {

@@ -244,6 +244,13 @@ Result<Block> attach(const Block& block, const Block& other, Face face, std::spa
     return bad_input("a block has six faces");
 }
 
+Status check_stencil_size(const BlockGrid& block, std::size_t rows, std::size_t columns) {
+    const std::size_t picks = rows / block.rows() * block.picks() + block.first_pick(rows % block.rows());
+    const std::size_t ends =
+        columns / block.columns() * block.ends() + block.first_end(columns % block.columns());
+    return check_card_size(picks, ends);
+}
+
 Result<Block> stencil(std::span<const BlockPtr> blocks, const StencilMap& map,
                       std::span<const std::string> names) {
     assert(names.empty() || names.size() == blocks.size());

@@ -50,6 +50,10 @@ struct StencilMap {
 Result<Block> stencil(std::span<const BlockPtr> blocks, const StencilMap& map,
                       std::span<const std::string> names = {});
 
+/// An error where a stencil of this size would be too large a cloth, told from one of its blocks, since all
+/// have to agree in their counts.
+Status check_stencil_size(const BlockGrid& block, std::size_t rows, std::size_t columns);
+
 /// Changes the insertion order of the picks of one row: the k-th pick becomes the one that was number
 /// order[k] of that row, from 0. Permutes rows of the card image within the row of the block and changes
 /// nothing else.

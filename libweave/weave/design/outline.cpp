@@ -27,7 +27,7 @@ struct Part {
     std::vector<const Part*> children;
     std::size_t levels = 1;  ///< of the tree below it, itself included
     BlockPtr block;          ///< a leaf that is laid out; else null
-    Grid grid;
+    BlockGrid grid;
     Extent extent;                         ///< at most, as to stacks and slots
     std::map<std::size_t, Stack> flipped;  ///< by cell
 };
@@ -36,7 +36,7 @@ struct Part {
 /// be it because something is wrong or because it would cost too much.
 class Draughtsman {
   public:
-    std::optional<Outline> draw(const Design& design, std::optional<Crossing> crossing);
+    std::optional<Outline> draw(const Design& design, std::optional<CardPlace> place);
 
   private:
     bool put_together(Part& part);
@@ -52,13 +52,13 @@ class Draughtsman {
     }
 
     // The grid of a block that is made from others; nothing where they do not fit together.
-    static std::optional<Grid> grid_of(const TileOperation& operation, const Part& part);
-    static std::optional<Grid> grid_of(const AttachOperation& operation, const Part& part);
-    static std::optional<Grid> grid_of(const StencilOperation& operation, const Part& part);
-    static std::optional<Grid> grid_of(const RenumberOperation& operation, const Part& part);
-    static std::optional<Grid> grid_of(const CardLeaf& leaf, const Part& part);
+    static std::optional<BlockGrid> grid_of(const TileOperation& operation, const Part& part);
+    static std::optional<BlockGrid> grid_of(const AttachOperation& operation, const Part& part);
+    static std::optional<BlockGrid> grid_of(const StencilOperation& operation, const Part& part);
+    static std::optional<BlockGrid> grid_of(const RenumberOperation& operation, const Part& part);
+    static std::optional<BlockGrid> grid_of(const CardLeaf& leaf, const Part& part);
     template <class Leaf>
-    static std::optional<Grid> grid_of(const Leaf&, const Part& part) {
+    static std::optional<BlockGrid> grid_of(const Leaf&, const Part& part) {
         return part.block->grid();
     }
 
@@ -82,7 +82,8 @@ class Draughtsman {
     std::size_t m_units = most_units;
 };
 
-/// Whether the card is read with one pick and one end a cell, so that its pixels are its stacks and fit in any case.
+/// Whether the card is read with one pick and one end a cell, so that its pixels are its stacks and fit in
+/// any case.
 bool is_single(const CardLeaf& leaf) {
     return all_single(leaf.t) && all_single(leaf.p) && leaf.card->picks() % leaf.t.size() == 0 &&
            leaf.card->ends() % leaf.p.size() == 0;
@@ -110,36 +111,36 @@ std::pair<const Part*, const Part*> in_order(const AttachOperation& operation, c
     return {part.children[0], part.children[1]};
 }
 
-std::optional<Grid> Draughtsman::grid_of(const TileOperation& operation, const Part& part) {
+std::optional<BlockGrid> Draughtsman::grid_of(const TileOperation& operation, const Part& part) {
     const Part& child = *part.children[0];
     const auto& [of, x, y, z] = operation;
     if (!check_tile(child.extent, x, y, z)) return {};
-    return Grid(repeated(child.grid.t(), x, z), repeated(child.grid.p(), y, z));
+    return BlockGrid(repeated(child.grid.t(), x, z), repeated(child.grid.p(), y, z));
 }
 
-std::optional<Grid> Draughtsman::grid_of(const AttachOperation& operation, const Part& part) {
+std::optional<BlockGrid> Draughtsman::grid_of(const AttachOperation& operation, const Part& part) {
     const auto [first, second] = in_order(operation, part);
-    const Grid &one = first->grid, &other = second->grid;
+    const BlockGrid &one = first->grid, &other = second->grid;
     switch (operation.face) {
         case Face::plus_x:
         case Face::minus_x:
             if (one.p() != other.p()) return {};
-            return Grid(joined(one.t(), other.t()), one.p());
+            return BlockGrid(joined(one.t(), other.t()), one.p());
         case Face::plus_y:
         case Face::minus_y:
             if (one.t() != other.t()) return {};
-            return Grid(one.t(), joined(one.p(), other.p()));
+            return BlockGrid(one.t(), joined(one.p(), other.p()));
         default:
             if (one.rows() != other.rows() || one.columns() != other.columns()) return {};
             const Extent extent = extent_to_be(operation, {first->extent, second->extent});
             if (!check_slots(extent.stacks, extent.height)) return {};
-            return Grid(summed(one.t(), other.t()), summed(one.p(), other.p()));
+            return BlockGrid(summed(one.t(), other.t()), summed(one.p(), other.p()));
     }
 }
 
 /// The counts of each line of a stencil, if all blocks agree on them.
 std::optional<Counts> common_counts(const std::vector<const Part*>& blocks, std::size_t lines,
-                                    const Counts& (Grid::*counts)() const) {
+                                    const Counts& (BlockGrid::*counts)() const) {
     const auto over_the_lines = [&](const Part* block) {
         const Counts& own = (block->grid.*counts)();
         Counts all(lines);
@@ -153,23 +154,23 @@ std::optional<Counts> common_counts(const std::vector<const Part*>& blocks, std:
     return common;
 }
 
-std::optional<Grid> Draughtsman::grid_of(const StencilOperation& operation, const Part& part) {
-    auto t = common_counts(part.children, operation.map->rows, &Grid::t);
-    auto p = common_counts(part.children, operation.map->columns, &Grid::p);
+std::optional<BlockGrid> Draughtsman::grid_of(const StencilOperation& operation, const Part& part) {
+    auto t = common_counts(part.children, operation.map->rows, &BlockGrid::t);
+    auto p = common_counts(part.children, operation.map->columns, &BlockGrid::p);
     if (!t || !p) return {};
-    return Grid(std::move(*t), std::move(*p));
+    return BlockGrid(std::move(*t), std::move(*p));
 }
 
-std::optional<Grid> Draughtsman::grid_of(const RenumberOperation& operation, const Part& part) {
-    const Grid& grid = part.children[0]->grid;
+std::optional<BlockGrid> Draughtsman::grid_of(const RenumberOperation& operation, const Part& part) {
+    const BlockGrid& grid = part.children[0]->grid;
     const Counts& counts = operation.system == System::weft ? grid.t() : grid.p();
     if (operation.line >= counts.size() || !new_numbers(operation.order, counts[operation.line])) return {};
     return grid;
 }
 
-std::optional<Grid> Draughtsman::grid_of(const CardLeaf& leaf, const Part& part) {
+std::optional<BlockGrid> Draughtsman::grid_of(const CardLeaf& leaf, const Part& part) {
     if (part.block) return part.block->grid();
-    return Grid(Counts(leaf.card->picks(), 1), Counts(leaf.card->ends(), 1));
+    return BlockGrid(Counts(leaf.card->picks(), 1), Counts(leaf.card->ends(), 1));
 }
 
 std::optional<Stack> Draughtsman::at(const TileOperation& operation, const Part& part, std::size_t row,
@@ -291,7 +292,7 @@ bool Draughtsman::flip(Part& part, const std::string& name) {
     return true;
 }
 
-std::optional<Outline> Draughtsman::draw(const Design& design, std::optional<Crossing> crossing) {
+std::optional<Outline> Draughtsman::draw(const Design& design, std::optional<CardPlace> place) {
     const std::vector<std::string> order = bottom_up(design, design.root);
     std::map<std::string, std::size_t> uses{{design.root, 1}};
     for (const std::string& name : order) {
@@ -316,9 +317,9 @@ std::optional<Outline> Draughtsman::draw(const Design& design, std::optional<Cro
     }
     const Part& cloth = m_parts.at(design.root);
     Outline outline{cloth.grid, cloth.extent.height, std::move(m_lost), {}};
-    if (!crossing || !cloth.grid.holds(crossing->pick, crossing->end)) return outline;
-    const std::size_t row = cloth.grid.row_of_pick(crossing->pick),
-                      column = cloth.grid.column_of_end(crossing->end);
+    if (!place || !cloth.grid.holds(place->pick, place->end)) return outline;
+    const std::size_t row = cloth.grid.row_of_pick(place->pick),
+                      column = cloth.grid.column_of_end(place->end);
     auto at = stack(cloth, row, column);
     if (!at) return {};
     outline.at = {std::move(*at), cloth.grid.first_pick(row), cloth.grid.first_end(column)};
@@ -327,14 +328,14 @@ std::optional<Outline> Draughtsman::draw(const Design& design, std::optional<Cro
 
 }  // namespace
 
-Result<Outline> outline(const Design& design, std::optional<Crossing> crossing) {
+Result<Outline> outline(const Design& design, std::optional<CardPlace> place) {
     WEAVE_CHECK_OK(check(design));
-    if (auto drawn = Draughtsman().draw(design, crossing)) return std::move(*drawn);
+    if (auto drawn = Draughtsman().draw(design, place)) return std::move(*drawn);
     WEAVE_TRY(Evaluation evaluation, evaluate(design));
     const Block& block = *evaluation.block;
     Outline outline{block.grid(), block.height(), std::move(evaluation.lost_flips), {}};
-    if (crossing && block.grid().holds(crossing->pick, crossing->end))
-        outline.at = stack_at(block, crossing->pick, crossing->end);
+    if (place && block.grid().holds(place->pick, place->end))
+        outline.at = stack_at(block, place->pick, place->end);
     return outline;
 }
 

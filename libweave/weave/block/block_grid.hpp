@@ -9,10 +9,10 @@
 namespace weave {
 
 /// The rows and columns of a block: row i holds t[i] picks, column j holds p[j] ends.
-class Grid {
+class BlockGrid {
   public:
-    Grid() = default;
-    Grid(std::vector<std::uint32_t> t, std::vector<std::uint32_t> p)
+    BlockGrid() = default;
+    BlockGrid(std::vector<std::uint32_t> t, std::vector<std::uint32_t> p)
         : m_t(std::move(t)),
           m_p(std::move(p)),
           m_first_pick(running_sums(m_t)),
@@ -41,7 +41,9 @@ class Grid {
         return row_of_pick(pick) * columns() + column_of_end(end);
     }
 
-    friend bool operator==(const Grid& a, const Grid& b) { return a.m_t == b.m_t && a.m_p == b.m_p; }
+    friend bool operator==(const BlockGrid& a, const BlockGrid& b) {
+        return a.m_t == b.m_t && a.m_p == b.m_p;
+    }
 
   private:
     static std::vector<std::size_t> running_sums(const std::vector<std::uint32_t>& counts) {
