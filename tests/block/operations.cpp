@@ -2,6 +2,7 @@
 
 #include <block/brute.hpp>
 #include <numeric>
+#include <support/memory.hpp>
 #include <support/random.hpp>
 
 using namespace weave;
@@ -343,4 +344,37 @@ TEST_CASE("renumbering again and again leaves no stacks behind that no cell uses
     for (int k = 0; k < 2; ++k) block = renumber_row(block, 0, order).value();
     CHECK(block.stacks().size() == 2);
     CHECK(renumber_row(block, 0, order)->stacks().size() == 1);
+}
+
+TEST_CASE("a block that would be too large is refused before a single stack of it is made") {
+    std::size_t made = 0;
+    const std::vector<std::uint32_t> counts(1000, 64);
+    const Result<Block> block = make_block(counts, counts, [&](std::size_t, std::size_t) {
+        ++made;
+        return Stack();
+    });
+    REQUIRE_THAT(block.error().message,
+                 Catch::Contains("64000 picks and 64000 ends is larger than the limit"));
+    CHECK(made == 0);
+}
+
+TEST_CASE("a stencil that would be too large is refused before its cells are laid out") {
+    constexpr std::uint32_t yarns = 16;
+    const auto block =
+        std::make_shared<const Block>(make_block({yarns, 0}, {yarns, 0}, [](std::size_t i, std::size_t j) {
+                                          std::vector<Slot> slots;
+                                          for (std::size_t k = 0; k < yarns; ++k) {
+                                              if (i == 0) slots.push_back(Slot::weft(k));
+                                              if (j == 0) slots.push_back(Slot::warp(k));
+                                          }
+                                          return Stack(std::move(slots));
+                                      }).value());
+    StencilMap map{5001, 5003, {}};
+    map.blocks.resize(map.rows * map.columns);
+    const double before = testing::peak_mb();
+    const Error error = stencil(std::vector<BlockPtr>{block}, map).error();
+    CHECK(testing::peak_mb() - before < 50);  // its cells would be 100 MB
+    CHECK_THAT(error.message, Catch::Contains("40016 picks and 40032 ends is larger than the limit"));
+    CHECK(check_stencil_size(block->grid(), map.rows, map.columns).error().message == error.message);
+    CHECK(check_stencil_size(block->grid(), 2001, 2000));
 }

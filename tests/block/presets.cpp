@@ -155,4 +155,6 @@ TEST_CASE("impossible presets are refused with what would be possible") {
     REQUIRE_THAT(refusal({"plain", {{"up", 1}}}), Catch::Contains("no options"));
     REQUIRE(refusal({"twill", {{"up", 0}}}) == "'twill' takes up from 1 to 200, not 0");
     REQUIRE_THAT(refusal({"twill", {{"upp", 1}}}), Catch::Contains("only up, down, step"));
+    REQUIRE_THAT(refusal({"multi-layer", {{"layers", 64}, {"weave", 1}, {"size", 32}, {"stitch", 32}}}),
+                 Catch::Contains("65536 picks and 65536 ends is larger than the limit"));
 }

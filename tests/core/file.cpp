@@ -4,8 +4,11 @@
 #include <catch2/catch.hpp>
 
 #include <csignal>
+#include <fcntl.h>
+#include <sched.h>
 #include <semaphore.h>
 #include <support/memory.hpp>
+#include <sys/mount.h>
 #include <sys/resource.h>
 #include <sys/stat.h>
 #include <sys/wait.h>
@@ -264,5 +267,91 @@ TEST_CASE("a program that is ended while it writes leaves neither a part nor a f
                 write_folder(at / "a" / "b", {{"one", "1"}, {"two", std::string(5000, 'x')}}).error());
         },
         folder.path);
+    CHECK(folder.entries() == 1);
+}
+
+TEST_CASE("what is no file is written to as it is, or refused with its name and a reason; nothing is lost") {
+    const Folder folder;
+    const auto failure = [&](const fs::path& place) {
+        const Status failed = write_file(place, std::string(100000, 'x'));
+        REQUIRE_FALSE(failed);
+        CHECK(failed.error().code == ErrorCode::system);
+        CHECK(failed.error().where == place.string());
+        CHECK(failed.error().text().find('\n') == std::string::npos);
+        return failed.error().message;
+    };
+    CHECK_THAT(failure("/dev/full"), Catch::Contains("No space left"));
+    CHECK(fs::is_character_file("/dev/full"));
+    CHECK(write_file("/dev/null", "x"));
+    CHECK(fs::is_character_file("/dev/null"));
+    fs::create_directory(folder.path / "folder");
+    REQUIRE(write_file(folder.path / "folder" / "kept", "kept"));
+    CHECK(failure(folder.path / "folder") == "is a folder, not a file");
+    fs::create_symlink("nowhere/file", folder.path / "astray");
+    CHECK_THAT(failure(folder.path / "astray"), Catch::Contains("No such file"));
+    CHECK(fs::is_symlink(folder.path / "astray"));
+    CHECK(read_file(folder.path / "folder" / "kept").value() == "kept");
+    CHECK(folder.entries() == 2);
+}
+
+TEST_CASE("a pipe gets the bytes; one that nobody reads any more gives an error and does not end the program") {
+    const Folder folder;
+    const fs::path pipe = folder.path / "pipe";
+    REQUIRE(::mkfifo(pipe.c_str(), 0600) == 0);
+    const std::string bytes(500000, 'x');  // more than a pipe holds
+    for (const std::size_t wanted : {bytes.size(), std::size_t{10}}) {
+        std::size_t got = 0;
+        std::thread reader([&] {
+            const int file = ::open(pipe.c_str(), O_RDONLY | O_CLOEXEC);
+            char buffer[4096];
+            while (got < wanted) {
+                const ssize_t more = ::read(file, buffer, std::min(sizeof buffer, wanted - got));
+                if (more <= 0) break;
+                got += static_cast<std::size_t>(more);
+            }
+            ::close(file);
+        });
+        const Status written = write_file(pipe, bytes);
+        reader.join();
+        CHECK(got == wanted);
+        CHECK(bool(written) == (wanted == bytes.size()));
+        if (!written) CHECK(written.error().text() == pipe.string() + ": cannot write: Broken pipe");
+        CHECK(fs::is_fifo(pipe));
+    }
+    CHECK(folder.entries() == 1);
+}
+
+namespace {
+
+/// In a process of its own, where `file` is a mount point: what came of writing it.
+enum MountedWrite : int { told_and_kept = 0, wrong = 1, no_mounts_here = 2 };
+MountedWrite write_mounted(const fs::path& file) {
+    const pid_t child = ::fork();
+    REQUIRE(child >= 0);
+    if (child == 0) {
+        if (::unshare(CLONE_NEWUSER | CLONE_NEWNS) != 0 ||
+            ::mount(file.c_str(), file.c_str(), nullptr, MS_BIND, nullptr) != 0)
+            ::_exit(no_mounts_here);
+        const Status status = write_file(file, "new");
+        const bool told = !status && status.error().where == file.string() &&
+                          status.error().message.find("cannot put into place") != std::string::npos;
+        ::_exit(told ? told_and_kept : wrong);
+    }
+    int status = 0;
+    REQUIRE(::waitpid(child, &status, 0) == child);
+    REQUIRE(WIFEXITED(status));
+    return static_cast<MountedWrite>(WEXITSTATUS(status));
+}
+
+}  // namespace
+
+TEST_CASE("a file that is a mount point keeps its content, and the error names it") {
+    const Folder folder;
+    const fs::path file = folder.path / "mounted";
+    REQUIRE(write_file(file, "old"));
+    const MountedWrite came = write_mounted(file);
+    if (came == no_mounts_here) WARN("this machine lets a test make no mount point; not tried");
+    CHECK(came != wrong);
+    CHECK(read_file(file).value() == "old");
     CHECK(folder.entries() == 1);
 }

@@ -355,6 +355,22 @@ TEST_CASE("a damaged fax picture is refused, where libtiff makes up rows and rep
     CHECK(refused > 20);
 }
 
+TEST_CASE("a picture whose size is of no use is refused before its pixels are read") {
+    const CardImage card(30, 20);
+    for (const BitmapFormat format : formats) {
+        const std::string whole = *write_bitmap(card, format);
+        std::size_t asked = 0;
+        const auto fits = [&](std::size_t rows, std::size_t columns) -> Status {
+            ++asked;
+            CHECK((rows == 30 && columns == 20));
+            return bad_input("of no use");
+        };
+        CHECK(read_colour_image(whole, fits).error().message == "of no use");
+        CHECK(asked == 1);
+        CHECK(read_colour_image(whole, [](std::size_t, std::size_t) { return Status(); })->pixels.size() == 600);
+    }
+}
+
 TEST_CASE("a few bytes that claim a picture of endless rows cost no memory") {
     // A PNG of two rows of 2^25 pixels in colours, as far as the start of its pixels.
     const std::string claim(

@@ -2,6 +2,7 @@
 
 #include <weave/picture/float_map.hpp>
 #include <weave/picture/grid.hpp>
+#include <weave/picture/label_places.hpp>
 #include <weave/picture/slice_map.hpp>
 
 #include <picture/pictures.hpp>
@@ -181,25 +182,90 @@ TEST_CASE("every yarn of the baby shoe's first row can be told and followed") {
     }
 }
 
-TEST_CASE("where a yarn leaves a slice its way out can be read beside the dots") {
-    const Design design = sample_design("shoe-baby");
-    const Evaluation cloth = evaluate(design).value();
-    const PictureRequest request = parse_view("weft:170", *cloth.block).value();
-    const SlicePicture slice = slice_of(design, *cloth.block, request);
+namespace {
+
+bool is_way_out(const Mark& mark) {
+    return mark.kind == Mark::Kind::text && (mark.text.starts_with("to ") || mark.text.starts_with("from "));
+}
+
+/// Where a word of a slice stands.
+Rectangle box_of(const Mark& mark) {
+    const double width = Canvas::text_width(mark.text, mark.size, mark.bold), height = mark.size * 0.8;
+    const double share = mark.anchor == Anchor::start ? 0 : mark.anchor == Anchor::middle ? 0.5 : 1;
+    return {mark.points[0].x - share * width, mark.points[0].y - height / 2, width, height};
+}
+
+bool overlap(const Rectangle& a, const Rectangle& b) {
+    return a.x < b.x + b.width && b.x < a.x + a.width && a.y < b.y + b.height && b.y < a.y + a.height;
+}
+
+/// The words of ways out in this picture; none may cover another word or a dot.
+std::size_t readable_ways_out(const Design& design, const Block& block, const std::string& view) {
+    const SlicePicture slice = slice_of(design, block, parse_view(view, block).value());
     std::size_t ways = 0;
     for (const Mark& mark : slice.marks) {
-        if (mark.kind != Mark::Kind::text || (mark.text != "to 175" && mark.text != "from 168")) continue;
+        if (!is_way_out(mark)) continue;
         ++ways;
-        const double width = Canvas::text_width(mark.text, mark.size);
+        const Rectangle box = box_of(mark);
+        INFO(view << ": " << mark.text);
+        CHECK(box.x > 0);
+        for (const Mark& other : slice.marks) {
+            if (&other == &mark || other.kind != Mark::Kind::text) continue;
+            INFO("and " << other.text);
+            CHECK_FALSE(overlap(box, box_of(other)));
+        }
         for (const SliceDot& dot : slice.map.dot_list) {
             const Point centre = slice.at(static_cast<double>(dot.position), dot.level);
-            const bool beside = std::abs(centre.y - mark.points[0].y) >= 10 + 5 ||
-                                centre.x + 10 <= mark.points[0].x - width ||
-                                centre.x - 10 >= mark.points[0].x;
-            CHECK(beside);
+            const Point near{std::clamp(centre.x, box.x, box.x + box.width),
+                             std::clamp(centre.y, box.y, box.y + box.height)};
+            CHECK(distance(near, centre) >= 10);
         }
     }
-    CHECK(ways == 2);
+    return ways;
+}
+
+}  // namespace
+
+TEST_CASE("where a yarn leaves a slice its way out can be read beside dots, turns and other words") {
+    const struct {
+        const char *sample, *view;
+        std::size_t ways;
+    } pictures[] = {{"shoe-baby", "weft:170", 2}, {"i-beam", "weft:1", 3}, {"shoe-toddler", "weft:300", 2}};
+    for (const auto& [sample, view, ways] : pictures) {
+        const Design design = sample_design(sample);
+        const Evaluation cloth = evaluate(design).value();
+        CHECK(readable_ways_out(design, *cloth.block, view) == ways);
+    }
+}
+
+TEST_CASE("ways out of every row of the I-beam and of the small shoe can be read") {
+    for (const char* sample : {"i-beam", "shoe-baby"}) {
+        const Design design = sample_design(sample);
+        const Evaluation cloth = evaluate(design).value();
+        const Block& block = *cloth.block;
+        std::size_t ways = 0;
+        for (std::size_t row = 0; row < block.rows(); ++row)
+            ways += readable_ways_out(design, block, "weft:" + std::to_string(block.first_pick(row) + 1));
+        CHECK(ways > 2);
+    }
+}
+
+TEST_CASE("words go where they cover least, and never over one another") {
+    LabelPlaces places({0, 0, 100, 100});
+    const Point wishes[]{{20, 20}, {50, 20}, {80, 20}, {20, 60}};
+    const auto taken_at = [&](double x, double y) {
+        const Rectangle place = places.take(20, 10, wishes);
+        return place.x == x - 10 && place.y == y - 5;
+    };
+    places.add_disc({52, 22}, 5);
+    CHECK(taken_at(20, 20));
+    CHECK(taken_at(80, 20));
+    const Point line[]{{0, 60}, {10, 60}, {20, 60}, {30, 60}};
+    places.add_curve(line);
+    CHECK(taken_at(20, 60));  // over a line rather than over a disc
+    CHECK(taken_at(50, 20));
+    const Point outside[]{{-5, 20}, {95, 60}};
+    CHECK(places.take(20, 10, outside).x == -15);  // nowhere fits: the first of equals
 }
 
 TEST_CASE("slices and the block begin where they are asked to, and say so") {

@@ -271,6 +271,39 @@ TEST_CASE("an accepted flip changes one pixel, its own, and a second one changes
     CHECK(differing(before, card_of(shop, "f.weave")).empty());
 }
 
+TEST_CASE("a flip of one crossing among 400 million is made without laying the cloth out") {
+    const Workshop shop;
+    shop.must({"preset", "plain", "-o", "p.weave"});
+    shop.must({"tile", "p.weave", "--x", "10000", "--y", "10000", "-o", "big.weave"});
+    const auto flips_of = [&] {
+        return weave::parse_json(shop.get("f.weave"))->at("blocks").at("plain-tiled").at("flips");
+    };
+    const std::vector<std::string> flip{"flip", "big.weave", "--pick", "20000", "--end", "7", "-o", "f.weave"};
+    check_answer(shop.json(flip), "f.weave");
+    const Json there{{"pick", 19999}, {"end", 6}, {"weft", "under"}};
+    CHECK(flips_of() == Json::array({there}));
+    shop.must({"flip", "f.weave", "--pick", "20000", "--end", "7", "-o", "f.weave"});
+    const Json back{{"pick", 19999}, {"end", 6}, {"weft", "over"}};
+    CHECK(flips_of() == Json::array({back}));
+    shop.refused({"flip", "big.weave", "--pick", "1", "--end", "20001", "-o", "new.weave"}, 3,
+                 {"big.weave", "no crossing of pick 1 and end 20001", "20000 picks and 20000 ends"});
+}
+
+TEST_CASE("a flip tells of the flips that the design lost before") {
+    const Workshop shop;
+    shop.must({"preset", "twill", "-o", "t.weave"});
+    Json document = *weave::parse_json(shop.get("t.weave"));
+    document["blocks"]["twill"]["flips"] = Json::array({{{"pick", 98}, {"end", 0}, {"weft", "over"}}});
+    shop.put("t.weave", document.dump());
+    const Ended flipped = shop.run({"flip", "t.weave", "--pick", "1", "--end", "1", "-o", "f.weave"});
+    CHECK(flipped.exit == 0);
+    const std::string lost = "a flip of block 'twill' no longer applies: there is no crossing of pick 99 and end 1: "
+                             "the block has 4 picks and 4 ends";
+    CHECK(flipped.complaints() == std::vector<std::string>{"weave: t.weave: " + lost, "weave: " + lost});
+    const Json kept = weave::parse_json(shop.get("f.weave"))->at("blocks").at("twill").at("flips");
+    CHECK(kept.size() == 2);
+}
+
 TEST_CASE("a flip with other yarns in the way is refused with 1, names them, and writes nothing") {
     const Workshop shop;
     shop.must({"preset", "multi-layer", "-o", "m.weave"});

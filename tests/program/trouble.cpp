@@ -101,6 +101,16 @@ TEST_CASE("bad input ends with 3 and one line that names the file and the place 
     for (const auto& [words, pieces] : calls) shop.refused(words, 3, pieces);
 }
 
+TEST_CASE("a stencil that would be too large is refused before its picture is read") {
+    const Workshop shop;
+    shop.must({"preset", "multi-layer", "layers=64", "-o", "m.weave"});
+    const weave::ColourImage image{600, 700, std::vector<weave::Colour>(std::size_t{600} * 700)};
+    const std::string whole = *weave::write_png(image);
+    shop.put("cut.png", whole.substr(0, 100));  // its size is there, its pixels are not
+    shop.refused({"stencil", "cut.png", "--map", "#000000=m.weave", "-o", "new.weave"}, 3,
+                 {"cut.png with block 0 = m.weave", "38400 picks and 44800 ends is larger than the limit"});
+}
+
 TEST_CASE("a program that reads along is told of a failure in JSON, and nothing else") {
     const Workshop shop;
     furnish(shop);

@@ -43,6 +43,7 @@ TEST_CASE("weave --help names every command, and every command's help its option
             INFO("must mention " << mention);
             CHECK(help.out.find(mention) != std::string::npos);
         }
+        CHECK(help.out.find("16777216") == std::string::npos);
         CHECK(help.out.find("268435456") == std::string::npos);  // limits of our own are no one's reading
         CHECK(help.out.find("1073741824") == std::string::npos);
     }
@@ -110,6 +111,10 @@ TEST_CASE("a call that makes no sense ends with 2 and says what is wrong with it
         {{"render", "t.weave", "--view", "weft:5", "-o", "new.png"}, {"5", "1 to 4"}},
         {{"render", "t.weave", "--view", "warp:0", "-o", "new.png"}, {"0", "1 to 4"}},
         {{"flip", "t.weave", "--pick", "0", "--end", "1", "-o", "new.weave"}, {"--pick"}},
+        {{"flip", "t.weave", "--pick", "-1", "--end", "1", "-o", "new.weave"}, {"--pick", "-1"}},
+        {{"flip", "t.weave", "--pick", "1.5", "--end", "1", "-o", "new.weave"}, {"--pick", "1.5"}},
+        {{"flip", "t.weave", "--pick", "1", "--end", "16777217", "-o", "new.weave"}, {"--end", "16777217"}},
+        {{"flip", "t.weave", "--pick", "1", "--end", "18446744073709551617", "-o", "new.weave"}, {"--end"}},
         {{"check", "t.weave"}, {"--loom"}},
         {{"export", "t.weave", "-o", "new"}, {"--loom"}},
     };

@@ -4,6 +4,7 @@
 #include <weave/block/flip.hpp>
 #include <weave/core/text.hpp>
 #include <weave/design/document.hpp>
+#include <weave/design/outline.hpp>
 #include <weave/design/pins.hpp>
 
 #include <iostream>
@@ -90,12 +91,17 @@ void on_run(CLI::App* command, Program& program, std::function<Status()> run) {
     });
 }
 
+void note_lost_flips(const Program& program, const std::vector<LostFlip>& lost_flips,
+                     const std::string& file) {
+    for (const LostFlip& lost : lost_flips) program.note(file + ": " + lost_flip_line(lost));
+}
+
 Result<Cloth> load_cloth(Program& program, const std::string& file) {
     const Progress progress("reading " + file);
     WEAVE_TRY(Design design, load_design(file));
     Result<Evaluation> evaluation = evaluate(design);
     if (!evaluation) return std::move(evaluation).error().in(file);
-    for (const LostFlip& lost : evaluation->lost_flips) program.note(file + ": " + lost_flip_line(lost));
+    note_lost_flips(program, evaluation->lost_flips, file);
     return Cloth{std::move(design), std::move(evaluation).value()};
 }
 
@@ -132,29 +138,28 @@ void add_reading_options(CLI::App* command, const std::shared_ptr<BitmapReading>
 Status save_cloth(Program& program, const Design& design, const std::string& file, const std::string& sources,
                   const std::vector<std::string>& warnings) {
     const Progress progress("weaving " + file);
-    Result<Evaluation> woven = evaluate(design);
+    Result<Outline> woven = outline(design);
     if (!woven) {
         Error error = std::move(woven).error();
         if (error.where == "blocks." + design.root) error.where.clear();  // a block that nobody has seen yet
         return std::move(error).in(sources);
     }
-    const Evaluation& cloth = *woven;
     WEAVE_CHECK_OK(save_design(design, file));
     std::vector<std::string> notes = warnings;
-    for (const LostFlip& lost : cloth.lost_flips) notes.push_back(lost_flip_line(lost));
-    const Block& block = *cloth.block;
+    for (const LostFlip& lost : woven->lost_flips) notes.push_back(lost_flip_line(lost));
+    const BlockGrid& grid = woven->grid;
     for (const std::string& line : notes) program.note(line);
     program.answer({{"file", file},
-                    {"picks", block.picks()},
-                    {"ends", block.ends()},
-                    {"rows", block.rows()},
-                    {"columns", block.columns()},
-                    {"height", block.height()},
+                    {"picks", grid.picks()},
+                    {"ends", grid.ends()},
+                    {"rows", grid.rows()},
+                    {"columns", grid.columns()},
+                    {"height", woven->height},
                     {"warnings", notes}},
-                   on_one_line(file) + ": " + std::to_string(block.picks()) + " picks and " +
-                       std::to_string(block.ends()) + " ends in " + std::to_string(block.rows()) +
-                       " rows and " + std::to_string(block.columns()) + " columns, " +
-                       std::to_string(block.height()) + " high\n");
+                   on_one_line(file) + ": " + std::to_string(grid.picks()) + " picks and " +
+                       std::to_string(grid.ends()) + " ends in " + std::to_string(grid.rows()) +
+                       " rows and " + std::to_string(grid.columns()) + " columns, " +
+                       std::to_string(woven->height) + " high\n");
     return {};
 }
 

@@ -59,6 +59,10 @@ struct Cloth {
 };
 Result<Cloth> load_cloth(Program& program, const std::string& file);
 
+/// Tells on standard error of the flips in `file` that no longer apply.
+void note_lost_flips(const Program& program, const std::vector<LostFlip>& lost_flips,
+                     const std::string& file);
+
 /// Tells on standard error where the scene pins a yarn that the cloth does not have.
 void note_stray_pin(const Program& program, const Cloth& cloth, const std::string& file);
 
@@ -79,11 +83,11 @@ void add_reading_options(CLI::App* command, const std::shared_ptr<BitmapReading>
 /// The work of each group of commands.
 void add_make_commands(CLI::App& app,
                        Program& program);  // samples, preset, tile, attach, stencil, renumber, flip
-void add_import_command(CLI::App& app, Program& program);  // import
-void add_look_commands(CLI::App& app, Program& program);   // info, card, render
-void add_loom_commands(CLI::App& app, Program& program);   // check, export
+void add_import_command(CLI::App& app, Program& program);       // import
+void add_look_commands(CLI::App& app, Program& program);        // info, card, render
+void add_loom_commands(CLI::App& app, Program& program);        // check, export
 void add_simulation_commands(CLI::App& app, Program& program);  // simulate, export-yarns
 void add_inspection_commands(CLI::App& app, Program& program);  // inspect, compare
-void add_bench_commands(CLI::App& app, Program& program);  // bench
+void add_bench_commands(CLI::App& app, Program& program);       // bench
 
 }  // namespace weave::program

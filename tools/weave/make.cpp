@@ -8,6 +8,7 @@
 #include <weave/design/document.hpp>
 #include <weave/design/edit.hpp>
 #include <weave/design/merge.hpp>
+#include <weave/design/outline.hpp>
 #include <weave/io/bitmap.hpp>
 #include <weave/samples/samples.hpp>
 
@@ -214,6 +215,27 @@ Result<StencilMap> map_of(const ColourImage& image, const std::map<Colour, std::
     return map;
 }
 
+/// The map that a picture draws. A cloth that would be too large is refused before the picture's pixels are
+/// read: `block` is one of the blocks, `sources` what an error of the cloth is said of.
+Result<StencilMap> read_map(const std::string& picture, const std::map<Colour, std::uint16_t>& numbers,
+                            const Design& block, const std::string& sources) {
+    const Progress progress("reading " + picture);
+    const Result<Outline> woven = outline(block);
+    bool too_large = false;
+    const auto fits = [&](std::size_t rows, std::size_t columns) -> Status {
+        if (!woven) return {};  // which is told later, with its place
+        Status status = check_stencil_size(woven->grid, rows, columns);
+        too_large = !status;
+        return status;
+    };
+    WEAVE_TRY(const std::string bytes, read_file(picture));
+    Result<ColourImage> image = read_colour_image(bytes, fits);
+    if (!image) return std::move(image).error().in(too_large ? sources : picture);
+    Result<StencilMap> map = map_of(*image, numbers);
+    if (!map) return std::move(map).error().in(picture);
+    return map;
+}
+
 Status make_stencil(Program& program, const std::string& picture, const std::vector<std::string>& mappings,
                     const std::string& out) {
     Design design;
@@ -244,18 +266,13 @@ Status make_stencil(Program& program, const std::string& picture, const std::vec
                                ": its yarns and feeders are not those of the first design and are left out");
         stencil.of.push_back(bring_in(design, part));
     }
-    const Progress progress("reading " + picture);
-    WEAVE_TRY(const std::string bytes, read_file(picture));
-    Result<ColourImage> image = read_colour_image(bytes);
-    if (!image) return std::move(image).error().in(picture);
-    Result<StencilMap> map = map_of(*image, numbers);
-    if (!map) return std::move(map).error().in(picture);
+    WEAVE_TRY(StencilMap map, read_map(picture, numbers, design, sources));
     for (const auto& [colour, number] : numbers) {
-        if (std::find(map->blocks.begin(), map->blocks.end(), number) == map->blocks.end()) {
+        if (std::find(map.blocks.begin(), map.blocks.end(), number) == map.blocks.end()) {
             warnings.push_back(picture + ": no pixel has the mapped colour " + to_text(colour));
         }
     }
-    stencil.map = std::make_shared<const StencilMap>(std::move(map).value());
+    stencil.map = std::make_shared<const StencilMap>(std::move(map));
     design.title = std::filesystem::path(out).stem().string();
     put_root(design, "stencilled", std::move(stencil));
     return save_cloth(program, design, out, sources, warnings);
@@ -284,16 +301,32 @@ void add_stencil(CLI::App& app, Program& program) {
 
 /// Tells a program which yarns stand in the way of a flip, picks and ends from 1 and from the bottom up.
 /// People read it in the error.
-void answer_blocked(Program& program, const Block& block, std::size_t pick, std::size_t end,
+void answer_blocked(Program& program, const PlacedStack& at, std::size_t pick, std::size_t end,
                     const Error& error) {
-    const std::size_t row = block.row_of_pick(pick), column = block.column_of_end(end);
-    const std::size_t first_pick = block.first_pick(row), first_end = block.first_end(column);
     Json picks = Json::array(), ends = Json::array();
-    for (const Slot yarn : flip(block.stack(row, column), pick - first_pick, end - first_end).in_the_way) {
-        if (yarn.is_weft()) picks.push_back(first_pick + yarn.index() + 1);
-        if (yarn.is_warp()) ends.push_back(first_end + yarn.index() + 1);
+    for (const Slot yarn : flip(at.stack, pick - at.first_pick, end - at.first_end).in_the_way) {
+        if (yarn.is_weft()) picks.push_back(at.first_pick + yarn.index() + 1);
+        if (yarn.is_warp()) ends.push_back(at.first_end + yarn.index() + 1);
     }
-    program.answer({{"picks", std::move(picks)}, {"ends", std::move(ends)}, {"error", error_json(error)}}, "");
+    program.answer({{"picks", std::move(picks)}, {"ends", std::move(ends)}, {"error", error_json(error)}},
+                   "");
+}
+
+/// The flip of this crossing, if it can be made; both from 0.
+Result<Flip> flip_wished(Program& program, const Design& design, std::size_t pick, std::size_t end,
+                         const std::string& file) {
+    const Progress progress("looking at " + file);
+    Result<Outline> cloth = outline(design, CardPlace{pick, end});
+    if (!cloth) return std::move(cloth).error().in(file);
+    note_lost_flips(program, cloth->lost_flips, file);
+    if (!cloth->at) return no_crossing(cloth->grid, pick, end).in(file);
+    const PlacedStack& at = *cloth->at;
+    if (Result<Stack> flipped = flip(at, pick, end); !flipped) {
+        Error error = std::move(flipped).error().in(file);
+        answer_blocked(program, at, pick, end, error);
+        return error;
+    }
+    return Flip{pick, end, !at.stack.weft_over(pick - at.first_pick, end - at.first_end)};
 }
 
 void add_flip(CLI::App& app, Program& program) {
@@ -304,22 +337,16 @@ void add_flip(CLI::App& app, Program& program) {
     const auto out = std::make_shared<std::string>();
     const auto pick = std::make_shared<std::size_t>(0);
     const auto end = std::make_shared<std::size_t>(0);
-    const CLI::Validator from_1 = between(std::size_t{1}, std::size_t{1} << 28);
+    const CLI::Validator from_1 = between(std::size_t{1}, std::size_t{most_yarns});
     command->add_option("FILE", *file, "the .weave file")->required();
     command->add_option("--pick", *pick, "the pick, from 1")->required()->check(from_1)->type_name("N");
     command->add_option("--end", *end, "the end, from 1")->required()->check(from_1)->type_name("N");
     command->add_option("-o,--out", *out, "the .weave file to write")->type_name("FILE")->required();
     on_run(command, program, [=, &program]() -> Status {
-        WEAVE_TRY(Cloth cloth, load_cloth(program, *file));
-        const Block& block = *cloth.evaluation.block;
-        if (Result<Block> flipped = flip(block, *pick - 1, *end - 1); !flipped) {
-            const Error error = std::move(flipped).error().in(*file);
-            if (error.code == ErrorCode::invalid) answer_blocked(program, block, *pick - 1, *end - 1, error);
-            return error;
-        }
-        const Flip wish{*pick - 1, *end - 1, !block.weft_over(*pick - 1, *end - 1)};
-        WEAVE_CHECK_OK(apply_edit(cloth.design, PutFlip{cloth.design.root, wish}));
-        return save_cloth(program, cloth.design, *out, *file);
+        WEAVE_TRY(Design design, load_design(*file));
+        WEAVE_TRY(const Flip wish, flip_wished(program, design, *pick - 1, *end - 1, *file));
+        WEAVE_CHECK_OK(apply_edit(design, PutFlip{design.root, wish}));
+        return save_cloth(program, design, *out, *file);
     });
 }
 

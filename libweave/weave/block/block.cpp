@@ -2,6 +2,7 @@
 #include <weave/core/text.hpp>
 
 #include <algorithm>
+#include <numeric>
 #include <string>
 #include <utility>
 
@@ -11,13 +12,6 @@ namespace {
 
 std::string cell_name(std::size_t row, std::size_t column) {
     return "stacks[" + std::to_string(row) + "][" + std::to_string(column) + "]";
-}
-
-std::vector<std::size_t> running_sums(const std::vector<std::uint32_t>& counts) {
-    std::vector<std::size_t> sums{0};
-    sums.reserve(counts.size() + 1);
-    for (const std::uint32_t count : counts) sums.push_back(sums.back() + count);
-    return sums;
 }
 
 /// One stack against the counts of its row and column; `first` is the cell's first pick and end.
@@ -104,18 +98,23 @@ Status check_slots(std::size_t stacks, std::size_t height) {
                      " are more than the limit of " + std::to_string(most_slots) + " slots");
 }
 
+Status check_counts(const std::vector<std::uint32_t>& t, const std::vector<std::uint32_t>& p) {
+    const auto picks = std::accumulate(t.begin(), t.end(), std::uint64_t{0});
+    const auto ends = std::accumulate(p.begin(), p.end(), std::uint64_t{0});
+    if (picks == 0 || ends == 0) return bad_input("a block needs at least one pick and one end");
+    return check_card_size(picks, ends);
+}
+
 Result<Block> Block::make(std::vector<std::uint32_t> t, std::vector<std::uint32_t> p,
                           std::vector<Stack> stacks, std::vector<std::uint32_t> cells, std::size_t height) {
     assert(cells.size() == t.size() * p.size());
+    WEAVE_CHECK_OK(check_counts(t, p));
     Block block;
-    block.m_first_pick = running_sums(t);
-    block.m_first_end = running_sums(p);
-    if (block.picks() == 0 || block.ends() == 0)
-        return bad_input("a block needs at least one pick and one end");
-    WEAVE_CHECK_OK(check_card_size(block.picks(), block.ends()));
+    block.m_grid = BlockGrid(std::move(t), std::move(p));
     std::vector<bool> used(stacks.size());
-    for (std::size_t row = 0, cell = 0; row < t.size(); ++row) {
-        for (std::size_t column = 0; column < p.size(); ++column, ++cell) {
+    for (std::size_t row = 0, cell = 0; row < block.rows(); ++row) {
+        const std::uint32_t picks = block.t()[row];
+        for (std::size_t column = 0; column < block.columns(); ++column, ++cell) {
             const std::uint32_t number = cells[cell];
             if (number >= stacks.size()) {
                 return bad_input("is stack " + std::to_string(number) + " of a table of " +
@@ -123,16 +122,15 @@ Result<Block> Block::make(std::vector<std::uint32_t> t, std::vector<std::uint32_
                                  cell_name(row, column));
             }
             const Stack& stack = stacks[number];
-            if (used[number] && stack.wefts() == t[row] && stack.warps() == p[column]) continue;
-            WEAVE_CHECK_OK(check_cell(stack, t[row], p[column], row, column,
+            const std::uint32_t ends = block.p()[column];
+            if (used[number] && stack.wefts() == picks && stack.warps() == ends) continue;
+            WEAVE_CHECK_OK(check_cell(stack, picks, ends, row, column,
                                       {block.first_pick(row), block.first_end(column)}));
             used[number] = true;
             height = std::max(height, stack.height());
         }
     }
     WEAVE_CHECK_OK(check_height(height));
-    block.m_t = std::move(t);
-    block.m_p = std::move(p);
     block.m_height = height;
     block.m_stacks = std::move(stacks);
     block.m_cells = std::move(cells);
@@ -153,35 +151,38 @@ void Block::leave_out_unused(const std::vector<bool>& used) {
     for (std::uint32_t& cell : m_cells) cell = moved[cell];
 }
 
-std::size_t Block::row_of_pick(std::size_t pick) const {
-    const auto next = std::upper_bound(m_first_pick.begin(), m_first_pick.end(), pick);
-    return static_cast<std::size_t>(next - m_first_pick.begin()) - 1;
-}
-
-std::size_t Block::column_of_end(std::size_t end) const {
-    const auto next = std::upper_bound(m_first_end.begin(), m_first_end.end(), end);
-    return static_cast<std::size_t>(next - m_first_end.begin()) - 1;
+Block Block::with_stacks(const std::map<std::size_t, Stack>& stacks) && {
+    StackTable table;
+    std::vector<std::uint32_t> moved;
+    moved.reserve(m_stacks.size());
+    for (Stack& stack : m_stacks) moved.push_back(table.number_of(std::move(stack)));
+    for (std::uint32_t& cell : m_cells) cell = moved[cell];
+    for (const auto& [cell, stack] : stacks) {
+        assert(stack.wefts() == t()[cell / columns()] && stack.warps() == p()[cell % columns()] &&
+               stack.check() && stack.height() <= m_height);
+        m_cells[cell] = table.number_of(stack);
+    }
+    m_stacks = std::move(table).take();
+    std::vector<bool> used(m_stacks.size());
+    for (const std::uint32_t cell : m_cells) used[cell] = true;
+    leave_out_unused(used);
+    return std::move(*this);
 }
 
 bool Block::weft_over(std::size_t pick, std::size_t end) const {
     const std::size_t row = row_of_pick(pick), column = column_of_end(end);
-    const Slot weft = Slot::weft(pick - m_first_pick[row]), warp = Slot::warp(end - m_first_end[column]);
-    for (const Slot slot : stack(row, column).slots()) {
-        if (slot.same_system(warp) && slot.index() == warp.index()) return true;
-        if (slot.same_system(weft) && slot.index() == weft.index()) return false;
-    }
-    return false;
+    return stack(row, column).weft_over(pick - first_pick(row), end - first_end(column));
 }
 
 CardImage Block::card_image() const {
     const StackPixels pixels(m_stacks);
     CardImage card(picks(), ends());
     for (std::size_t row = 0; row < rows(); ++row) {
-        for (std::size_t weft = 0; weft < m_t[row]; ++weft) {
-            const auto bits = card.row(m_first_pick[row] + weft);
+        for (std::size_t weft = 0; weft < t()[row]; ++weft) {
+            const auto bits = card.row(first_pick(row) + weft);
             for (std::size_t column = 0; column < columns(); ++column) {
                 const std::uint8_t* const drawn = pixels.row(m_cells[row * columns() + column], weft);
-                put_bits(bits, m_first_end[column], drawn, m_p[column]);
+                put_bits(bits, first_end(column), drawn, p()[column]);
             }
         }
     }
@@ -189,7 +190,7 @@ CardImage Block::card_image() const {
 }
 
 bool operator==(const Block& a, const Block& b) {
-    if (a.m_t != b.m_t || a.m_p != b.m_p || a.m_height != b.m_height) return false;
+    if (!(a.m_grid == b.m_grid) || a.m_height != b.m_height) return false;
     for (std::size_t cell = 0; cell < a.m_cells.size(); ++cell) {
         if (!(a.m_stacks[a.m_cells[cell]] == b.m_stacks[b.m_cells[cell]])) return false;
     }

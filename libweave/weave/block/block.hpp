@@ -1,11 +1,13 @@
 #pragma once
 
+#include <weave/block/block_grid.hpp>
 #include <weave/block/card_image.hpp>
 #include <weave/block/stack.hpp>
 #include <weave/core/result.hpp>
 
 #include <cstddef>
 #include <cstdint>
+#include <map>
 #include <memory>
 #include <span>
 #include <unordered_map>
@@ -41,21 +43,22 @@ class Block {
                               std::vector<Stack> stacks, std::vector<std::uint32_t> cells,
                               std::size_t height = 0);
 
-    [[nodiscard]] std::size_t rows() const { return m_t.size(); }
-    [[nodiscard]] std::size_t columns() const { return m_p.size(); }
+    [[nodiscard]] const BlockGrid& grid() const { return m_grid; }
+    [[nodiscard]] std::size_t rows() const { return m_grid.rows(); }
+    [[nodiscard]] std::size_t columns() const { return m_grid.columns(); }
     [[nodiscard]] std::size_t height() const { return m_height; }
-    [[nodiscard]] std::size_t picks() const { return m_first_pick.back(); }
-    [[nodiscard]] std::size_t ends() const { return m_first_end.back(); }
+    [[nodiscard]] std::size_t picks() const { return m_grid.picks(); }
+    [[nodiscard]] std::size_t ends() const { return m_grid.ends(); }
     /// Picks of each row.
-    [[nodiscard]] const std::vector<std::uint32_t>& t() const { return m_t; }
+    [[nodiscard]] const std::vector<std::uint32_t>& t() const { return m_grid.t(); }
     /// Ends of each column.
-    [[nodiscard]] const std::vector<std::uint32_t>& p() const { return m_p; }
+    [[nodiscard]] const std::vector<std::uint32_t>& p() const { return m_grid.p(); }
 
     /// Number of the first pick of a row, from 0; also defined for rows() as the total.
-    [[nodiscard]] std::size_t first_pick(std::size_t row) const { return m_first_pick[row]; }
-    [[nodiscard]] std::size_t first_end(std::size_t column) const { return m_first_end[column]; }
-    [[nodiscard]] std::size_t row_of_pick(std::size_t pick) const;
-    [[nodiscard]] std::size_t column_of_end(std::size_t end) const;
+    [[nodiscard]] std::size_t first_pick(std::size_t row) const { return m_grid.first_pick(row); }
+    [[nodiscard]] std::size_t first_end(std::size_t column) const { return m_grid.first_end(column); }
+    [[nodiscard]] std::size_t row_of_pick(std::size_t pick) const { return m_grid.row_of_pick(pick); }
+    [[nodiscard]] std::size_t column_of_end(std::size_t end) const { return m_grid.column_of_end(end); }
 
     [[nodiscard]] const Stack& stack(std::size_t row, std::size_t column) const {
         return m_stacks[m_cells[row * columns() + column]];
@@ -66,6 +69,10 @@ class Block {
     [[nodiscard]] std::span<const std::uint32_t> cells(std::size_t row) const {
         return std::span(m_cells).subspan(row * columns(), columns());
     }
+
+    /// The block with other stacks in some cells, by the number of the cell, row by row. Each must hold the
+    /// yarns of its cell and be no higher than the block. The cells stay where they are in memory.
+    [[nodiscard]] Block with_stacks(const std::map<std::size_t, Stack>& stacks) &&;
 
     /// One pixel of the card image, without making all of it.
     [[nodiscard]] bool weft_over(std::size_t pick, std::size_t end) const;
@@ -79,8 +86,7 @@ class Block {
     Block() = default;
     void leave_out_unused(const std::vector<bool>& used);
 
-    std::vector<std::uint32_t> m_t, m_p;
-    std::vector<std::size_t> m_first_pick{0}, m_first_end{0};
+    BlockGrid m_grid;
     std::size_t m_height = 0;
     std::vector<Stack> m_stacks;
     std::vector<std::uint32_t> m_cells;
@@ -101,10 +107,15 @@ class StackTable {
     std::unordered_map<Stack, std::uint32_t, StackHash> m_numbers;
 };
 
-/// A block from a function that gives the stack of each cell.
+/// An error where a block with these counts would have no pick or no end, or a card larger than the limits.
+Status check_counts(const std::vector<std::uint32_t>& t, const std::vector<std::uint32_t>& p);
+
+/// A block from a function that gives the stack of each cell. One that is too large is refused before any is
+/// made.
 template <class StackOfCell>
 Result<Block> make_block(std::vector<std::uint32_t> t, std::vector<std::uint32_t> p,
                          StackOfCell stack_of_cell, std::size_t height = 0) {
+    WEAVE_CHECK_OK(check_counts(t, p));
     StackTable table;
     std::vector<std::uint32_t> cells;
     cells.reserve(t.size() * p.size());

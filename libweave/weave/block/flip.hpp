@@ -3,6 +3,7 @@
 #include <weave/block/block.hpp>
 
 #include <cstddef>
+#include <map>
 #include <span>
 #include <string>
 #include <vector>
@@ -40,10 +41,30 @@ struct FlippedBlock {
     Block block;
     std::vector<RefusedFlip> refused;
 };
-FlippedBlock apply_flips(const Block& block, std::span<const Flip> flips);
+FlippedBlock apply_flips(Block block, std::span<const Flip> flips);
+
+/// The same without a block, for who knows its grid and has the stacks that the flips ask for: `stacks`
+/// holds, by the number of the cell, row by row, that of each crossing that there is, and has the flipped
+/// ones in the end.
+std::vector<RefusedFlip> flip_stacks(const BlockGrid& grid, std::span<const Flip> flips,
+                                     std::map<std::size_t, Stack>& stacks);
 
 /// The block with the pixel of `pick` and `end` (from 0) inverted. Errors: a pick or end that the block does
 /// not have; a flip that is not valid, with the yarns in the way named as people count them, from 1.
 Result<Block> flip(const Block& block, std::size_t pick, std::size_t end);
+
+/// The error of it where there is no such crossing.
+Error no_crossing(const BlockGrid& grid, std::size_t pick, std::size_t end);
+
+/// One stack of a block, and the first pick and end of its cell.
+struct PlacedStack {
+    Stack stack;
+    std::size_t first_pick = 0, first_end = 0;
+};
+/// The stack of a crossing that there is.
+PlacedStack stack_at(const Block& block, std::size_t pick, std::size_t end);
+
+/// The stack alone, flipped at a crossing that it holds; the numbers count through the block.
+Result<Stack> flip(const PlacedStack& at, std::size_t pick, std::size_t end);
 
 }  // namespace weave

@@ -1,4 +1,5 @@
 #include <weave/block/operations.hpp>
+#include <weave/block/stack_moves.hpp>
 #include <weave/core/text.hpp>
 
 #include <algorithm>
@@ -9,41 +10,6 @@ namespace weave {
 namespace {
 
 using Counts = std::vector<std::uint32_t>;
-
-Counts repeated(const Counts& counts, std::size_t times, std::size_t factor) {
-    Counts result;
-    result.reserve(counts.size() * times);
-    for (std::size_t k = 0; k < times; ++k) {
-        for (const std::uint32_t count : counts) result.push_back(static_cast<std::uint32_t>(count * factor));
-    }
-    return result;
-}
-
-/// `upper` on top of `lower`, which is filled up to `lower_height` with empty slots; upper's yarns count on
-/// from lower's.
-Stack piled(const Stack& lower, std::size_t lower_height, const Stack& upper) {
-    std::vector<Slot> slots(lower.slots().begin(), lower.slots().end());
-    slots.resize(lower_height);
-    for (const Slot slot : upper.slots()) {
-        const std::size_t below = slot.is_weft() ? lower.wefts() : lower.warps();
-        slots.push_back(slot.is_empty() ? slot : slot.renumbered(slot.index() + below));
-    }
-    return Stack(std::move(slots));
-}
-
-/// `times` copies on top of each other, each filled up to `height`.
-Stack piled_times(const Stack& stack, std::size_t height, std::size_t times) {
-    std::vector<Slot> slots;
-    slots.reserve(height * times);
-    for (std::size_t k = 0; k < times; ++k) {
-        slots.resize(k * height);
-        for (const Slot slot : stack.slots()) {
-            const std::size_t below = k * (slot.is_weft() ? stack.wefts() : stack.warps());
-            slots.push_back(slot.is_empty() ? slot : slot.renumbered(slot.index() + below));
-        }
-    }
-    return Stack(std::move(slots));
-}
 
 /// What errors call two blocks.
 struct Pair {
@@ -191,8 +157,8 @@ Result<Counts> common_counts(std::span<const BlockPtr> blocks, std::span<const s
     return common;
 }
 
-Result<Block> renumbered(const Block& block, System system, std::size_t line,
-                         std::span<const std::size_t> order) {
+Result<Block> with_line_renumbered(const Block& block, System system, std::size_t line,
+                                   std::span<const std::size_t> order) {
     const bool row = system == System::weft;
     const std::size_t lines = row ? block.rows() : block.columns();
     const std::string name = row ? "row " : "column ";
@@ -200,13 +166,8 @@ Result<Block> renumbered(const Block& block, System system, std::size_t line,
         return bad_input("there is no " + name + std::to_string(line) + "; the last one is " +
                          std::to_string(lines - 1));
     const std::size_t count = row ? block.t()[line] : block.p()[line];
-    std::vector<std::size_t> new_number(count, count);
-    bool fits = order.size() == count;
-    for (std::size_t k = 0; fits && k < count; ++k) {
-        fits = order[k] < count && new_number[order[k]] == count;
-        if (fits) new_number[order[k]] = k;
-    }
-    if (!fits) {
+    const auto numbers = new_numbers(order, count);
+    if (!numbers) {
         return bad_input("the new order of " + name + std::to_string(line) + " must name each of its " +
                          std::to_string(count) + (row ? " picks" : " ends") + " once, from 0 on");
     }
@@ -222,14 +183,8 @@ Result<Block> renumbered(const Block& block, System system, std::size_t line,
     for (std::size_t k = 0; k < length; ++k) {
         std::uint32_t& cell = cells[first + k * step];
         const auto [entry, is_new] = known.try_emplace(cell, 0);
-        if (is_new) {
-            const auto old = merged.table.at(cell).slots();
-            std::vector<Slot> slots(old.begin(), old.end());
-            for (Slot& slot : slots) {
-                if (row ? slot.is_weft() : slot.is_warp()) slot = slot.renumbered(new_number[slot.index()]);
-            }
-            entry->second = merged.table.number_of(Stack(std::move(slots)));
-        }
+        if (is_new)
+            entry->second = merged.table.number_of(renumbered(merged.table.at(cell), system, *numbers));
         cell = entry->second;
     }
     return Block::make(block.t(), block.p(), std::move(merged.table).take(), std::move(cells),
@@ -238,12 +193,16 @@ Result<Block> renumbered(const Block& block, System system, std::size_t line,
 
 }  // namespace
 
-Result<Block> tile(const Block& block, std::size_t x, std::size_t y, std::size_t z) {
+Status check_tile(const Extent& of, std::size_t x, std::size_t y, std::size_t z) {
     if (x == 0 || y == 0 || z == 0) return bad_input("a block is tiled at least once in each direction");
     if (x > most_yarns || y > most_yarns || z > most_yarns / std::max(x, y))
         return bad_input("a block is tiled at most " + std::to_string(most_yarns) + " times in a direction");
-    WEAVE_CHECK_OK(check_card_size(block.picks() * x * z, block.ends() * y * z));
-    WEAVE_CHECK_OK(check_slots(block.stacks().size(), block.height() * z));
+    WEAVE_CHECK_OK(check_card_size(of.picks * x * z, of.ends * y * z));
+    return check_slots(of.stacks, of.height * z);
+}
+
+Result<Block> tile(const Block& block, std::size_t x, std::size_t y, std::size_t z) {
+    WEAVE_CHECK_OK(check_tile(extent_of(block), x, y, z));
     StackTable table;
     std::vector<std::uint32_t> moved;
     for (const Stack& stack : block.stacks())
@@ -285,12 +244,20 @@ Result<Block> attach(const Block& block, const Block& other, Face face, std::spa
     return bad_input("a block has six faces");
 }
 
+Status check_stencil_size(const BlockGrid& block, std::size_t rows, std::size_t columns) {
+    const std::size_t picks = rows / block.rows() * block.picks() + block.first_pick(rows % block.rows());
+    const std::size_t ends =
+        columns / block.columns() * block.ends() + block.first_end(columns % block.columns());
+    return check_card_size(picks, ends);
+}
+
 Result<Block> stencil(std::span<const BlockPtr> blocks, const StencilMap& map,
                       std::span<const std::string> names) {
     assert(names.empty() || names.size() == blocks.size());
     WEAVE_CHECK_OK(check_stencil(blocks, map));
     WEAVE_TRY(Counts t, common_counts(blocks, names, map.rows, &Block::t, "row", "pick"));
     WEAVE_TRY(Counts p, common_counts(blocks, names, map.columns, &Block::p, "column", "end"));
+    WEAVE_CHECK_OK(check_counts(t, p));
     MergedTables merged;
     std::size_t height = 0;
     for (const BlockPtr& block : blocks) {
@@ -311,11 +278,11 @@ Result<Block> stencil(std::span<const BlockPtr> blocks, const StencilMap& map,
 }
 
 Result<Block> renumber_row(const Block& block, std::size_t row, std::span<const std::size_t> order) {
-    return renumbered(block, System::weft, row, order);
+    return with_line_renumbered(block, System::weft, row, order);
 }
 
 Result<Block> renumber_column(const Block& block, std::size_t column, std::span<const std::size_t> order) {
-    return renumbered(block, System::warp, column, order);
+    return with_line_renumbered(block, System::warp, column, order);
 }
 
 }  // namespace weave

@@ -1,6 +1,7 @@
 #pragma once
 
 #include <weave/block/block.hpp>
+#include <weave/block/extent.hpp>
 
 #include <cstddef>
 #include <cstdint>
@@ -14,6 +15,9 @@ namespace weave {
 /// 5 without its misprinted factor). Within each source stack the yarns keep their order. Counts must be at
 /// least 1.
 Result<Block> tile(const Block& block, std::size_t x, std::size_t y, std::size_t z);
+
+/// What tile() refuses of a block of this extent.
+Status check_tile(const Extent& of, std::size_t x, std::size_t y, std::size_t z);
 
 /// A face of a block. +x lies after the last row, +y after the last column, +z on top.
 enum class Face : std::uint8_t { plus_x, minus_x, plus_y, minus_y, plus_z, minus_z };
@@ -45,6 +49,10 @@ struct StencilMap {
 /// errors call the blocks; else they are called by their numbers.
 Result<Block> stencil(std::span<const BlockPtr> blocks, const StencilMap& map,
                       std::span<const std::string> names = {});
+
+/// An error where a stencil of this size would be too large a cloth, told from one of its blocks, since all
+/// have to agree in their counts.
+Status check_stencil_size(const BlockGrid& block, std::size_t rows, std::size_t columns);
 
 /// Changes the insertion order of the picks of one row: the k-th pick becomes the one that was number
 /// order[k] of that row, from 0. Permutes rows of the card image within the row of the block and changes

@@ -12,6 +12,14 @@ Stack::Stack(std::vector<Slot> slots) : m_slots(std::move(slots)) {
     }
 }
 
+bool Stack::weft_over(std::size_t weft, std::size_t warp) const {
+    for (const Slot slot : m_slots) {
+        if (slot.is_warp() && slot.index() == warp) return true;
+        if (slot.is_weft() && slot.index() == weft) return false;
+    }
+    return false;
+}
+
 Status Stack::check(std::size_t first_pick, std::size_t first_end) const {
     std::vector<bool> seen_weft(m_wefts), seen_warp(m_warps);
     for (const Slot slot : m_slots) {

@@ -64,6 +64,9 @@ class Stack {
     [[nodiscard]] std::size_t wefts() const { return m_wefts; }
     [[nodiscard]] std::size_t warps() const { return m_warps; }
 
+    /// Whether that weft stands above that warp; the stack must hold both.
+    [[nodiscard]] bool weft_over(std::size_t weft, std::size_t warp) const;
+
     /// Whether the stack holds wefts 0 … wefts()-1 and warps 0 … warps()-1 exactly once each.
     /// Otherwise a sentence that names the yarn which is foreign or repeated as documents write it: counted
     /// through the whole block, so from the first pick and end of the cell.

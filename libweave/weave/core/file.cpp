@@ -3,6 +3,7 @@
 
 #include <cctype>
 #include <cerrno>
+#include <csignal>
 #include <cstring>
 #include <fcntl.h>
 #include <mutex>
@@ -119,10 +120,14 @@ Status write_new(Scaffold& scaffold, const fs::path& path, std::string_view byte
     return {};
 }
 
-void flush_parent(const fs::path& path) {
-    const fs::path parent = path.has_parent_path() ? path.parent_path() : fs::path(".");
-    const Descriptor folder(::open(parent.c_str(), O_RDONLY | O_DIRECTORY | O_CLOEXEC));
+/// Flushes the names in a folder. Some file systems cannot, and need not.
+void flush_folder(const fs::path& path) {
+    const Descriptor folder(::open(path.c_str(), O_RDONLY | O_DIRECTORY | O_CLOEXEC));
     if (folder.number() >= 0) ::fsync(folder.number());
+}
+
+void flush_parent(const fs::path& path) {
+    flush_folder(path.has_parent_path() ? path.parent_path() : fs::path("."));
 }
 
 /// The place that `path` leads to, whether anything is there or not, so that a symbolic link stays one.
@@ -139,9 +144,32 @@ Result<fs::path> real_target(const fs::path& path) {
     return target;
 }
 
+/// While it lives, a pipe that nobody reads any more gives an error in this thread and does not end the
+/// program.
+class BrokenPipesHeld {
+  public:
+    BrokenPipesHeld() {
+        sigemptyset(&m_pipe);
+        sigaddset(&m_pipe, SIGPIPE);
+        ::pthread_sigmask(SIG_BLOCK, &m_pipe, &m_before);
+    }
+    ~BrokenPipesHeld() {
+        constexpr timespec now{0, 0};
+        if (sigismember(&m_before, SIGPIPE) == 0)
+            ::sigtimedwait(&m_pipe, nullptr, &now);  // what came is done with
+        ::pthread_sigmask(SIG_SETMASK, &m_before, nullptr);
+    }
+    BrokenPipesHeld(const BrokenPipesHeld&) = delete;
+    BrokenPipesHeld& operator=(const BrokenPipesHeld&) = delete;
+
+  private:
+    sigset_t m_pipe{}, m_before{};
+};
+
 Status write_through(const fs::path& target, std::string_view bytes, const fs::path& path) {
     const Descriptor file(::open(target.c_str(), O_WRONLY | O_CLOEXEC));
     if (file.number() < 0) return fault(path, "open");
+    const BrokenPipesHeld held;
     return write_all(file, bytes, path);
 }
 
@@ -211,6 +239,7 @@ Status write_beside(Scaffold& scaffold, const fs::path& temporary,
         assert(fs::path(name).filename() == name);
         WEAVE_CHECK_OK(write_new(scaffold, temporary / name, bytes));
     }
+    flush_folder(temporary);  // so that no name is missing once it is in place
     return {};
 }
 

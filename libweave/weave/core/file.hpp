@@ -18,14 +18,16 @@ inline constexpr std::uint64_t default_file_limit = std::uint64_t{512} << 20;
 /// bytes.
 Result<std::string> read_file(const std::filesystem::path& path, std::uint64_t limit = default_file_limit);
 
-/// Writes a file whole or not at all: temporary file beside it, fsync, rename. An existing file is replaced
+/// Writes a file whole or not at all, whenever the power fails: a temporary file beside it is flushed to disk, put
+/// into place, and then its folder is flushed. A device or a pipe is written to as it is. An existing file is replaced
 /// and keeps its permissions and, where the system allows it, its owner. A symbolic link stays one: its
 /// target is written, and made if it is missing. Refused: a file that is write-protected, be it for all (root
 /// as well). The log is told where another name (hard link) keeps the old content, or the owner could not be
 /// kept.
 Status write_file(const std::filesystem::path& path, std::string_view bytes);
 
-/// A folder of files that appears whole or not at all. Refused: a `folder` that exists and holds anything, is
+/// A folder of files that appears whole or not at all: each file and then the folder is flushed to disk before it is
+/// put into place. Refused: a `folder` that exists and holds anything, is
 /// the current one, or is a mount point. A symbolic link to an empty folder stays one. Each pair is a file
 /// name without directories, and its bytes. Folders above it are made, and removed again on failure.
 Status write_folder(const std::filesystem::path& folder,

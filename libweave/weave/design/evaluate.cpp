@@ -1,5 +1,6 @@
 #include <weave/block/from_card.hpp>
 #include <weave/design/evaluate.hpp>
+#include <weave/design/extent_to_be.hpp>
 #include <weave/design/tree.hpp>
 
 #include <algorithm>
@@ -43,89 +44,16 @@ Result<BlockPtr> block_of(const Node& node, const std::vector<BlockPtr>& childre
     WEAVE_TRY(Block block,
               std::visit([&](const auto& source) { return make(source, children); }, node.source));
     if (node.flips.empty()) return std::make_shared<const Block>(std::move(block));
-    FlippedBlock flipped = apply_flips(block, node.flips);
+    FlippedBlock flipped = apply_flips(std::move(block), node.flips);
     refused = std::move(flipped.refused);
     return std::make_shared<const Block>(std::move(flipped.block));
 }
 
 constexpr std::size_t most_versions = 8;
 
-std::size_t slots_of(const Block& block) {
-    std::size_t slots = 0;
-    for (const Stack& stack : block.stacks()) slots += stack.height();
-    return slots;
-}
-
 /// What a block holds: its cells, and the slots of its stacks.
 std::size_t weight(const Block& block) {
-    return block.cells().size() + slots_of(block);
-}
-
-/// What a block holds in memory.
-struct Size {
-    std::size_t lines = 0, cells = 0, stacks = 0, slots = 0;  ///< lines: rows and columns
-
-    /// In units of 4 bytes: a row or column has its count and where it begins; a stack is an object of its
-    /// own beside its slots.
-    [[nodiscard]] std::size_t units() const { return 3 * lines + cells + 16 * stacks + slots; }
-};
-
-Size size_of(const Block& block) {
-    return {block.rows() + block.columns(), block.cells().size(), block.stacks().size(), slots_of(block)};
-}
-
-Size sum(const Size& a, const Size& b) {
-    return {a.lines + b.lines, a.cells + b.cells, a.stacks + b.stacks, a.slots + b.slots};
-}
-
-/// At most what the block that is made from these will hold. Presets and slices are small, or as small as the
-/// document that holds them; nothing is said of a block that its own operation refuses, with better words.
-Size size_to_be(const StacksLeaf& leaf, const std::vector<BlockPtr>&) {
-    return size_of(*leaf.block);
-}
-Size size_to_be(const CardLeaf& leaf, const std::vector<BlockPtr>&) {
-    return {leaf.card->picks() + leaf.card->ends(), leaf.card->picks() * leaf.card->ends(), 0, 0};
-}
-Size size_to_be(const PresetLeaf&, const std::vector<BlockPtr>&) {
-    return {0, 0, 0, 0};
-}
-Size size_to_be(const SliceLeaf&, const std::vector<BlockPtr>&) {
-    return {0, 0, 0, 0};
-}
-Size size_to_be(const TileOperation& operation, const std::vector<BlockPtr>& children) {
-    const Block& block = *children[0];
-    const auto& [of, x, y, z] = operation;
-    if (x > most_yarns || y > most_yarns || z > most_yarns ||
-        !check_card_size(block.picks() * x, block.ends() * y) ||
-        !check_slots(block.stacks().size(), block.height() * z))
-        return {0, 0, 0, 0};
-    const Size one = size_of(block);
-    return {block.rows() * x + block.columns() * y, one.cells * x * y, one.stacks,
-            one.stacks * block.height() * z};
-}
-Size size_to_be(const AttachOperation& operation, const std::vector<BlockPtr>& children) {
-    const Size one = size_of(*children[0]), other = size_of(*children[1]);
-    if (operation.face != Face::plus_z && operation.face != Face::minus_z) return sum(one, other);
-    const std::size_t piles = std::min(one.cells, one.stacks * other.stacks),
-                      height = children[0]->height() + children[1]->height();
-    return {one.lines, one.cells, piles, std::min(piles * height, most_slots)};
-}
-Size size_to_be(const StencilOperation& operation, const std::vector<BlockPtr>& children) {
-    const StencilMap& map = *operation.map;
-    Size size{map.rows + map.columns, map.blocks.size(), 0, 0};
-    for (const BlockPtr& child : children) size = sum(size, {0, 0, child->stacks().size(), slots_of(*child)});
-    return size;
-}
-Size size_to_be(const RenumberOperation&, const std::vector<BlockPtr>& children) {
-    const Size size = size_of(*children[0]);
-    return sum(size, {0, 0, size.stacks, size.slots});
-}
-
-/// At most what is held, beside its children, while the block of this node is made.
-std::size_t needed_for(const Node& node, const std::vector<BlockPtr>& children) {
-    const std::size_t once =
-        std::visit([&](const auto& source) { return size_to_be(source, children).units(); }, node.source);
-    return node.flips.empty() ? once : 2 * once;  // the block without its flips, and with them
+    return block.cells().size() + extent_of(block).slots;
 }
 
 Error too_much(const std::string& name, std::size_t limit) {
@@ -193,7 +121,7 @@ Result<BlockPtr> Evaluator::cloth(const std::vector<std::string>& order) {
         if (!uses.contains(*name)) continue;
         if (const BlockPtr& block = latest(*name).block) {
             at_hand[*name] = block;
-            held += size_of(*block).units();
+            held += extent_of(*block).units();
             touch(latest(*name));
             continue;
         }
@@ -204,13 +132,15 @@ Result<BlockPtr> Evaluator::cloth(const std::vector<std::string>& order) {
         std::vector<BlockPtr> children;
         const std::vector<std::string> child_names = children_of(*latest(name).node);
         for (const std::string& child : child_names) children.push_back(at_hand.at(child));
-        if (held + needed_for(*latest(name).node, children) > m_limit) return too_much(name, m_limit);
+        std::vector<Extent> extents;
+        for (const BlockPtr& child : children) extents.push_back(extent_of(*child));
+        if (held + needed_for(*latest(name).node, extents) > m_limit) return too_much(name, m_limit);
         WEAVE_CHECK_OK(make(name, children));
         at_hand[name] = latest(name).block;
-        held += size_of(*at_hand[name]).units();
+        held += extent_of(*at_hand[name]).units();
         for (const std::string& child : child_names) {
             if (--uses[child] > 0) continue;
-            held -= size_of(*at_hand.at(child)).units();
+            held -= extent_of(*at_hand.at(child)).units();
             at_hand.erase(child);
         }
         keep_within_budget();

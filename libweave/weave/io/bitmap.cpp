@@ -144,11 +144,12 @@ Result<std::string> write_proven_bitmap(const CardImage& card, BitmapFormat form
     return bytes;
 }
 
-Result<ColourImage> read_colour_image(std::string_view bytes) {
+Result<ColourImage> read_colour_image(std::string_view bytes, const PictureSizeCheck& fits) {
     ColourImage image;
     RasterSink sink;
     sink.start = [&](std::size_t width, std::size_t height) -> Status {
         WEAVE_CHECK_OK(check_picture_size(width, height));
+        if (fits) WEAVE_CHECK_OK(fits(height, width));
         image.rows = height, image.columns = width;
         return {};
     };

@@ -5,6 +5,7 @@
 
 #include <cstdint>
 #include <filesystem>
+#include <functional>
 #include <string>
 #include <string_view>
 #include <vector>
@@ -55,8 +56,11 @@ struct ColourImage {
     std::size_t rows = 0, columns = 0;
     std::vector<Colour> pixels;  ///< rows * columns, row by row from the bottom
 };
-/// Reads PNG, TIFF or BMP of any common kind. Transparency is refused unless fully opaque.
-Result<ColourImage> read_colour_image(std::string_view bytes);
+/// An error where a picture of this size is of no use.
+using PictureSizeCheck = std::function<Status(std::size_t rows, std::size_t columns)>;
+/// Reads PNG, TIFF or BMP of any common kind. Transparency is refused unless fully opaque. `fits`, if given, is asked
+/// before any pixel is read.
+Result<ColourImage> read_colour_image(std::string_view bytes, const PictureSizeCheck& fits = {});
 
 /// An 8-bit RGB PNG; rows from the bottom as in ColourImage.
 Result<std::string> write_png(const ColourImage& image);

@@ -1,3 +1,4 @@
+#include <weave/picture/label_places.hpp>
 #include <weave/picture/slice_map.hpp>
 #include <weave/picture/views.hpp>
 
@@ -16,7 +17,12 @@ class SliceDrawer {
   public:
     /// `first_yarn` is the pick or end with which the shown part begins.
     SliceDrawer(Canvas& canvas, const SliceMap& map, const WeftRuns& runs, std::size_t first_yarn, bool trim)
-        : m_canvas(canvas), m_map(map), m_runs(runs), m_first_yarn(first_yarn), m_trim(trim) {}
+        : m_canvas(canvas),
+          m_map(map),
+          m_runs(runs),
+          m_places(around(map)),
+          m_first_yarn(first_yarn),
+          m_trim(trim) {}
 
     void draw() {
         draw_grid();
@@ -29,8 +35,8 @@ class SliceDrawer {
         for (const SlicePath& path : m_map.paths) draw_path(path, false);
         for (const SliceDot& dot : m_map.dot_list) draw_dot(dot);
         for (const SlicePath& path : m_map.paths) draw_names(path);
-        for (const WayOut& way : m_ways_out) draw_name(way);
         m_canvas.unclip();
+        for (const WayOut& way : m_ways_out) draw_name(way);
     }
 
   private:
@@ -38,6 +44,13 @@ class SliceDrawer {
         std::vector<Point> bezier;
         bool loose = false;
     };
+
+    /// The part of the picture in which words may stand.
+    static Rectangle around(const SliceMap& map) {
+        const Point low = slice_point(map, 0, 0), high = slice_point(map, static_cast<double>(map.positions),
+                                                                     static_cast<double>(map.levels));
+        return {4, high.y - 4, high.x + 56, low.y - high.y + 28};
+    }
 
     [[nodiscard]] bool turning() const { return m_map.dots == System::warp && m_runs.wraparound(); }
     [[nodiscard]] Point at(double position, double level) const {
@@ -145,6 +158,7 @@ class SliceDrawer {
                 stroke.width = path_width - 1.5;
             }
             m_canvas.curve(piece.bezier, stroke);
+            if (!casing) m_places.add_curve(piece.bezier);
         }
         if (!casing && m_map.dots == System::warp) draw_directions(path);
     }
@@ -178,6 +192,7 @@ class SliceDrawer {
         const Point centre = at(static_cast<double>(dot.position), static_cast<double>(dot.level));
         const Colour rim = mix(dot.colour, {0, 0, 0}, 0.45),
                      fill = dot.loose ? mix(dot.colour, {0xff, 0xff, 0xff}, 0.7) : dot.colour;
+        m_places.add_disc(centre, dot_radius + 1);
         m_canvas.circle(centre, dot_radius, fill);
         m_canvas.ring(centre, dot_radius,
                       {.colour = rim,
@@ -196,7 +211,9 @@ class SliceDrawer {
         const std::string number = std::to_string(path.number + 1);
         const Point middle = at(position, static_cast<double>(path.levels[k]));
         const double half = Canvas::text_width(number, 11, true) / 2 + 2;
-        m_canvas.rectangle({middle.x - half, middle.y - 7, 2 * half, 14}, {0xff, 0xff, 0xff}, 0.9);
+        const Rectangle tag{middle.x - half, middle.y - 7, 2 * half, 14};
+        m_places.add_words(tag);
+        m_canvas.rectangle(tag, {0xff, 0xff, 0xff}, 0.9);
         m_canvas.text(middle, number,
                       {.size = 11,
                        .colour = readable(path.colour),
@@ -211,7 +228,10 @@ class SliceDrawer {
         const std::string number = std::to_string(path.number + 1);
         const auto name = [&](double position, std::size_t level, Anchor anchor) {
             if (level >= m_map.levels) return;
-            m_canvas.text(at(position, static_cast<double>(level)), number,
+            const Point place = at(position, static_cast<double>(level));
+            const double width = Canvas::text_width(number, 11, true);
+            m_places.add_words({anchor == Anchor::start ? place.x : place.x - width, place.y - 6, width, 12});
+            m_canvas.text(place, number,
                           {.size = 11,
                            .colour = readable(path.colour),
                            .anchor = anchor,
@@ -295,6 +315,7 @@ class SliceDrawer {
         m_canvas.curve(arc, {.colour = mix(colour, {0, 0, 0}, 0.45),
                              .width = path_width + 1.6,
                              .dash = caught ? std::vector<double>{} : std::vector<double>{3, 8}});
+        m_places.add_curve(arc);
         if (caught) m_canvas.curve(arc, {.colour = colour, .width = path_width});
         const Point middle{(a.x + b.x + 6 * reach) / 8, (a.y + b.y) / 2};
         const double down = b.y > a.y ? 1 : -1;
@@ -309,37 +330,55 @@ class SliceDrawer {
         const Point stub[]{a, {a.x + out * 24, a.y}};
         m_canvas.polyline(stub, {.colour = mix(path.colour, {0, 0, 0}, 0.3), .width = 2, .dash = {1, 4}});
         if (leaves) m_canvas.arrow_head({a.x + out * 32, a.y}, {out, 0}, 9, mix(path.colour, {0, 0, 0}, 0.5));
+        m_places.add_curve(straight(a, {a.x + out * stub_reach, a.y}));
         m_ways_out.push_back(
-            {{a.x + out * 35, a.y},
-             (leaves ? "to " : "from ") + std::to_string((leaves ? turn.to_pick : turn.from_pick) + 1),
-             out > 0 ? Anchor::start : Anchor::end});
+            {a, out,
+             (leaves ? "to " : "from ") + std::to_string((leaves ? turn.to_pick : turn.from_pick) + 1)});
     }
 
     struct WayOut {
-        Point place;
+        Point end;       ///< of the yarn
+        double out = 1;  ///< 1 to the right, -1 to the left
         std::string words;
-        Anchor anchor;
     };
+    static constexpr double stub_reach = 32, widest_turn = 66;  ///< from the end of the yarn
 
-    /// Beside the yarn where dots would cover the words.
+    /// Where the words of a way out would best stand, the best first: before its tip, beyond the turns of
+    /// other yarns, or in the gaps between the dots above and below.
+    [[nodiscard]] std::vector<Point> wishes(const WayOut& way, double width) const {
+        const double level = at(0, 0).y - at(0, 1).y, gap = (at(1, 0).x - at(0, 0).x) / 2;
+        const double before = stub_reach + 4 + width / 2, beyond = widest_turn + 4 + width / 2;
+        std::vector<Point> places;
+        for (const double up : {0.0, 0.5, -0.5, 1.0, -1.0, 1.5, -1.5, 2.5, -2.5}) {
+            if (up != 0) places.push_back({way.end.x + way.out * gap, way.end.y - up * level});
+            for (const double x : {before, beyond})
+                places.push_back({way.end.x + way.out * x, way.end.y - up * level});
+        }
+        return places;
+    }
+
+    /// The words where they hide nothing, with a line to the yarn's end where they stand away from it.
     void draw_name(const WayOut& way) {
         constexpr double size = 10;
         const double width = Canvas::text_width(way.words, size);
-        const double left = way.anchor == Anchor::start ? way.place.x : way.place.x - width;
-        const bool covered = std::ranges::any_of(m_map.dot_list, [&](const SliceDot& dot) {
-            const Point centre = at(static_cast<double>(dot.position), static_cast<double>(dot.level));
-            return std::abs(centre.y - way.place.y) < dot_radius && centre.x + dot_radius > left &&
-                   centre.x - dot_radius < left + width;
-        });
-        const Point place{way.place.x, way.place.y + (covered ? 17 : 0)};
-        if (covered) m_canvas.rectangle({left - 1, place.y - 6, width + 2, 12}, {0xff, 0xff, 0xff}, 0.8);
-        m_canvas.text(place, way.words,
-                      {.size = size, .colour = faint_ink, .anchor = way.anchor, .centred = true});
+        const Rectangle place = m_places.take(width + 2, size, wishes(way, width));
+        const Point middle{place.x + place.width / 2, place.y + place.height / 2};
+        const Point tip{way.end.x + way.out * stub_reach, way.end.y};
+        const Point near{std::clamp(tip.x, place.x, place.x + place.width),
+                         std::clamp(tip.y, place.y, place.y + place.height)};
+        if (std::hypot(near.x - tip.x, near.y - tip.y) > size) {
+            const Point leader[]{tip, near};
+            m_canvas.polyline(leader, {.colour = faint_ink, .width = 0.8, .dash = {1, 3}});
+        }
+        m_canvas.rectangle(place, {0xff, 0xff, 0xff}, 0.8);
+        m_canvas.text(middle, way.words,
+                      {.size = size, .colour = faint_ink, .anchor = Anchor::middle, .centred = true});
     }
 
     Canvas& m_canvas;
     const SliceMap& m_map;
     const WeftRuns& m_runs;
+    LabelPlaces m_places;
     std::size_t m_first_yarn;
     std::vector<WayOut> m_ways_out;
     bool m_trim;
