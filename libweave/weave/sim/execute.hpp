@@ -8,6 +8,16 @@
 #include <thread>
 #include <vector>
 
+/// Marks a function that is compiled twice, plainly and for processors with wide vectors (AVX2, fused multiply-add), of
+/// which the program takes what the machine has; what it calls inline is compiled with it. Sums may differ by rounding
+/// between machines. Only g++ knows it for templates, and sanitizers do not take it.
+#if defined(__GNUC__) && !defined(__clang__) && defined(__x86_64__) && !defined(__CUDACC__) && \
+    !defined(__SANITIZE_ADDRESS__) && !defined(__SANITIZE_THREAD__)
+#define WEAVE_WIDE __attribute__((target_clones("arch=x86-64-v3", "default")))
+#else
+#define WEAVE_WIDE
+#endif
+
 namespace weave::sim {
 
 /// Threads that help with a task of many pieces. The thread that has it does not wait for them to come: it takes piece

@@ -326,6 +326,7 @@ template <class Real>
 void Neighbours<Real>::list_near(std::uint32_t sample, const Candidates& candidates,
                                  std::vector<std::uint32_t>& list) const {
     const double x = m_x[sample], y = m_y[sample], z = m_z[sample], reach = m_radius[sample] + m_skin;
+    const std::size_t before = list.size();
     for (std::size_t i = 0; i < candidates.samples.size(); ++i) {
         const double dx = candidates.x[i] - x, dy = candidates.y[i] - y, dz = candidates.z[i] - z,
                      limit = reach + candidates.radius[i];
@@ -333,6 +334,10 @@ void Neighbours<Real>::list_near(std::uint32_t sample, const Candidates& candida
         const std::uint32_t b = candidates.samples[i];
         if (b != sample && !same_stretch(sample, b) && !m_transition.parts(sample, own(b))) list.push_back(b);
     }
+    // Images among their own samples, so that those of one segment follow one another.
+    std::sort(list.begin() + static_cast<std::ptrdiff_t>(before), list.end(), [&](std::uint32_t p, std::uint32_t q) {
+        return std::pair(own(p), p) < std::pair(own(q), q);
+    });
 }
 
 template <class Real>
