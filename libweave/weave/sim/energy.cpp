@@ -9,6 +9,8 @@ namespace {
 
 /// Below a tenth of the reach the contact law goes on linearly.
 constexpr double contact_floor = 0.01;
+/// A pair comes closer by at most this share of its distance.
+constexpr double kept_distance = 0.45;
 
 }  // namespace
 
@@ -38,10 +40,10 @@ FabricView<Real> Energy<Real>::view(const std::vector<Real>& state) {
 template <class Real>
 double Energy<Real>::evaluate(const std::vector<Real>& state, std::vector<Real>& gradient, Terms terms) {
     ++m_evaluations;
-    m_executor.each(m_fabric.segments(), PlaceSamples<Real>{view(state)});
+    m_executor.each_wide(m_fabric.segments(), PlaceSamples<Real>{view(state)});
     m_neighbours.update();
-    m_executor.each(m_fabric.segments(), SegmentForces<Real>{view(state), terms, m_segment_energy.data(),
-                                                             m_segment_gradient.data()});
+    m_executor.each_wide(m_fabric.segments(), SegmentForces<Real>{view(state), terms, m_segment_energy.data(),
+                                                                  m_segment_gradient.data()});
     if (terms.elastic && !m_spheres.empty()) {
         m_executor.each(m_fabric.segments(),
                         FieldForces<Real>{view(state), m_spheres.data(), m_spheres.size(), m_segment_energy.data(),
@@ -146,17 +148,22 @@ void Energy<Real>::move_samples(const std::vector<Real>& change) {
 
 template <class Real>
 double Energy<Real>::safe_share_of(const FabricView<Real>& fabric, std::size_t a, double most) const {
-    const Vec<Real> mine = load(&m_moved[3 * a]);
-    const auto moved = static_cast<double>(mine.norm());
-    double share = std::min(most, m_fabric.least_reach() / 4 / std::max(1e-300, moved));
+    const Real mine[3]{m_moved[3 * a], m_moved[3 * a + 1], m_moved[3 * a + 2]};
+    const auto moved = static_cast<double>(std::sqrt(mine[0] * mine[0] + mine[1] * mine[1] + mine[2] * mine[2]));
+    const double share = std::min(most, m_fabric.least_reach() / 4 / std::max(1e-300, moved));
+    // Squares, so that few pairs cost a root.
+    double least = share * share;
+    const SamplesView<Real>& all = fabric.samples;
     for (std::uint32_t e = fabric.first_neighbour[a]; e < fabric.first_neighbour[a + 1]; ++e) {
         const std::uint32_t b = fabric.neighbours[e];
-        const Vec<Real> apart(fabric.samples.x[a] - fabric.samples.x[b], fabric.samples.y[a] - fabric.samples.y[b],
-                              fabric.samples.z[a] - fabric.samples.z[b]);
-        const auto change = static_cast<double>((mine - load(&m_moved[3 * std::size_t(m_neighbours.own(b))])).norm());
-        if (change > 0) share = std::min(share, 0.45 * static_cast<double>(apart.norm()) / change);
+        const Real* theirs = &m_moved[3 * std::size_t(m_neighbours.own(b))];
+        const Real x = all.x[a] - all.x[b], y = all.y[a] - all.y[b], z = all.z[a] - all.z[b], dx = mine[0] - theirs[0],
+                   dy = mine[1] - theirs[1], dz = mine[2] - theirs[2];
+        const auto apart = static_cast<double>(x * x + y * y + z * z),
+                   change = static_cast<double>(dx * dx + dy * dy + dz * dz);
+        if (kept_distance * kept_distance * apart < least * change) least = kept_distance * kept_distance * apart / change;
     }
-    return share;
+    return std::sqrt(least);
 }
 
 template <class Real>
@@ -180,6 +187,7 @@ void Energy<Real>::shorten(const std::vector<Real>& state, std::vector<Real>& ch
             for (std::uint32_t k = 0; k < fabric.yarns[segment.yarn].samples; ++k)
                 share[s] = std::min(share[s], safe_share_of(fabric, segment.sample + k, 1));
         });
+        if (std::all_of(share.begin(), share.end(), [](double part) { return part >= 1; })) return;
         m_executor.each(m_fabric.slots(), [&](std::size_t slot) {
             const YarnPlace& yarn = yarns[m_fabric.yarn_of_slot()[slot]];
             const std::size_t within = slot - yarn.first_slot;

@@ -246,8 +246,11 @@ void Hessian<Real>::assemble(Energy<Real>& energy, const std::vector<Real>& stat
         energy.executor().each(colour.size(), [&](std::size_t c) {
             Scratch scratch;
             scratch.convex = convex;
-            for (std::uint32_t s = colour[c].first; s < colour[c].last; ++s)
-                add_segment(energy, fabric, s, matrix, scratch);
+            run_wide(
+                [&](std::size_t s) __attribute__((always_inline)) {
+                    add_segment(energy, fabric, static_cast<std::uint32_t>(s), matrix, scratch);
+                },
+                colour[c].first, colour[c].last);
         });
     }
     mirror(energy.executor(), matrix);
@@ -259,7 +262,7 @@ void Hessian<Real>::assemble(Energy<Real>& energy, const std::vector<Real>& stat
 }
 
 template <class Real>
-WEAVE_WIDE void Hessian<Real>::add_segment(Energy<Real>& energy, const FabricView<Real>& fabric, std::uint32_t index,
+WEAVE_INLINE inline void Hessian<Real>::add_segment(Energy<Real>& energy, const FabricView<Real>& fabric, std::uint32_t index,
                                            BlockMatrix& matrix, Scratch& scratch) const {
     const SegmentPlace& segment = fabric.segments[index];
     const YarnConstants<double>& yarn = m_constants[segment.yarn];
@@ -308,7 +311,7 @@ void Hessian<Real>::lay_pulls(const Executor& executor, const FabricView<Real>& 
 /// w_a w_b f(u) has derivatives by both places and, when exact, by both tangents. Blocks between two yarns are made for
 /// the one of higher number and mirrored. Neighbours of one segment follow one another.
 template <class Real>
-WEAVE_WIDE void Hessian<Real>::add_sample(const Neighbours<Real>& neighbours, const FabricView<Real>& fabric, std::uint32_t index,
+WEAVE_INLINE inline void Hessian<Real>::add_sample(const Neighbours<Real>& neighbours, const FabricView<Real>& fabric, std::uint32_t index,
                                std::uint32_t k, Scratch& scratch) const {
     const SegmentPlace& segment = fabric.segments[index];
     const YarnConstants<double>& yarn = m_constants[segment.yarn];
@@ -376,7 +379,7 @@ WEAVE_WIDE void Hessian<Real>::add_sample(const Neighbours<Real>& neighbours, co
 }
 
 template <class Real>
-WEAVE_WIDE void Hessian<Real>::add_meeting(std::uint32_t index, const Meeting& meeting, Scratch& scratch) const {
+WEAVE_INLINE inline void Hessian<Real>::add_meeting(std::uint32_t index, const Meeting& meeting, Scratch& scratch) const {
     if (meeting.segment >= m_fabric.segments()) return;
     const auto begin = m_near.begin() + m_first_near[index], end = m_near.begin() + m_first_near[index + 1];
     const auto at = static_cast<std::size_t>(std::lower_bound(begin, end, meeting.segment) - begin);
@@ -394,23 +397,28 @@ WEAVE_WIDE void Hessian<Real>::add_meeting(std::uint32_t index, const Meeting& m
     sum.add(meeting.rows_by_tangent, by_tangent);
 }
 
-/// The columns of a segment's slots mostly follow one another, and so do their blocks: one search a row then serves all.
 template <class Real>
-WEAVE_WIDE void Hessian<Real>::scatter(std::uint32_t slot, std::uint32_t other_slot, const SlotBlocks& local,
+WEAVE_INLINE inline void Hessian<Real>::scatter(std::uint32_t slot, std::uint32_t other_slot, const SlotBlocks& local,
                             BlockMatrix& matrix) const {
+    // Most slots are control points that follow one another: then one search a row serves four blocks.
+    const Share* shares = &m_shares[m_first_share[other_slot]];
+    bool follow = m_first_share[other_slot + 4] - m_first_share[other_slot] == 4;
+    for (std::uint32_t d = 0; d < 4 && follow; ++d) follow = shares[d].row == shares[0].row + d && shares[d].weight == 1;
     for (std::uint32_t c = 0; c < 4; ++c) {
+        const double* from = &local.block[36 * c];
         for (std::uint32_t i = m_first_share[slot + c]; i < m_first_share[slot + c + 1]; ++i) {
             const std::uint32_t row = m_shares[i].row;
-            const std::size_t end = matrix.first(row + 1);
-            std::size_t at = end;
+            const double weight = static_cast<double>(m_shares[i].weight);
+            if (follow) {
+                float* block = matrix.value(matrix.find(row, shares[0].row));
+                for (int k = 0; k < 36; ++k) block[k] += static_cast<float>(weight * from[k]);
+                continue;
+            }
             for (std::uint32_t d = 0; d < 4; ++d) {
                 for (std::uint32_t j = m_first_share[other_slot + d]; j < m_first_share[other_slot + d + 1]; ++j) {
-                    const std::uint32_t column = m_shares[j].row;
-                    if (++at >= end || matrix.column(at) != column) at = matrix.find(row, column);
-                    float* block = matrix.value(at);
-                    const double weight = double(m_shares[i].weight) * double(m_shares[j].weight);
-                    const double* from = &local.block[9 * (4 * c + d)];
-                    for (int k = 0; k < 9; ++k) block[k] += static_cast<float>(weight * from[k]);
+                    float* block = matrix.value(matrix.find(row, m_shares[j].row));
+                    const double both = weight * static_cast<double>(m_shares[j].weight);
+                    for (std::uint32_t k = 0; k < 9; ++k) block[k] += static_cast<float>(both * from[9 * d + k]);
                 }
             }
         }
