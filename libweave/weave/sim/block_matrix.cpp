@@ -8,8 +8,8 @@ namespace weave::sim {
 namespace {
 
 /// Four numbers that are worked on at once.
-typedef double Four __attribute__((vector_size(32), aligned(8)));
-typedef float FourFloats __attribute__((vector_size(16), aligned(4)));
+typedef double Four __attribute__((vector_size(32), aligned(8), may_alias));
+typedef float FourFloats __attribute__((vector_size(16), aligned(4), may_alias));
 
 WEAVE_WIDE double dot_of(const double* a, const double* b, std::size_t count) {
     Four sums[2]{};
@@ -69,12 +69,6 @@ void BlockMatrix::shape(std::vector<std::uint32_t> first, std::vector<std::uint3
 
 void BlockMatrix::clear_values() {
     std::fill(m_values.begin(), m_values.end(), 0.0F);
-}
-
-std::size_t BlockMatrix::find(std::uint32_t row, std::uint32_t column) const {
-    const auto begin = m_columns.begin();
-    const auto at = std::lower_bound(begin + m_first[row], begin + m_first[row + 1], column);
-    return static_cast<std::size_t>(at - begin);
 }
 
 void BlockMatrix::multiply(const Executor& executor, const std::vector<double>& x, std::vector<double>& result) const {

@@ -3,7 +3,6 @@
 #include <weave/sim/hessian_terms.hpp>
 
 #include <algorithm>
-#include <array>
 
 namespace weave::sim {
 
@@ -262,7 +261,7 @@ void Hessian<Real>::assemble(Energy<Real>& energy, const std::vector<Real>& stat
 }
 
 template <class Real>
-WEAVE_INLINE inline void Hessian<Real>::add_segment(Energy<Real>& energy, const FabricView<Real>& fabric, std::uint32_t index,
+inline void Hessian<Real>::add_segment(Energy<Real>& energy, const FabricView<Real>& fabric, std::uint32_t index,
                                            BlockMatrix& matrix, Scratch& scratch) const {
     const SegmentPlace& segment = fabric.segments[index];
     const YarnConstants<double>& yarn = m_constants[segment.yarn];
@@ -311,7 +310,7 @@ void Hessian<Real>::lay_pulls(const Executor& executor, const FabricView<Real>& 
 /// w_a w_b f(u) has derivatives by both places and, when exact, by both tangents. Blocks between two yarns are made for
 /// the one of higher number and mirrored. Neighbours of one segment follow one another.
 template <class Real>
-WEAVE_INLINE inline void Hessian<Real>::add_sample(const Neighbours<Real>& neighbours, const FabricView<Real>& fabric, std::uint32_t index,
+inline void Hessian<Real>::add_sample(const Neighbours<Real>& neighbours, const FabricView<Real>& fabric, std::uint32_t index,
                                std::uint32_t k, Scratch& scratch) const {
     const SegmentPlace& segment = fabric.segments[index];
     const YarnConstants<double>& yarn = m_constants[segment.yarn];
@@ -374,31 +373,29 @@ WEAVE_INLINE inline void Hessian<Real>::add_sample(const Neighbours<Real>& neigh
         of_value.add(mine.slope, mixed);
         of_slope.add(mine.value, mixed.transposed());
     }
-    scratch.own.add(mine.value, of_value);
-    scratch.own.add(mine.slope, of_slope);
+    scratch.own.add({{mine.value, &of_value}, {mine.slope, &of_slope}});
 }
 
 template <class Real>
-WEAVE_INLINE inline void Hessian<Real>::add_meeting(std::uint32_t index, const Meeting& meeting, Scratch& scratch) const {
+inline void Hessian<Real>::add_meeting(std::uint32_t index, const Meeting& meeting, Scratch& scratch) const {
     if (meeting.segment >= m_fabric.segments()) return;
     const auto begin = m_near.begin() + m_first_near[index], end = m_near.begin() + m_first_near[index + 1];
     const auto at = static_cast<std::size_t>(std::lower_bound(begin, end, meeting.segment) - begin);
     SlotBlocks& sum = scratch.other[at];
     if (scratch.touched[at] == 0) sum.clear();
     scratch.touched[at] = 1;
-    sum.add(meeting.rows_by_place, meeting.by_place);
-    if (scratch.convex) return;
+    if (scratch.convex) return sum.add({{meeting.rows_by_place, &meeting.by_place}});
     ColumnBlocks by_tangent;
     by_tangent.clear();
     for (int d = 0; d < 4; ++d) {
         const Nine both = Nine::outer(meeting.pull, meeting.by_tangent[d]);
         for (int k = 0; k < 9; ++k) by_tangent.block[9 * d + k] = both.at[k];
     }
-    sum.add(meeting.rows_by_tangent, by_tangent);
+    sum.add({{meeting.rows_by_place, &meeting.by_place}, {meeting.rows_by_tangent, &by_tangent}});
 }
 
 template <class Real>
-WEAVE_INLINE inline void Hessian<Real>::scatter(std::uint32_t slot, std::uint32_t other_slot, const SlotBlocks& local,
+inline void Hessian<Real>::scatter(std::uint32_t slot, std::uint32_t other_slot, const SlotBlocks& local,
                             BlockMatrix& matrix) const {
     // Most slots are control points that follow one another: then one search a row serves four blocks.
     const Share* shares = &m_shares[m_first_share[other_slot]];

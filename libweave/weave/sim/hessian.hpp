@@ -48,16 +48,16 @@ class Hessian {
     void make_shape(Energy<Real>& energy, BlockMatrix& matrix);
     void list_columns(std::uint32_t row, std::vector<std::uint32_t>& columns) const;
     void list_near_segments(Energy<Real>& energy);
-    void add_segment(Energy<Real>& energy, const FabricView<Real>& fabric, std::uint32_t index,
+    WEAVE_INLINE void add_segment(Energy<Real>& energy, const FabricView<Real>& fabric, std::uint32_t index,
                      BlockMatrix& matrix, Scratch& scratch) const;
     struct Meeting;
     void lay_pulls(const Executor& executor, const FabricView<Real>& fabric);
-    void add_sample(const Neighbours<Real>& neighbours, const FabricView<Real>& fabric, std::uint32_t index,
+    WEAVE_INLINE void add_sample(const Neighbours<Real>& neighbours, const FabricView<Real>& fabric, std::uint32_t index,
                     std::uint32_t k, Scratch& scratch) const;
-    void add_meeting(std::uint32_t index, const Meeting& meeting, Scratch& scratch) const;
+    WEAVE_INLINE void add_meeting(std::uint32_t index, const Meeting& meeting, Scratch& scratch) const;
     void list_mirrored(const BlockMatrix& matrix);
     void mirror(const Executor& executor, BlockMatrix& matrix) const;
-    void scatter(std::uint32_t slot, std::uint32_t other_slot, const SlotBlocks& local, BlockMatrix& matrix) const;
+    WEAVE_INLINE void scatter(std::uint32_t slot, std::uint32_t other_slot, const SlotBlocks& local, BlockMatrix& matrix) const;
 
     const Fabric<Real>& m_fabric;
     Gauss<double> m_gauss;

@@ -38,7 +38,7 @@ struct Nine {
 /// Sums of 3×3 matrices, one for each of four slots that columns belong to, before they are handed to rows: a sum over
 /// what one sample meets of another segment then costs four products of matrices instead of sixteen.
 struct ColumnBlocks {
-    double block[36];
+    alignas(32) double block[36];
 
     [[gnu::always_inline]] void clear() {
         for (int k = 0; k < 36; ++k) block[k] = 0;
@@ -59,14 +59,28 @@ struct ColumnBlocks {
 
 /// Second derivatives by four slots and four other slots: block (c, d) lies at 9 (4c + d), column by column.
 struct SlotBlocks {
-    double block[16 * 9];
+    alignas(32) double block[16 * 9];
 
     void clear() { std::fill(block, block + 16 * 9, 0.0); }
 
-    /// Adds B_c times each of the columns' blocks.
-    [[gnu::always_inline]] void add(const double (&rows)[4], const ColumnBlocks& columns) {
-        for (int c = 0; c < 4; ++c) {
-            for (int k = 0; k < 36; ++k) block[36 * c + k] += rows[c] * columns.block[k];
+    /// Columns with the four weights of the rows that they are handed to.
+    struct Rows {
+        const double* weights;
+        const ColumnBlocks* columns;
+    };
+
+    /// Adds weight c times each of the columns' blocks to blocks (c, …).
+    template <std::size_t N>
+    [[gnu::always_inline]] void add(const Rows (&parts)[N]) {
+        typedef double Four __attribute__((vector_size(32), may_alias));
+        for (int k = 0; k < 36; k += 4) {
+            Four sums[4];
+            for (int c = 0; c < 4; ++c) sums[c] = *reinterpret_cast<const Four*>(&block[36 * c + k]);
+            for (std::size_t n = 0; n < N; ++n) {
+                const Four column = *reinterpret_cast<const Four*>(&parts[n].columns->block[k]);
+                for (int c = 0; c < 4; ++c) sums[c] += parts[n].weights[c] * column;
+            }
+            for (int c = 0; c < 4; ++c) *reinterpret_cast<Four*>(&block[36 * c + k]) = sums[c];
         }
     }
 
@@ -77,7 +91,7 @@ struct SlotBlocks {
         ColumnBlocks by_columns;
         by_columns.clear();
         by_columns.add(columns, nine);
-        add(rows, by_columns);
+        add({{rows, &by_columns}});
     }
 };
 
@@ -93,10 +107,10 @@ struct GaussBlocks {
         for (std::size_t g = 0; g < gauss_points; ++g) slope[g].clear(), bend[g].clear();
     }
     [[gnu::always_inline]] void add_to(SlotBlocks& sum, const Gauss<double>& gauss) const {
-        for (std::size_t g = 0; g < gauss_points; ++g) {
-            sum.add(gauss.basis[g].slope, slope[g]);
-            sum.add(gauss.basis[g].bend, bend[g]);
-        }
+        sum.add({{gauss.basis[0].slope, &slope[0]}, {gauss.basis[1].slope, &slope[1]},
+                     {gauss.basis[2].slope, &slope[2]}, {gauss.basis[3].slope, &slope[3]},
+                     {gauss.basis[0].bend, &bend[0]}, {gauss.basis[1].bend, &bend[1]},
+                     {gauss.basis[2].bend, &bend[2]}, {gauss.basis[3].bend, &bend[3]}});
     }
 };
 

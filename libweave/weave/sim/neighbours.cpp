@@ -322,18 +322,38 @@ void Neighbours<Real>::list_neighbours(const std::vector<Grid>& grids) {
     });
 }
 
+namespace {
+
+/// Numbers of the places that lie nearer to a point than `reach` and their own radius; how many. `found` has room for one
+/// more than all.
+template <class Real>
+WEAVE_WIDE std::size_t take_near(std::size_t count, const Real* x, const Real* y, const Real* z, const Real* radius,
+                                 const std::array<Real, 3>& at, double reach, std::uint32_t* found) {
+    std::size_t taken = 0;
+    for (std::size_t i = 0; i < count; ++i) {
+        const double dx = x[i] - at[0], dy = y[i] - at[1], dz = z[i] - at[2], limit = reach + static_cast<double>(radius[i]);
+        found[taken] = static_cast<std::uint32_t>(i);
+        taken += dx * dx + dy * dy + dz * dz < limit * limit ? 1 : 0;
+    }
+    return taken;
+}
+
+}  // namespace
+
 template <class Real>
 void Neighbours<Real>::list_near(std::uint32_t sample, const Candidates& candidates,
                                  std::vector<std::uint32_t>& list) const {
-    const double x = m_x[sample], y = m_y[sample], z = m_z[sample], reach = m_radius[sample] + m_skin;
-    const std::size_t before = list.size();
-    for (std::size_t i = 0; i < candidates.samples.size(); ++i) {
-        const double dx = candidates.x[i] - x, dy = candidates.y[i] - y, dz = candidates.z[i] - z,
-                     limit = reach + candidates.radius[i];
-        if (dx * dx + dy * dy + dz * dz >= limit * limit) continue;
-        const std::uint32_t b = candidates.samples[i];
-        if (b != sample && !same_stretch(sample, b) && !m_transition.parts(sample, own(b))) list.push_back(b);
+    const std::size_t before = list.size(), count = candidates.samples.size();
+    list.resize(before + count + 1);
+    const std::size_t found = take_near(count, candidates.x.data(), candidates.y.data(), candidates.z.data(),
+                                        candidates.radius.data(), std::array{m_x[sample], m_y[sample], m_z[sample]},
+                                        static_cast<double>(m_radius[sample]) + m_skin, &list[before]);
+    std::size_t kept = before;
+    for (std::size_t i = before; i < before + found; ++i) {
+        const std::uint32_t b = candidates.samples[list[i]];
+        if (b != sample && !same_stretch(sample, b) && !m_transition.parts(sample, own(b))) list[kept++] = b;
     }
+    list.resize(kept);
     // Images among their own samples, so that those of one segment follow one another.
     std::sort(list.begin() + static_cast<std::ptrdiff_t>(before), list.end(), [&](std::uint32_t p, std::uint32_t q) {
         return std::pair(own(p), p) < std::pair(own(q), q);
