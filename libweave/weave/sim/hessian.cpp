@@ -135,33 +135,49 @@ void Hessian<Real>::make_chunks() {
 template <class Real>
 void Hessian<Real>::list_near_segments(Energy<Real>& energy) {
     Neighbours<Real>& neighbours = energy.neighbours();
+    constexpr std::size_t at_once = 256;
+    std::vector<std::vector<std::uint32_t>> parts((m_fabric.segments() + at_once - 1) / at_once);
     m_first_near.assign(m_fabric.segments() + 1, 0);
-    m_near.clear();
-    std::vector<std::uint32_t> seen(m_fabric.segments(), 0xffffffffU);
-    for (std::uint32_t s = 0; s < m_fabric.segments(); ++s) {
-        const SegmentPlace& segment = m_fabric.segment_places()[s];
-        const std::size_t begin = m_near.size();
-        for (std::uint32_t k = 0; k < m_fabric.constants()[segment.yarn].samples; ++k) {
-            const std::uint32_t* first = neighbours.first() + segment.sample + k;
-            for (std::uint32_t e = first[0]; e < first[1]; ++e) {
+    energy.executor().each(parts.size(), [&](std::size_t part) {
+        std::vector<std::uint32_t>& near = parts[part];
+        for (std::size_t s = part * at_once; s < std::min(m_fabric.segments(), (part + 1) * at_once); ++s) {
+            const SegmentPlace& segment = m_fabric.segment_places()[s];
+            const std::size_t before = near.size();
+            const std::uint32_t* first = neighbours.first() + segment.sample;
+            const std::uint32_t samples = m_fabric.constants()[segment.yarn].samples;
+            for (std::uint32_t e = first[0]; e < first[samples]; ++e) {
                 const std::uint32_t other = neighbours.segment_of(neighbours.own(neighbours.others()[e]));
-                if (seen[other] == s) continue;
-                seen[other] = s;
-                m_near.push_back(other);
+                // Neighbours of one segment follow one another.
+                if (near.size() == before || near.back() != other) near.push_back(other);
             }
+            const auto begin = near.begin() + static_cast<std::ptrdiff_t>(before);
+            std::sort(begin, near.end());
+            near.erase(std::unique(begin, near.end()), near.end());
+            m_first_near[s + 1] = static_cast<std::uint32_t>(near.size() - before);
         }
-        std::sort(m_near.begin() + static_cast<std::ptrdiff_t>(begin), m_near.end());
-        m_first_near[s + 1] = static_cast<std::uint32_t>(m_near.size());
-    }
+    });
+    for (std::size_t s = 0; s < m_fabric.segments(); ++s) m_first_near[s + 1] += m_first_near[s];
+    m_near.clear();
+    for (const std::vector<std::uint32_t>& part : parts) m_near.insert(m_near.end(), part.begin(), part.end());
 }
 
 /// The rows that a control point meets, some of them more than once: those of its own segments, and of the segments
 /// near to these.
 template <class Real>
 void Hessian<Real>::list_columns(std::uint32_t row, std::vector<std::uint32_t>& columns) const {
+    const std::size_t before = columns.size();
+    const auto is_new = [&](std::uint32_t column) {
+        for (std::size_t i = columns.size(); i-- > before && i + 4 >= columns.size();) {
+            if (columns[i] == column) return false;
+        }
+        return true;
+    };
+    // The next segment of a yarn has three rows of the last one.
     const auto add_slots = [&](std::uint32_t segment) {
         const std::uint32_t slot = m_fabric.segment_places()[segment].slot;
-        for (std::uint32_t j = m_first_share[slot]; j < m_first_share[slot + 4]; ++j) columns.push_back(m_shares[j].row);
+        for (std::uint32_t j = m_first_share[slot]; j < m_first_share[slot + 4]; ++j) {
+            if (is_new(m_shares[j].row)) columns.push_back(m_shares[j].row);
+        }
     };
     std::vector<std::uint32_t> near;
     for (std::uint32_t i = m_first_segment[row]; i < m_first_segment[row + 1]; ++i) {

@@ -216,20 +216,34 @@ void Multigrid::factor(std::size_t number, const BlockMatrix& matrix) {
     }
 }
 
-/// A pivot that is not positive is made so: a direction that curves down counts as one that curves up as
-/// much.
+namespace {
+
+/// No direction of a pivot counts as softer than this share of its stiffest.
+constexpr double softest = 1e-4;
+
+/// The inverse of a pivot. One that is not positive is made so: a direction that curves down counts as one that curves
+/// up as much.
+Eigen::Matrix3d inverse_of(const Eigen::Matrix3d& pivot) {
+    const double trace = pivot.trace(), minor = pivot(0, 0) * pivot(1, 1) - pivot(0, 1) * pivot(0, 1),
+                 volume = pivot.determinant();
+    // All three directions are positive, and the softest is no less than 4·volume / trace².
+    if (pivot(0, 0) > 0 && minor > 0 && 4 * volume > softest * trace * trace * trace) return pivot.inverse();
+    Eigen::SelfAdjointEigenSolver<Eigen::Matrix3d> eigen;
+    eigen.computeDirect(pivot);
+    const Eigen::Vector3d sizes = eigen.eigenvalues().cwiseAbs();
+    const double least = softest * std::max(sizes.maxCoeff(), 1e-30);
+    const Eigen::Matrix3d& axes = eigen.eigenvectors();
+    return axes * sizes.cwiseMax(least).cwiseInverse().asDiagonal() * axes.transpose();
+}
+
+}  // namespace
+
 void Multigrid::invert_pivots(const BlockMatrix& matrix, Level& level) const {
     level.inverse.resize(9 * level.rows);
     each_row(level.rows, [&](std::size_t row) {
         const Eigen::Matrix3d pivot =
             Eigen::Map<const BlockMatrix::Block>(matrix.value(matrix.diagonal(row))).cast<double>();
-        Eigen::SelfAdjointEigenSolver<Eigen::Matrix3d> eigen;
-        eigen.computeDirect((pivot + pivot.transpose()) / 2);
-        const Eigen::Vector3d sizes = eigen.eigenvalues().cwiseAbs();
-        const double least = 1e-4 * std::max(sizes.maxCoeff(), 1e-30);
-        const Eigen::Matrix3d& axes = eigen.eigenvectors();
-        Eigen::Map<Eigen::Matrix3d>(&level.inverse[9 * row]) =
-            axes * sizes.cwiseMax(least).cwiseInverse().asDiagonal() * axes.transpose();
+        Eigen::Map<Eigen::Matrix3d>(&level.inverse[9 * row]) = inverse_of((pivot + pivot.transpose()) / 2);
     });
 }
 
@@ -246,7 +260,7 @@ struct CoarseRows {
     std::vector<double> sums;  ///< 9 each
 
     /// Where the sum of a column lies.
-    double* sum_of(std::uint32_t column) {
+    [[gnu::always_inline]] double* sum_of(std::uint32_t column) {
         if (place[column] == 0) {
             found.push_back(column);
             sums.resize(sums.size() + 9, 0.0);
@@ -270,22 +284,19 @@ struct CoarseRows {
     }
 };
 
-bool is_nothing(const float* block) {
-    for (int k = 0; k < 9; ++k) {
-        if (block[k] != 0) return false;
-    }
-    return true;
-}
-
 /// Adds one row of the fine matrix to that of a piece, from its pivot on.
 template <class Shares>
 WEAVE_WIDE void add_row(const BlockMatrix& fine, std::size_t row, double weight, const Shares* shares, std::size_t piece,
                         CoarseRows& to) {
     for (std::uint32_t at = fine.first(row); at < fine.first(row + 1); ++at) {
         const float* block = fine.value(at);
-        if (is_nothing(block)) continue;  // near, but not touching
         double whole[9];
-        for (int k = 0; k < 9; ++k) whole[k] = weight * double(block[k]);
+        float size = 0;
+        for (int k = 0; k < 9; ++k) {
+            whole[k] = weight * double(block[k]);
+            size += std::abs(block[k]);
+        }
+        if (size == 0) continue;  // near, but not touching
         const Shares& theirs = shares[fine.column(at)];
         for (std::size_t s = 0; s < 4; ++s) {
             const double share = theirs.weight[s];
