@@ -9,6 +9,7 @@ namespace weave::sim {
 namespace {
 
 constexpr std::uint32_t chunk_segments = 32;
+constexpr std::uint32_t no_row = 0xffffffffU;
 
 template <class Real>
 Basis<double> as_double(const Basis<Real>& basis) {
@@ -110,6 +111,14 @@ void Hessian<Real>::make_shares() {
         m_segments_of_row.insert(m_segments_of_row.end(), of_row.begin(), of_row.end());
         m_first_segment.push_back(static_cast<std::uint32_t>(m_segments_of_row.size()));
     }
+    m_first_row.assign(m_fabric.segments(), no_row);
+    for (std::size_t s = 0; s < m_fabric.segments(); ++s) {
+        const std::uint32_t slot = m_fabric.segment_places()[s].slot;
+        bool follow = true;
+        for (std::uint32_t c = 0; c < 4; ++c)
+            follow = follow && moves[slot + c] != 0 && row_of_slot[slot + c] == row_of_slot[slot] + c;
+        if (follow) m_first_row[s] = row_of_slot[slot];
+    }
     m_first_share.assign(1, 0);
     for (const std::vector<Share>& of_slot : shares) {
         m_shares.insert(m_shares.end(), of_slot.begin(), of_slot.end());
@@ -165,19 +174,17 @@ void Hessian<Real>::list_near_segments(Energy<Real>& energy) {
 /// near to these.
 template <class Real>
 void Hessian<Real>::list_columns(std::uint32_t row, std::vector<std::uint32_t>& columns) const {
-    const std::size_t before = columns.size();
-    const auto is_new = [&](std::uint32_t column) {
-        for (std::size_t i = columns.size(); i-- > before && i + 4 >= columns.size();) {
-            if (columns[i] == column) return false;
-        }
-        return true;
-    };
     // The next segment of a yarn has three rows of the last one.
     const auto add_slots = [&](std::uint32_t segment) {
-        const std::uint32_t slot = m_fabric.segment_places()[segment].slot;
-        for (std::uint32_t j = m_first_share[slot]; j < m_first_share[slot + 4]; ++j) {
-            if (is_new(m_shares[j].row)) columns.push_back(m_shares[j].row);
+        const std::uint32_t first = m_first_row[segment];
+        if (first == no_row) {
+            const std::uint32_t slot = m_fabric.segment_places()[segment].slot;
+            for (std::uint32_t j = m_first_share[slot]; j < m_first_share[slot + 4]; ++j) columns.push_back(m_shares[j].row);
+            return;
         }
+        const bool goes_on = !columns.empty() && columns.back() >= first && columns.back() < first + 4;
+        for (std::uint32_t column = goes_on ? columns.back() + 1 : first; column < first + 4; ++column)
+            columns.push_back(column);
     };
     std::vector<std::uint32_t> near;
     for (std::uint32_t i = m_first_segment[row]; i < m_first_segment[row + 1]; ++i) {
@@ -270,10 +277,7 @@ void Hessian<Real>::assemble(Energy<Real>& energy, const std::vector<Real>& stat
     }
     mirror(energy.executor(), matrix);
     if (!energy.transition().is_on()) return;
-    for (const auto& [segment, blocks] : energy.transition().curvature(fabric)) {
-        const std::uint32_t slot = fabric.segments[segment].slot;
-        scatter(slot, slot, blocks, matrix);
-    }
+    for (const auto& [segment, blocks] : energy.transition().curvature(fabric)) scatter(segment, segment, blocks, matrix);
 }
 
 template <class Real>
@@ -298,10 +302,10 @@ inline void Hessian<Real>::add_segment(Energy<Real>& energy, const FabricView<Re
     scratch.touched.assign(near, 0);
     for (std::uint32_t k = 0; k < yarn.samples; ++k)
         add_sample(energy.neighbours(), fabric, index, k, scratch);
-    scatter(segment.slot, segment.slot, scratch.own, matrix);
+    scatter(index, index, scratch.own, matrix);
     for (std::uint32_t n = 0; n < near; ++n) {
         if (scratch.touched[n] != 0)
-            scatter(segment.slot, fabric.segments[m_near[first_near + n]].slot, scratch.other[n], matrix);
+            scatter(index, m_near[first_near + n], scratch.other[n], matrix);
     }
 }
 
@@ -411,19 +415,17 @@ inline void Hessian<Real>::add_meeting(std::uint32_t index, const Meeting& meeti
 }
 
 template <class Real>
-inline void Hessian<Real>::scatter(std::uint32_t slot, std::uint32_t other_slot, const SlotBlocks& local,
+inline void Hessian<Real>::scatter(std::uint32_t segment, std::uint32_t other, const SlotBlocks& local,
                             BlockMatrix& matrix) const {
-    // Most slots are control points that follow one another: then one search a row serves four blocks.
-    const Share* shares = &m_shares[m_first_share[other_slot]];
-    bool follow = m_first_share[other_slot + 4] - m_first_share[other_slot] == 4;
-    for (std::uint32_t d = 0; d < 4 && follow; ++d) follow = shares[d].row == shares[0].row + d && shares[d].weight == 1;
+    const std::uint32_t slot = m_fabric.segment_places()[segment].slot, other_slot = m_fabric.segment_places()[other].slot,
+                        first_column = m_first_row[other];
     for (std::uint32_t c = 0; c < 4; ++c) {
         const double* from = &local.block[36 * c];
         for (std::uint32_t i = m_first_share[slot + c]; i < m_first_share[slot + c + 1]; ++i) {
             const std::uint32_t row = m_shares[i].row;
             const double weight = static_cast<double>(m_shares[i].weight);
-            if (follow) {
-                float* block = matrix.value(matrix.find(row, shares[0].row));
+            if (first_column != no_row) {
+                float* block = matrix.value(matrix.find(row, first_column));  // the other three follow
                 for (int k = 0; k < 36; ++k) block[k] += static_cast<float>(weight * from[k]);
                 continue;
             }

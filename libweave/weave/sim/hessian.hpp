@@ -57,7 +57,7 @@ class Hessian {
     WEAVE_INLINE void add_meeting(std::uint32_t index, const Meeting& meeting, Scratch& scratch) const;
     void list_mirrored(const BlockMatrix& matrix);
     void mirror(const Executor& executor, BlockMatrix& matrix) const;
-    WEAVE_INLINE void scatter(std::uint32_t slot, std::uint32_t other_slot, const SlotBlocks& local, BlockMatrix& matrix) const;
+    WEAVE_INLINE void scatter(std::uint32_t segment, std::uint32_t other, const SlotBlocks& local, BlockMatrix& matrix) const;
 
     const Fabric<Real>& m_fabric;
     Gauss<double> m_gauss;
@@ -67,6 +67,7 @@ class Hessian {
     std::vector<std::uint32_t> m_slot_of_row;
     std::vector<std::uint32_t> m_first_share;  ///< per slot, and one more
     std::vector<Share> m_shares;
+    std::vector<std::uint32_t> m_first_row;    ///< per segment whose four slots are rows that follow one another
     std::vector<std::vector<Chunk>> m_chunks;  ///< by colour: chunks of one colour share no row
     std::vector<std::uint32_t> m_first_segment{0}, m_segments_of_row;  ///< per row: the segments that reach it
     std::vector<std::uint32_t> m_first_near, m_near;  ///< per segment: the segments that may touch it

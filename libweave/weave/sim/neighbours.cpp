@@ -47,11 +47,12 @@ struct Neighbours<Real>::Grid {
         return static_cast<std::int32_t>(std::clamp(std::floor(at / width), -1e9, 1e9));
     }
 
-    /// found(entry) for each entry of a cell.
-    template <class Found>
-    void visit(const Cell& at, const Found& found) const {
+    /// found(entry) for each entry of a cell, after room(number of entries or more).
+    template <class Room, class Found>
+    void visit(const Cell& at, const Room& room, const Found& found) const {
         const std::uint64_t key = key_of(at);
         const std::size_t bucket = mixed(key) & mask;
+        room(first[bucket + 1] - first[bucket]);
         for (std::uint32_t e = first[bucket]; e < first[bucket + 1]; ++e) {
             if (keys[e] == key) found(e);
         }
@@ -243,19 +244,24 @@ bool Neighbours<Real>::same_stretch(std::size_t sample, std::uint32_t other) con
 /// Samples that may be near those of one segment, and where they are: what a thread needs while it lists.
 template <class Real>
 struct Neighbours<Real>::Candidates {
+    std::size_t count = 0;  ///< the arrays may be longer
     std::vector<std::uint32_t> samples;
     std::vector<Real> x, y, z, radius;
 
-    void clear() {
-        samples.clear();
-        x.clear(), y.clear(), z.clear(), radius.clear();
+    void make_room(std::size_t more) {
+        if (count + more <= samples.size()) return;
+        const std::size_t size = 2 * (count + more);
+        samples.resize(size);
+        x.resize(size), y.resize(size), z.resize(size), radius.resize(size);
     }
-    void add(const Grid& grid, std::size_t at) {
-        samples.push_back(grid.samples[at]);
-        x.push_back(grid.x[at]);
-        y.push_back(grid.y[at]);
-        z.push_back(grid.z[at]);
-        radius.push_back(grid.radii[at]);
+    /// Writes down an entry, which is overwritten by the next if it is not kept: no branch that could be guessed wrong.
+    void add(const Grid& grid, std::size_t at, bool is_kept) {
+        samples[count] = grid.samples[at];
+        x[count] = grid.x[at];
+        y[count] = grid.y[at];
+        z[count] = grid.z[at];
+        radius[count] = grid.radii[at];
+        count += is_kept ? 1 : 0;
     }
 };
 
@@ -272,26 +278,28 @@ void Neighbours<Real>::find_candidates(const std::vector<Grid>& grids, std::size
         low[k] = static_cast<double>(*least);
         high[k] = static_cast<double>(*most);
     }
-    found.clear();
+    found.count = 0;
     for (const Grid& grid : grids) {
         const double reach = static_cast<double>(m_radius[begin]) + grid.radius + m_skin;
         const auto add = [&](std::size_t at) {
             const double x = grid.x[at], y = grid.y[at], z = grid.z[at];
-            if (x >= low[0] - reach && x <= high[0] + reach && y >= low[1] - reach && y <= high[1] + reach &&
-                z >= low[2] - reach && z <= high[2] + reach)
-                found.add(grid, at);
+            found.add(grid, at,
+                      (x >= low[0] - reach) & (x <= high[0] + reach) & (y >= low[1] - reach) & (y <= high[1] + reach) &
+                          (z >= low[2] - reach) & (z <= high[2] + reach));
         };
         const Cell first{grid.cell(low[0] - reach), grid.cell(low[1] - reach), grid.cell(low[2] - reach)},
             last{grid.cell(high[0] + reach), grid.cell(high[1] + reach), grid.cell(high[2] + reach)};
+        const auto room = [&](std::size_t more) { found.make_room(more); };
         // A thick yarn spans more cells of thin ones than there are thin samples: then each of these is looked at.
         const double cells = double(last[0] - first[0] + 1) * double(last[1] - first[1] + 1) * double(last[2] - first[2] + 1);
         if (cells > static_cast<double>(grid.samples.size())) {
+            found.make_room(grid.samples.size());
             for (std::size_t at = 0; at < grid.samples.size(); ++at) add(at);
             continue;
         }
         for (std::int32_t i = first[0]; i <= last[0]; ++i) {
             for (std::int32_t j = first[1]; j <= last[1]; ++j) {
-                for (std::int32_t k = first[2]; k <= last[2]; ++k) grid.visit({i, j, k}, add);
+                for (std::int32_t k = first[2]; k <= last[2]; ++k) grid.visit({i, j, k}, room, add);
             }
         }
     }
@@ -343,7 +351,7 @@ WEAVE_WIDE std::size_t take_near(std::size_t count, const Real* x, const Real* y
 template <class Real>
 void Neighbours<Real>::list_near(std::uint32_t sample, const Candidates& candidates,
                                  std::vector<std::uint32_t>& list) const {
-    const std::size_t before = list.size(), count = candidates.samples.size();
+    const std::size_t before = list.size(), count = candidates.count;
     list.resize(before + count + 1);
     const std::size_t found = take_near(count, candidates.x.data(), candidates.y.data(), candidates.z.data(),
                                         candidates.radius.data(), std::array{m_x[sample], m_y[sample], m_z[sample]},
