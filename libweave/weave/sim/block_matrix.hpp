@@ -4,6 +4,7 @@
 
 #include <Eigen/Core>
 
+#include <algorithm>
 #include <cstddef>
 #include <cstdint>
 #include <span>
@@ -31,7 +32,10 @@ class BlockMatrix {
     /// Adds a share of the mean of each pivot's diagonal to it.
     void add_to_pivots(float share);
     /// Where the block of a row and column lies; it must be part of the shape.
-    [[nodiscard]] std::size_t find(std::uint32_t row, std::uint32_t column) const;
+    [[nodiscard]] std::size_t find(std::uint32_t row, std::uint32_t column) const {
+        const auto begin = m_columns.begin();
+        return static_cast<std::size_t>(std::lower_bound(begin + m_first[row], begin + m_first[row + 1], column) - begin);
+    }
     [[nodiscard]] std::size_t bytes() const { return m_values.capacity() * 4 + m_columns.capacity() * 4 + m_first.capacity() * 8; }
 
     /// result = A·x, 3 numbers a row.

@@ -15,6 +15,8 @@
 #else
 #define WEAVE_HD
 #endif
+/// Becomes part of whatever runs it, so that it is compiled for wide vectors with it (execute.hpp).
+#define WEAVE_INLINE [[gnu::always_inline]]
 
 namespace weave::sim {
 
@@ -111,7 +113,7 @@ template <class Real>
 struct PlaceSamples {
     FabricView<Real> fabric;
 
-    WEAVE_HD void operator()(std::size_t index) const {
+    WEAVE_INLINE WEAVE_HD void operator()(std::size_t index) const {
         const SegmentPlace segment = fabric.segments[index];
         const YarnConstants<Real>& yarn = fabric.yarns[segment.yarn];
         const Real* slots = fabric.place + 3 * std::size_t(segment.slot);
@@ -150,6 +152,7 @@ struct ContactSum {
     Real fx = 0, fy = 0, fz = 0;  ///< Σ w_b ∂f/∂y
 };
 
+#if defined(__CUDACC__)
 template <class Real>
 WEAVE_HD inline ContactSum<Real> contact_of(const FabricView<Real>& fabric, std::size_t sample) {
     const SamplesView<Real>& all = fabric.samples;
@@ -172,6 +175,51 @@ WEAVE_HD inline ContactSum<Real> contact_of(const FabricView<Real>& fabric, std:
     }
     return sum;
 }
+#else
+/// Four numbers that are worked on at once.
+template <class Real>
+struct FourOf {
+    typedef Real type __attribute__((vector_size(4 * sizeof(Real))));
+};
+
+/// Four neighbours at once; the last four may be filled up with the sample itself, which counts nothing.
+template <class Real>
+[[gnu::always_inline]] inline ContactSum<Real> contact_of(const FabricView<Real>& fabric, std::size_t sample) {
+    using Four = typename FourOf<Real>::type;
+    const SamplesView<Real>& all = fabric.samples;
+    const Real x = all.x[sample], y = all.y[sample], z = all.z[sample], radius = all.radius[sample];
+    const std::uint32_t *at = fabric.neighbours + fabric.first_neighbour[sample],
+                        *end = fabric.neighbours + fabric.first_neighbour[sample + 1];
+    const Four nothing{};
+    Four spread{}, fx{}, fy{}, fz{};
+    for (; at < end; at += 4) {
+        const std::ptrdiff_t left = end - at;
+        const auto self = static_cast<std::uint32_t>(sample);
+        const std::uint32_t b0 = at[0], b1 = left > 1 ? at[1] : self, b2 = left > 2 ? at[2] : self,
+                            b3 = left > 3 ? at[3] : self;
+        const Four dx = x - Four{all.x[b0], all.x[b1], all.x[b2], all.x[b3]},
+                   dy = y - Four{all.y[b0], all.y[b1], all.y[b2], all.y[b3]},
+                   dz = z - Four{all.z[b0], all.z[b1], all.z[b2], all.z[b3]},
+                   reach = radius + Four{all.radius[b0], all.radius[b1], all.radius[b2], all.radius[b3]},
+                   weight{all.weight[b0], left > 1 ? all.weight[b1] : 0, left > 2 ? all.weight[b2] : 0,
+                          left > 3 ? all.weight[b3] : 0};
+        const Four square = dx * dx + dy * dy + dz * dz, limit = reach * reach, floor = fabric.floor * limit;
+        // ContactLaw::at, with one division for both 1/D² and the law's own.
+        const Four held = square > floor ? square : floor, both = 1 / (limit * held), inverse = both * held,
+                   up = both * limit * limit, slope = 1 - up * up;
+        const Four value = up + held * inverse - 2 + slope * ((square - held) * inverse);
+        const auto touches = square < limit;
+        const Four pull = touches ? 2 * weight * slope * inverse : nothing;
+        spread += touches ? weight * value : nothing;
+        fx += pull * dx;
+        fy += pull * dy;
+        fz += pull * dz;
+    }
+    const auto sum = [](const Real(&v)[4]) { return (v[0] + v[1]) + (v[2] + v[3]); };
+    return {sum({spread[0], spread[1], spread[2], spread[3]}), sum({fx[0], fx[1], fx[2], fx[3]}),
+            sum({fy[0], fy[1], fy[2], fy[3]}), sum({fz[0], fz[1], fz[2], fz[3]})};
+}
+#endif
 
 /// Energy of one segment and its gradient by the four slots.
 template <class Real>
@@ -213,7 +261,7 @@ WEAVE_HD inline Real guarded(Real speed, const YarnConstants<Real>& yarn) {
 /// Stretch. Fixed length: ½·EA·L ∫(|y'|/L - 1)² ds. Constant tension: T·l + ½·EA·S ∫(|y'| - l)²/l ds, whose
 /// stationary points are those of the paper's balanced strain L = l/S (section 5.1).
 template <class Real>
-WEAVE_HD inline void add_stretch(const YarnConstants<Real>& yarn, const Gauss<Real>& gauss,
+WEAVE_INLINE WEAVE_HD inline void add_stretch(const YarnConstants<Real>& yarn, const Gauss<Real>& gauss,
                                  const Speeds<Real>& speeds, SegmentSum<Real>& sum) {
     const bool fed = yarn.supply == Supply::tension;
     const Real length = guarded(speeds.length, yarn), ratio = speeds.square / (length * length);
@@ -233,7 +281,7 @@ WEAVE_HD inline void add_stretch(const YarnConstants<Real>& yarn, const Gauss<Re
 
 /// Bending: ½·EI ∫κ² dl with κ² = |y'×y''|²/|y'|⁶; straight at rest.
 template <class Real>
-WEAVE_HD inline void add_bending(const YarnConstants<Real>& yarn, const Gauss<Real>& gauss, const Real* slots,
+WEAVE_INLINE WEAVE_HD inline void add_bending(const YarnConstants<Real>& yarn, const Gauss<Real>& gauss, const Real* slots,
                                  const Speeds<Real>& speeds, SegmentSum<Real>& sum) {
     for (std::size_t g = 0; g < gauss_points; ++g) {
         const Vec<Real> tangent = speeds.tangent[g], bend = combine(gauss.basis[g].bend, slots);
@@ -253,7 +301,7 @@ WEAVE_HD inline void add_bending(const YarnConstants<Real>& yarn, const Gauss<Re
 /// Contact: k ∬ f(d/D) dl dl over current arc length, both derivatives: by place and by arc length. Every pair is seen
 /// from both sides, so each side counts half the energy and the whole of its own force.
 template <class Real>
-WEAVE_HD inline void add_contact(const FabricView<Real>& fabric, const SegmentPlace& segment,
+WEAVE_INLINE WEAVE_HD inline void add_contact(const FabricView<Real>& fabric, const SegmentPlace& segment,
                                  const YarnConstants<Real>& yarn, const Real* slots, SegmentSum<Real>& sum) {
     const Real share = yarn.root_k / Real(yarn.samples);
     for (std::uint32_t k = 0; k < yarn.samples; ++k) {
@@ -282,7 +330,7 @@ struct SegmentForces {
     Real* energy;    ///< per segment
     Real* gradient;  ///< 12 per segment
 
-    WEAVE_HD void operator()(std::size_t index) const {
+    WEAVE_INLINE WEAVE_HD void operator()(std::size_t index) const {
         const SegmentPlace segment = fabric.segments[index];
         const YarnConstants<Real>& yarn = fabric.yarns[segment.yarn];
         const Real* slots = fabric.place + 3 * std::size_t(segment.slot);

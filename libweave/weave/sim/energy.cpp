@@ -40,10 +40,10 @@ FabricView<Real> Energy<Real>::view(const std::vector<Real>& state) {
 template <class Real>
 double Energy<Real>::evaluate(const std::vector<Real>& state, std::vector<Real>& gradient, Terms terms) {
     ++m_evaluations;
-    m_executor.each(m_fabric.segments(), PlaceSamples<Real>{view(state)});
+    m_executor.each_wide(m_fabric.segments(), PlaceSamples<Real>{view(state)});
     m_neighbours.update();
-    m_executor.each(m_fabric.segments(), SegmentForces<Real>{view(state), terms, m_segment_energy.data(),
-                                                             m_segment_gradient.data()});
+    m_executor.each_wide(m_fabric.segments(), SegmentForces<Real>{view(state), terms, m_segment_energy.data(),
+                                                                  m_segment_gradient.data()});
     if (terms.elastic && !m_spheres.empty()) {
         m_executor.each(m_fabric.segments(),
                         FieldForces<Real>{view(state), m_spheres.data(), m_spheres.size(),
@@ -229,6 +229,7 @@ void Energy<Real>::shorten(const std::vector<Real>& state, std::vector<Real>& ch
             for (std::uint32_t k = 0; k < fabric.yarns[segment.yarn].samples; ++k)
                 share[s] = std::min(share[s], safe_share_of(fabric, segment.sample + k, 1));
         });
+        if (std::all_of(share.begin(), share.end(), [](double part) { return part >= 1; })) return;
         m_executor.each(m_fabric.slots(), [&](std::size_t slot) {
             const YarnPlace& yarn = yarns[m_fabric.yarn_of_slot()[slot]];
             const std::size_t within = slot - yarn.first_slot;

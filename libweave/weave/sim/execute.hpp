@@ -8,7 +8,23 @@
 #include <thread>
 #include <vector>
 
+/// Marks a function that is compiled twice, plainly and for processors with wide vectors (AVX2, fused multiply-add), of
+/// which the program takes what the machine has; what it calls inline is compiled with it. Sums may differ by rounding
+/// between machines. Only g++ knows it for templates, and sanitizers do not take it.
+#if defined(__GNUC__) && !defined(__clang__) && defined(__x86_64__) && !defined(__CUDACC__) && \
+    !defined(__SANITIZE_ADDRESS__) && !defined(__SANITIZE_THREAD__)
+#define WEAVE_WIDE __attribute__((target_clones("arch=x86-64-v3", "default")))
+#else
+#define WEAVE_WIDE
+#endif
+
 namespace weave::sim {
+
+/// body(i) from `first` on, before `last`, compiled for wide vectors together with what it calls inline.
+template <class Body>
+static WEAVE_WIDE void run_wide(const Body& body, std::size_t first, std::size_t last) {
+    for (std::size_t i = first; i < last; ++i) body(i);
+}
 
 /// Threads that help with a task of many pieces. The thread that has it does not wait for them to come: it takes piece
 /// after piece itself, and whoever is awake in time takes some as well. So a machine that is busy with other work costs a
@@ -82,14 +98,32 @@ class Executor {
     /// body(i) for every i below `count`, in any order. Bodies must not call the executor themselves.
     template <class Body>
     void each(std::size_t count, const Body& body) const {
+        ranges(count, [&](std::size_t first, std::size_t last) {
+            for (std::size_t i = first; i < last; ++i) body(i);
+        });
+    }
+
+    /// The same by run_wide().
+    template <class Body>
+    void each_wide(std::size_t count, const Body& body) const {
+        ranges(count, [&](std::size_t first, std::size_t last) { run_wide(body, first, last); });
+    }
+
+    /// body(first, last) for ranges that together are 0 to `count`, in any order.
+    template <class Body>
+    void ranges(std::size_t count, const Body& body) const {
         if (!m_team || count < smallest_share * m_threads) {
-            for (std::size_t i = 0; i < count; ++i) body(i);
+            if (count > 0) body(std::size_t{0}, count);
             return;
         }
         const std::size_t pieces = std::min(count, pieces_a_thread * m_threads);
-        m_team->run(pieces, [&](std::size_t piece) {
-            for (std::size_t i = count * piece / pieces; i < count * (piece + 1) / pieces; ++i) body(i);
-        });
+        m_team->run(pieces, [&](std::size_t piece) { body(count * piece / pieces, count * (piece + 1) / pieces); });
+    }
+
+    /// Sum of part(first, last) over ranges of fixed length: the same for any number of threads.
+    template <class Part>
+    double sum_of_ranges(std::size_t count, const Part& part) const {
+        return reduce_ranges(count, part, 0.0, [](double a, double b) { return a + b; });
     }
 
     /// Sum of term(i), in blocks: the same for any number of threads.
@@ -115,15 +149,20 @@ class Executor {
 
     template <class Term, class Join>
     double reduce(std::size_t count, const Term& term, double start, Join join) const {
+        const auto part = [&](std::size_t first, std::size_t last) {
+            double joined = start;
+            for (std::size_t i = first; i < last; ++i) joined = join(joined, term(i));
+            return joined;
+        };
+        return reduce_ranges(count, part, start, join);
+    }
+
+    template <class Part, class Join>
+    double reduce_ranges(std::size_t count, const Part& part, double start, Join join) const {
         const std::size_t blocks = (count + block - 1) / block;
         std::vector<double> parts(blocks, start);
-        const auto of_block = [&](std::size_t b) {
-            double part = start;
-            for (std::size_t i = b * block; i < std::min(count, (b + 1) * block); ++i) part = join(part, term(i));
-            parts[b] = part;
-        };
-        each(blocks, of_block);
-        for (const double part : parts) start = join(start, part);
+        each(blocks, [&](std::size_t b) { parts[b] = part(b * block, std::min(count, (b + 1) * block)); });
+        for (const double value : parts) start = join(start, value);
         return start;
     }
 

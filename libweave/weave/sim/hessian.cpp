@@ -3,13 +3,13 @@
 #include <weave/sim/hessian_terms.hpp>
 
 #include <algorithm>
-#include <array>
 
 namespace weave::sim {
 
 namespace {
 
 constexpr std::uint32_t chunk_segments = 32;
+constexpr std::uint32_t no_row = 0xffffffffU;
 
 template <class Real>
 Basis<double> as_double(const Basis<Real>& basis) {
@@ -49,6 +49,23 @@ struct Hessian<Real>::Scratch {
     std::vector<SlotBlocks> other;  ///< per near segment
     std::vector<std::uint8_t> touched;
     double slots[12];
+    bool convex = true;
+};
+
+/// What one sample meets of one other segment, by that segment's slots: what its place feels, and what its tangent does.
+template <class Real>
+struct Hessian<Real>::Meeting {
+    std::uint32_t segment = 0xffffffffU;
+    double rows_by_place[4], rows_by_tangent[4];  ///< of the sample's own slots
+    Vec<double> pull;                             ///< of the sample
+    ColumnBlocks by_place;
+    Vec<double> by_tangent[4];
+
+    void begin(std::uint32_t other) {
+        segment = other;
+        by_place.clear();
+        for (Vec<double>& sum : by_tangent) sum.setZero();
+    }
 };
 
 template <class Real>
@@ -67,6 +84,12 @@ void Hessian<Real>::make_shares() {
         if (moves[slot] == 0) continue;
         row_of_slot[slot] = static_cast<std::uint32_t>(m_slot_of_row.size());
         m_slot_of_row.push_back(slot);
+    }
+    m_end_of_yarn.resize(m_slot_of_row.size());
+    for (std::size_t row = m_slot_of_row.size(); row-- > 0;) {
+        const bool is_last = row + 1 == m_slot_of_row.size() || m_fabric.yarn_of_slot()[m_slot_of_row[row]] !=
+                                                                     m_fabric.yarn_of_slot()[m_slot_of_row[row + 1]];
+        m_end_of_yarn[row] = is_last ? static_cast<std::uint32_t>(row + 1) : m_end_of_yarn[row + 1];
     }
     std::vector<std::vector<Share>> shares(moves.size());
     for (std::uint32_t slot = 0; slot < moves.size(); ++slot) {
@@ -87,6 +110,14 @@ void Hessian<Real>::make_shares() {
     for (const std::vector<std::uint32_t>& of_row : segments) {
         m_segments_of_row.insert(m_segments_of_row.end(), of_row.begin(), of_row.end());
         m_first_segment.push_back(static_cast<std::uint32_t>(m_segments_of_row.size()));
+    }
+    m_first_row.assign(m_fabric.segments(), no_row);
+    for (std::size_t s = 0; s < m_fabric.segments(); ++s) {
+        const std::uint32_t slot = m_fabric.segment_places()[s].slot;
+        bool follow = true;
+        for (std::uint32_t c = 0; c < 4; ++c)
+            follow = follow && moves[slot + c] != 0 && row_of_slot[slot + c] == row_of_slot[slot] + c;
+        if (follow) m_first_row[s] = row_of_slot[slot];
     }
     m_first_share.assign(1, 0);
     for (const std::vector<Share>& of_slot : shares) {
@@ -113,33 +144,47 @@ void Hessian<Real>::make_chunks() {
 template <class Real>
 void Hessian<Real>::list_near_segments(Energy<Real>& energy) {
     Neighbours<Real>& neighbours = energy.neighbours();
+    constexpr std::size_t at_once = 256;
+    std::vector<std::vector<std::uint32_t>> parts((m_fabric.segments() + at_once - 1) / at_once);
     m_first_near.assign(m_fabric.segments() + 1, 0);
-    m_near.clear();
-    std::vector<std::uint32_t> seen(m_fabric.segments(), 0xffffffffU);
-    for (std::uint32_t s = 0; s < m_fabric.segments(); ++s) {
-        const SegmentPlace& segment = m_fabric.segment_places()[s];
-        const std::size_t begin = m_near.size();
-        for (std::uint32_t k = 0; k < m_fabric.constants()[segment.yarn].samples; ++k) {
-            const std::uint32_t* first = neighbours.first() + segment.sample + k;
-            for (std::uint32_t e = first[0]; e < first[1]; ++e) {
+    energy.executor().each(parts.size(), [&](std::size_t part) {
+        std::vector<std::uint32_t>& near = parts[part];
+        for (std::size_t s = part * at_once; s < std::min(m_fabric.segments(), (part + 1) * at_once); ++s) {
+            const SegmentPlace& segment = m_fabric.segment_places()[s];
+            const std::size_t before = near.size();
+            const std::uint32_t* first = neighbours.first() + segment.sample;
+            const std::uint32_t samples = m_fabric.constants()[segment.yarn].samples;
+            for (std::uint32_t e = first[0]; e < first[samples]; ++e) {
                 const std::uint32_t other = neighbours.segment_of(neighbours.own(neighbours.others()[e]));
-                if (seen[other] == s) continue;
-                seen[other] = s;
-                m_near.push_back(other);
+                // Neighbours of one segment follow one another.
+                if (near.size() == before || near.back() != other) near.push_back(other);
             }
+            const auto begin = near.begin() + static_cast<std::ptrdiff_t>(before);
+            std::sort(begin, near.end());
+            near.erase(std::unique(begin, near.end()), near.end());
+            m_first_near[s + 1] = static_cast<std::uint32_t>(near.size() - before);
         }
-        std::sort(m_near.begin() + static_cast<std::ptrdiff_t>(begin), m_near.end());
-        m_first_near[s + 1] = static_cast<std::uint32_t>(m_near.size());
-    }
+    });
+    for (std::size_t s = 0; s < m_fabric.segments(); ++s) m_first_near[s + 1] += m_first_near[s];
+    m_near.clear();
+    for (const std::vector<std::uint32_t>& part : parts) m_near.insert(m_near.end(), part.begin(), part.end());
 }
 
 /// The rows that a control point meets, some of them more than once: those of its own segments, and of the segments
 /// near to these.
 template <class Real>
 void Hessian<Real>::list_columns(std::uint32_t row, std::vector<std::uint32_t>& columns) const {
+    // The next segment of a yarn has three rows of the last one.
     const auto add_slots = [&](std::uint32_t segment) {
-        const std::uint32_t slot = m_fabric.segment_places()[segment].slot;
-        for (std::uint32_t j = m_first_share[slot]; j < m_first_share[slot + 4]; ++j) columns.push_back(m_shares[j].row);
+        const std::uint32_t first = m_first_row[segment];
+        if (first == no_row) {
+            const std::uint32_t slot = m_fabric.segment_places()[segment].slot;
+            for (std::uint32_t j = m_first_share[slot]; j < m_first_share[slot + 4]; ++j) columns.push_back(m_shares[j].row);
+            return;
+        }
+        const bool goes_on = !columns.empty() && columns.back() >= first && columns.back() < first + 4;
+        for (std::uint32_t column = goes_on ? columns.back() + 1 : first; column < first + 4; ++column)
+            columns.push_back(column);
     };
     std::vector<std::uint32_t> near;
     for (std::uint32_t i = m_first_segment[row]; i < m_first_segment[row + 1]; ++i) {
@@ -173,6 +218,38 @@ void Hessian<Real>::make_shape(Energy<Real>& energy, BlockMatrix& matrix) {
     for (const std::vector<std::uint32_t>& part : parts) columns.insert(columns.end(), part.begin(), part.end());
     for (std::size_t row = 0; row < rows(); ++row) first[row + 1] += first[row];
     matrix.shape(std::move(first), std::move(columns));
+    list_mirrored(matrix);
+}
+
+/// Rows rise, and so do the columns of each: the next block of a row that is mirrored is that of the next row that has
+/// one for it.
+template <class Real>
+void Hessian<Real>::list_mirrored(const BlockMatrix& matrix) {
+    std::vector<std::uint32_t> next(rows());
+    m_first_mirrored.resize(rows());
+    for (std::uint32_t row = 0; row < rows(); ++row)
+        m_first_mirrored[row] = next[row] = static_cast<std::uint32_t>(matrix.find(row, m_end_of_yarn[row]));
+    m_mirrored_from.resize(matrix.blocks());
+    for (std::uint32_t row = 0; row < rows(); ++row) {
+        for (std::uint32_t at = matrix.first(row); at < matrix.first(row + 1); ++at) {
+            const std::uint32_t column = matrix.column(at);
+            if (m_end_of_yarn[column] > row) break;  // its own yarn
+            m_mirrored_from[next[column]++] = at;
+        }
+    }
+}
+
+template <class Real>
+void Hessian<Real>::mirror(const Executor& executor, BlockMatrix& matrix) const {
+    executor.each(rows(), [&](std::size_t row) {
+        for (std::uint32_t at = m_first_mirrored[row]; at < matrix.first(row + 1); ++at) {
+            const float* from = matrix.value(m_mirrored_from[at]);
+            float* to = matrix.value(at);
+            for (int i = 0; i < 3; ++i) {
+                for (int j = 0; j < 3; ++j) to[3 * j + i] = from[3 * i + j];
+            }
+        }
+    });
 }
 
 template <class Real>
@@ -185,50 +262,76 @@ void Hessian<Real>::assemble(Energy<Real>& energy, const std::vector<Real>& stat
         matrix.clear_values();
     }
     const FabricView<Real> fabric = energy.view(state);
+    const bool convex = curvature == Curvature::convex;
+    if (!convex) lay_pulls(energy.executor(), fabric);
     for (const std::vector<Chunk>& colour : m_chunks) {
         energy.executor().each(colour.size(), [&](std::size_t c) {
             Scratch scratch;
-            for (std::uint32_t s = colour[c].first; s < colour[c].last; ++s)
-                add_segment(energy, fabric, s, curvature == Curvature::convex, matrix, scratch);
+            scratch.convex = convex;
+            run_wide(
+                [&](std::size_t s) __attribute__((always_inline)) {
+                    add_segment(energy, fabric, static_cast<std::uint32_t>(s), matrix, scratch);
+                },
+                colour[c].first, colour[c].last);
         });
     }
+    mirror(energy.executor(), matrix);
     if (!energy.transition().is_on()) return;
-    for (const auto& [segment, blocks] : energy.transition().curvature(fabric)) {
-        const std::uint32_t slot = fabric.segments[segment].slot;
-        scatter(slot, slot, blocks, matrix);
-    }
+    for (const auto& [segment, blocks] : energy.transition().curvature(fabric)) scatter(segment, segment, blocks, matrix);
 }
 
 template <class Real>
-void Hessian<Real>::add_segment(Energy<Real>& energy, const FabricView<Real>& fabric, std::uint32_t index,
-                                bool convex, BlockMatrix& matrix, Scratch& scratch) const {
+inline void Hessian<Real>::add_segment(Energy<Real>& energy, const FabricView<Real>& fabric, std::uint32_t index,
+                                           BlockMatrix& matrix, Scratch& scratch) const {
     const SegmentPlace& segment = fabric.segments[index];
     const YarnConstants<double>& yarn = m_constants[segment.yarn];
     for (std::size_t k = 0; k < 12; ++k)
         scratch.slots[k] = static_cast<double>(fabric.place[3 * std::size_t(segment.slot) + k]);
     scratch.own.clear();
+    const bool convex = scratch.convex;
     const Speeds<double> speeds(m_gauss, scratch.slots);
-    add_stretch_curvature(yarn, m_gauss, speeds, convex, scratch.own);
-    add_bending_curvature(yarn, m_gauss, scratch.slots, speeds, convex, scratch.own);
+    GaussBlocks elastic;
+    elastic.clear();
+    add_stretch_curvature(yarn, m_gauss, speeds, convex, elastic);
+    add_bending_curvature(yarn, m_gauss, scratch.slots, speeds, convex, elastic);
+    elastic.add_to(scratch.own, m_gauss);
     if (!m_spheres.empty()) add_field_curvature(yarn, m_gauss, scratch.slots, m_spheres, convex, scratch.own);
 
     const std::uint32_t first_near = m_first_near[index], near = m_first_near[index + 1] - first_near;
     if (scratch.other.size() < near) scratch.other.resize(near);
     scratch.touched.assign(near, 0);
     for (std::uint32_t k = 0; k < yarn.samples; ++k)
-        add_sample(energy.neighbours(), fabric, index, k, convex, scratch);
-    scatter(segment.slot, segment.slot, scratch.own, matrix);
+        add_sample(energy.neighbours(), fabric, index, k, scratch);
+    scatter(index, index, scratch.own, matrix);
     for (std::uint32_t n = 0; n < near; ++n) {
         if (scratch.touched[n] != 0)
-            scatter(segment.slot, fabric.segments[m_near[first_near + n]].slot, scratch.other[n], matrix);
+            scatter(index, m_near[first_near + n], scratch.other[n], matrix);
     }
 }
 
-/// What contact adds at one sample. Its weight w = α|T| depends on the tangent T, with unit t: each pair's energy
-/// w_a w_b f(u) has derivatives by both places and, when exact, by both tangents.
+/// ∂w/∂T of every contact sample, w = α|T| being its weight.
 template <class Real>
-void Hessian<Real>::add_sample(const Neighbours<Real>& neighbours, const FabricView<Real>& fabric, std::uint32_t index,
-                               std::uint32_t k, bool convex, Scratch& scratch) const {
+void Hessian<Real>::lay_pulls(const Executor& executor, const FabricView<Real>& fabric) {
+    m_pulls.resize(m_fabric.samples());
+    executor.each(m_fabric.segments(), [&](std::size_t index) {
+        const SegmentPlace& segment = fabric.segments[index];
+        const YarnConstants<double>& yarn = m_constants[segment.yarn];
+        double slots[12];
+        for (std::size_t k = 0; k < 12; ++k)
+            slots[k] = static_cast<double>(fabric.place[3 * std::size_t(segment.slot) + k]);
+        for (std::uint32_t k = 0; k < yarn.samples; ++k) {
+            const Vec<double> tangent = combine(m_bases[yarn.basis + k].slope, slots);
+            m_pulls[segment.sample + k] = yarn.root_k / yarn.samples / guarded(tangent.norm(), yarn) * tangent;
+        }
+    });
+}
+
+/// What contact adds at one sample. Its weight w = α|T| depends on the tangent T, with unit t: each pair's energy
+/// w_a w_b f(u) has derivatives by both places and, when exact, by both tangents. Blocks between two yarns are made for
+/// the one of higher number and mirrored. Neighbours of one segment follow one another.
+template <class Real>
+inline void Hessian<Real>::add_sample(const Neighbours<Real>& neighbours, const FabricView<Real>& fabric, std::uint32_t index,
+                               std::uint32_t k, Scratch& scratch) const {
     const SegmentPlace& segment = fabric.segments[index];
     const YarnConstants<double>& yarn = m_constants[segment.yarn];
     const Basis<double>& mine = m_bases[yarn.basis + k];
@@ -237,72 +340,100 @@ void Hessian<Real>::add_sample(const Neighbours<Real>& neighbours, const FabricV
     const Vec<double> tangent = combine(mine.slope, scratch.slots);
     const double speed = guarded(tangent.norm(), yarn), weight = static_cast<double>(all.weight[a]);
     const double share = yarn.root_k / yarn.samples;
-    const Vec<double> pull = share / speed * tangent;  // ∂w/∂T
-    Mat<double> by_place = Mat<double>::Zero();
-    Vec<double> slope = Vec<double>::Zero();
+    const bool convex = scratch.convex;
+    Meeting meeting;
+    meeting.pull = share / speed * tangent;  // ∂w/∂T
+    for (int c = 0; c < 4; ++c) {
+        meeting.rows_by_place[c] = weight * mine.value[c];
+        meeting.rows_by_tangent[c] = mine.slope[c];
+    }
+    const double floor = static_cast<double>(fabric.floor);
+    Nine by_place{};
+    Vec<double> slope(0, 0, 0);
     double spread = 0;
     for (std::uint32_t e = fabric.first_neighbour[a]; e < fabric.first_neighbour[a + 1]; ++e) {
         const std::uint32_t b = fabric.neighbours[e];
         const Vec<double> u(static_cast<double>(all.x[a] - all.x[b]), static_cast<double>(all.y[a] - all.y[b]),
                             static_cast<double>(all.z[a] - all.z[b]));
-        const double reach = static_cast<double>(all.radius[a] + all.radius[b]);
-        if (u.squaredNorm() >= reach * reach) continue;
-        const PairCurvature pair = pair_curvature(u, reach * reach, static_cast<double>(fabric.floor), convex);
+        const double reach = static_cast<double>(all.radius[a] + all.radius[b]), square = u.squaredNorm();
+        if (square >= reach * reach) continue;
+        const PairCurvature pair = pair_curvature(square, reach * reach, floor, convex);
         const double other_weight = static_cast<double>(all.weight[b]);
-        by_place += other_weight * pair.by_place;
-        slope += other_weight * pair.slope;
+        const Nine pair_by_place = Nine::along(other_weight * pair.side, other_weight * pair.along, u);
+        by_place += pair_by_place;
+        slope += other_weight * pair.pull * u;
         spread += other_weight * pair.value;
         const std::uint32_t own = neighbours.own(b), other = neighbours.segment_of(own);
         const SegmentPlace& place = fabric.segments[other];
-        const YarnConstants<double>& other_yarn = m_constants[place.yarn];
-        const Basis<double>& theirs = m_bases[other_yarn.basis + (own - place.sample)];
-        SlotBlocks& sum = other_sum(index, other, scratch);
-        sum.add(mine.value, theirs.value, -weight * other_weight * pair.by_place);
+        if (place.yarn > segment.yarn) continue;
+        if (other != meeting.segment) {
+            add_meeting(index, meeting, scratch);
+            meeting.begin(other);
+        }
+        const Basis<double>& theirs = m_bases[m_constants[place.yarn].basis + (own - place.sample)];
+        meeting.by_place.take(theirs.value, pair_by_place);
         if (convex) continue;
-        const Real* slots = fabric.place + 3 * std::size_t(place.slot);
-        const Vec<double> other_tangent =
-            theirs.slope[0] * load(slots).template cast<double>() + theirs.slope[1] * load(slots + 3).template cast<double>() +
-            theirs.slope[2] * load(slots + 6).template cast<double>() + theirs.slope[3] * load(slots + 9).template cast<double>();
-        const Vec<double> other_pull = other_yarn.root_k / other_yarn.samples / guarded(other_tangent.norm(), other_yarn) * other_tangent;
-        sum.add(mine.value, theirs.slope, weight * pair.slope * other_pull.transpose());
-        sum.add(mine.slope, theirs.value, -other_weight * pull * pair.slope.transpose());
-        sum.add(mine.slope, theirs.slope, pair.value * pull * other_pull.transpose());
+        const Vec<double>& other_pull = m_pulls[own];
+        meeting.by_place.add(theirs.slope, Nine::outer(pair.pull * u, other_pull));
+        const Vec<double> by_slope = pair.value * other_pull, by_value = other_weight * pair.pull * u;
+        for (int d = 0; d < 4; ++d) meeting.by_tangent[d] += theirs.slope[d] * by_slope - theirs.value[d] * by_value;
     }
     if (spread == 0) return;
-    scratch.own.add(mine.value, mine.value, weight * by_place);
-    scratch.own.add(mine.slope, mine.slope, across(tangent / speed) * (share * spread / speed));
-    if (convex) return;
-    const Mat<double> mixed = slope * pull.transpose();
-    scratch.own.add(mine.value, mine.slope, mixed);
-    scratch.own.add(mine.slope, mine.value, mixed.transpose());
+    add_meeting(index, meeting, scratch);
+    // Its own slots: the weight's second derivative is across the tangent.
+    const Vec<double> unit = tangent / speed;
+    const double side = share * spread / speed;
+    const Nine mixed = Nine::outer(slope, meeting.pull);
+    for (double& number : by_place.at) number *= weight;
+    ColumnBlocks of_value, of_slope;
+    of_value.clear(), of_slope.clear();
+    of_value.add(mine.value, by_place);
+    of_slope.add(mine.slope, Nine::along(side, -side, unit));
+    if (!convex) {
+        of_value.add(mine.slope, mixed);
+        of_slope.add(mine.value, mixed.transposed());
+    }
+    scratch.own.add({{mine.value, &of_value}, {mine.slope, &of_slope}});
 }
 
 template <class Real>
-SlotBlocks& Hessian<Real>::other_sum(std::uint32_t index, std::uint32_t other, Scratch& scratch) const {
+inline void Hessian<Real>::add_meeting(std::uint32_t index, const Meeting& meeting, Scratch& scratch) const {
+    if (meeting.segment >= m_fabric.segments()) return;
     const auto begin = m_near.begin() + m_first_near[index], end = m_near.begin() + m_first_near[index + 1];
-    const auto at = static_cast<std::size_t>(std::lower_bound(begin, end, other) - begin);
-    if (scratch.touched[at] == 0) scratch.other[at].clear();
+    const auto at = static_cast<std::size_t>(std::lower_bound(begin, end, meeting.segment) - begin);
+    SlotBlocks& sum = scratch.other[at];
+    if (scratch.touched[at] == 0) sum.clear();
     scratch.touched[at] = 1;
-    return scratch.other[at];
+    if (scratch.convex) return sum.add({{meeting.rows_by_place, &meeting.by_place}});
+    ColumnBlocks by_tangent;
+    by_tangent.clear();
+    for (int d = 0; d < 4; ++d) {
+        const Nine both = Nine::outer(meeting.pull, meeting.by_tangent[d]);
+        for (int k = 0; k < 9; ++k) by_tangent.block[9 * d + k] = both.at[k];
+    }
+    sum.add({{meeting.rows_by_place, &meeting.by_place}, {meeting.rows_by_tangent, &by_tangent}});
 }
 
-/// The columns of a segment's slots mostly follow one another, and so do their blocks: one search a row then serves all.
 template <class Real>
-void Hessian<Real>::scatter(std::uint32_t slot, std::uint32_t other_slot, const SlotBlocks& local,
+inline void Hessian<Real>::scatter(std::uint32_t segment, std::uint32_t other, const SlotBlocks& local,
                             BlockMatrix& matrix) const {
+    const std::uint32_t slot = m_fabric.segment_places()[segment].slot, other_slot = m_fabric.segment_places()[other].slot,
+                        first_column = m_first_row[other];
     for (std::uint32_t c = 0; c < 4; ++c) {
+        const double* from = &local.block[36 * c];
         for (std::uint32_t i = m_first_share[slot + c]; i < m_first_share[slot + c + 1]; ++i) {
             const std::uint32_t row = m_shares[i].row;
-            const std::size_t end = matrix.first(row + 1);
-            std::size_t at = end;
+            const double weight = static_cast<double>(m_shares[i].weight);
+            if (first_column != no_row) {
+                float* block = matrix.value(matrix.find(row, first_column));  // the other three follow
+                for (int k = 0; k < 36; ++k) block[k] += static_cast<float>(weight * from[k]);
+                continue;
+            }
             for (std::uint32_t d = 0; d < 4; ++d) {
                 for (std::uint32_t j = m_first_share[other_slot + d]; j < m_first_share[other_slot + d + 1]; ++j) {
-                    const std::uint32_t column = m_shares[j].row;
-                    if (++at >= end || matrix.column(at) != column) at = matrix.find(row, column);
-                    float* block = matrix.value(at);
-                    const double weight = double(m_shares[i].weight) * double(m_shares[j].weight);
-                    const double* from = local.block[4 * c + d];
-                    for (int k = 0; k < 9; ++k) block[k] += static_cast<float>(weight * from[k]);
+                    float* block = matrix.value(matrix.find(row, m_shares[j].row));
+                    const double both = weight * static_cast<double>(m_shares[j].weight);
+                    for (std::uint32_t k = 0; k < 9; ++k) block[k] += static_cast<float>(both * from[9 * d + k]);
                 }
             }
         }

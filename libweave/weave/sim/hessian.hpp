@@ -48,12 +48,16 @@ class Hessian {
     void make_shape(Energy<Real>& energy, BlockMatrix& matrix);
     void list_columns(std::uint32_t row, std::vector<std::uint32_t>& columns) const;
     void list_near_segments(Energy<Real>& energy);
-    void add_segment(Energy<Real>& energy, const FabricView<Real>& fabric, std::uint32_t index, bool convex,
+    WEAVE_INLINE void add_segment(Energy<Real>& energy, const FabricView<Real>& fabric, std::uint32_t index,
                      BlockMatrix& matrix, Scratch& scratch) const;
-    void add_sample(const Neighbours<Real>& neighbours, const FabricView<Real>& fabric, std::uint32_t index,
-                    std::uint32_t k, bool convex, Scratch& scratch) const;
-    SlotBlocks& other_sum(std::uint32_t index, std::uint32_t other, Scratch& scratch) const;
-    void scatter(std::uint32_t slot, std::uint32_t other_slot, const SlotBlocks& local, BlockMatrix& matrix) const;
+    struct Meeting;
+    void lay_pulls(const Executor& executor, const FabricView<Real>& fabric);
+    WEAVE_INLINE void add_sample(const Neighbours<Real>& neighbours, const FabricView<Real>& fabric, std::uint32_t index,
+                    std::uint32_t k, Scratch& scratch) const;
+    WEAVE_INLINE void add_meeting(std::uint32_t index, const Meeting& meeting, Scratch& scratch) const;
+    void list_mirrored(const BlockMatrix& matrix);
+    void mirror(const Executor& executor, BlockMatrix& matrix) const;
+    WEAVE_INLINE void scatter(std::uint32_t segment, std::uint32_t other, const SlotBlocks& local, BlockMatrix& matrix) const;
 
     const Fabric<Real>& m_fabric;
     Gauss<double> m_gauss;
@@ -63,9 +67,15 @@ class Hessian {
     std::vector<std::uint32_t> m_slot_of_row;
     std::vector<std::uint32_t> m_first_share;  ///< per slot, and one more
     std::vector<Share> m_shares;
+    std::vector<std::uint32_t> m_first_row;    ///< per segment whose four slots are rows that follow one another
     std::vector<std::vector<Chunk>> m_chunks;  ///< by colour: chunks of one colour share no row
     std::vector<std::uint32_t> m_first_segment{0}, m_segments_of_row;  ///< per row: the segments that reach it
     std::vector<std::uint32_t> m_first_near, m_near;  ///< per segment: the segments that may touch it
+    std::vector<Vec<double>> m_pulls;                 ///< per own sample: derivative of its weight by its tangent
+    std::vector<std::uint32_t> m_end_of_yarn;         ///< per row: the first row after its yarn
+    /// Blocks that belong to a yarn of higher number are those of that yarn's row: from which block on in each row, and
+    /// where the others lie.
+    std::vector<std::uint32_t> m_first_mirrored, m_mirrored_from;
     std::size_t m_shape_of_build = 0;
 };
 

@@ -105,16 +105,20 @@ void Multigrid::add_level(std::size_t finer, std::vector<Shares> shares, std::si
     const auto each_share = [&](const auto& visit) {
         for (std::uint32_t row = 0; row < level.shares.size(); ++row) {
             for (std::size_t k = 0; k < 4; ++k) {
-                if (level.shares[row].weight[k] != 0) visit(row, level.shares[row].of[k]);
+                if (level.shares[row].weight[k] != 0) visit(row, level.shares[row].of[k], level.shares[row].weight[k]);
             }
         }
     };
-    each_share([&](std::uint32_t, std::uint32_t piece) { ++level.first_member[piece + 1]; });
+    each_share([&](std::uint32_t, std::uint32_t piece, double) { ++level.first_member[piece + 1]; });
     for (std::size_t piece = 0; piece < pieces; ++piece)
         level.first_member[piece + 1] += level.first_member[piece];
     level.members.resize(level.first_member.back());
+    level.member_weight.resize(level.members.size());
     std::vector<std::uint32_t> next(level.first_member.begin(), level.first_member.end() - 1);
-    each_share([&](std::uint32_t row, std::uint32_t piece) { level.members[next[piece]++] = row; });
+    each_share([&](std::uint32_t row, std::uint32_t piece, double weight) {
+        level.member_weight[next[piece]] = weight;
+        level.members[next[piece]++] = row;
+    });
 }
 
 /// A piece lies where the row lies that belongs to it most.
@@ -212,20 +216,34 @@ void Multigrid::factor(std::size_t number, const BlockMatrix& matrix) {
     }
 }
 
-/// A pivot that is not positive is made so: a direction that curves down counts as one that curves up as
-/// much.
+namespace {
+
+/// No direction of a pivot counts as softer than this share of its stiffest.
+constexpr double softest = 1e-4;
+
+/// The inverse of a pivot. One that is not positive is made so: a direction that curves down counts as one that curves
+/// up as much.
+Eigen::Matrix3d inverse_of(const Eigen::Matrix3d& pivot) {
+    const double trace = pivot.trace(), minor = pivot(0, 0) * pivot(1, 1) - pivot(0, 1) * pivot(0, 1),
+                 volume = pivot.determinant();
+    // All three directions are positive, and the softest is no less than 4·volume / trace².
+    if (pivot(0, 0) > 0 && minor > 0 && 4 * volume > softest * trace * trace * trace) return pivot.inverse();
+    Eigen::SelfAdjointEigenSolver<Eigen::Matrix3d> eigen;
+    eigen.computeDirect(pivot);
+    const Eigen::Vector3d sizes = eigen.eigenvalues().cwiseAbs();
+    const double least = softest * std::max(sizes.maxCoeff(), 1e-30);
+    const Eigen::Matrix3d& axes = eigen.eigenvectors();
+    return axes * sizes.cwiseMax(least).cwiseInverse().asDiagonal() * axes.transpose();
+}
+
+}  // namespace
+
 void Multigrid::invert_pivots(const BlockMatrix& matrix, Level& level) const {
     level.inverse.resize(9 * level.rows);
     each_row(level.rows, [&](std::size_t row) {
         const Eigen::Matrix3d pivot =
             Eigen::Map<const BlockMatrix::Block>(matrix.value(matrix.diagonal(row))).cast<double>();
-        Eigen::SelfAdjointEigenSolver<Eigen::Matrix3d> eigen;
-        eigen.computeDirect((pivot + pivot.transpose()) / 2);
-        const Eigen::Vector3d sizes = eigen.eigenvalues().cwiseAbs();
-        const double least = 1e-4 * std::max(sizes.maxCoeff(), 1e-30);
-        const Eigen::Matrix3d& axes = eigen.eigenvectors();
-        Eigen::Map<Eigen::Matrix3d>(&level.inverse[9 * row]) =
-            axes * sizes.cwiseMax(least).cwiseInverse().asDiagonal() * axes.transpose();
+        Eigen::Map<Eigen::Matrix3d>(&level.inverse[9 * row]) = inverse_of((pivot + pivot.transpose()) / 2);
     });
 }
 
@@ -238,26 +256,27 @@ struct CoarseRows {
 
     std::vector<std::uint32_t>
         place;  ///< per column: where its sum lies in this row, 0 if nowhere yet, else plus one
-    std::vector<std::uint32_t> found;
-    std::vector<Eigen::Matrix3d> sums;
+    std::vector<std::uint32_t> found, sorted;
+    std::vector<double> sums;  ///< 9 each
 
-    void add(std::uint32_t column, double weight, const Eigen::Matrix3d& block) {
+    /// Where the sum of a column lies.
+    [[gnu::always_inline]] double* sum_of(std::uint32_t column) {
         if (place[column] == 0) {
             found.push_back(column);
-            sums.emplace_back(Eigen::Matrix3d::Zero());
+            sums.resize(sums.size() + 9, 0.0);
             place[column] = static_cast<std::uint32_t>(found.size());
         }
-        sums[place[column] - 1] += weight * block;
+        return &sums[9 * (place[column] - std::size_t{1})];
     }
 
     void end_row() {
-        std::vector<std::uint32_t> sorted = found;
+        sorted = found;
         std::sort(sorted.begin(), sorted.end());
         for (const std::uint32_t column : sorted) {
-            const Eigen::Matrix3f block = sums[place[column] - 1].cast<float>();
-            values.insert(values.end(), block.data(), block.data() + 9);
-            place[column] = 0;
+            const double* sum = sum_of(column);
+            for (int k = 0; k < 9; ++k) values.push_back(static_cast<float>(sum[k]));
         }
+        for (const std::uint32_t column : found) place[column] = 0;
         columns.insert(columns.end(), sorted.begin(), sorted.end());
         count.push_back(static_cast<std::uint32_t>(sorted.size()));
         found.clear();
@@ -265,16 +284,63 @@ struct CoarseRows {
     }
 };
 
-}  // namespace
-
-/// How much of a row belongs to one of its pieces.
+/// Adds one row of the fine matrix to that of a piece, from its pivot on.
 template <class Shares>
-double share_of(const Shares& shares, std::size_t piece) {
-    for (std::size_t k = 0; k < 4; ++k) {
-        if (shares.of[k] == piece && shares.weight[k] != 0) return shares.weight[k];
+WEAVE_WIDE void add_row(const BlockMatrix& fine, std::size_t row, double weight, const Shares* shares, std::size_t piece,
+                        CoarseRows& to) {
+    for (std::uint32_t at = fine.first(row); at < fine.first(row + 1); ++at) {
+        const float* block = fine.value(at);
+        double whole[9];
+        float size = 0;
+        for (int k = 0; k < 9; ++k) {
+            whole[k] = weight * double(block[k]);
+            size += std::abs(block[k]);
+        }
+        if (size == 0) continue;  // near, but not touching
+        const Shares& theirs = shares[fine.column(at)];
+        for (std::size_t s = 0; s < 4; ++s) {
+            const double share = theirs.weight[s];
+            if (share == 0 || theirs.of[s] < piece) continue;
+            double* sum = to.sum_of(theirs.of[s]);
+            for (int k = 0; k < 9; ++k) sum[k] += share * whole[k];
+        }
     }
-    return 0;
 }
+
+/// A matrix from the upper half of its rows. What lies left of a pivot comes from the rows before, in their order.
+void mirror(const std::vector<CoarseRows>& upper, std::size_t pieces, BlockMatrix& matrix) {
+    std::vector<std::uint32_t> first(pieces + 1, 0);
+    const auto each_block = [&](const auto& visit) {
+        std::uint32_t row = 0;
+        for (const CoarseRows& rows : upper) {
+            std::size_t at = 0;
+            for (const std::uint32_t count : rows.count) {
+                for (const std::size_t end = at + count; at < end; ++at) visit(row, rows.columns[at], &rows.values[9 * at]);
+                ++row;
+            }
+        }
+    };
+    each_block([&](std::uint32_t row, std::uint32_t column, const float*) {
+        ++first[row + 1];
+        if (column != row) ++first[column + 1];
+    });
+    for (std::size_t row = 0; row < pieces; ++row) first[row + 1] += first[row];
+    std::vector<std::uint32_t> next(first.begin(), first.end() - 1), columns(first.back());
+    each_block([&](std::uint32_t row, std::uint32_t column, const float*) {
+        columns[next[row]++] = column;
+        if (column != row) columns[next[column]++] = row;
+    });
+    next.assign(first.begin(), first.end() - 1);
+    matrix.shape(std::move(first), std::move(columns));
+    each_block([&](std::uint32_t row, std::uint32_t column, const float* from) {
+        std::copy(from, from + 9, matrix.value(next[row]++));
+        if (column == row) return;
+        float* to = matrix.value(next[column]++);
+        for (int k = 0; k < 9; ++k) to[k] = from[3 * (k % 3) + k / 3];
+    });
+}
+
+}  // namespace
 
 /// PᵀAP, P being the shares.
 void Multigrid::coarsen(const BlockMatrix& fine, const Level& level, BlockMatrix& coarse) const {
@@ -285,30 +351,14 @@ void Multigrid::coarsen(const BlockMatrix& fine, const Level& level, BlockMatrix
         rows.place.assign(pieces, 0);
         for (std::size_t piece = pieces * part / parts; piece < pieces * (part + 1) / parts; ++piece) {
             for (std::uint32_t m = level.first_member[piece]; m < level.first_member[piece + 1]; ++m) {
-                const std::uint32_t row = level.members[m];
-                const Shares& mine = level.shares[row];
-                const double weight = share_of(mine, piece);
-                for (std::uint32_t at = fine.first(row); at < fine.first(row + 1); ++at) {
-                    const Shares& theirs = level.shares[fine.column(at)];
-                    const Eigen::Matrix3d block =
-                        Eigen::Map<const BlockMatrix::Block>(fine.value(at)).cast<double>();
-                    for (std::size_t k = 0; k < 4; ++k) {
-                        if (theirs.weight[k] != 0) rows.add(theirs.of[k], weight * theirs.weight[k], block);
-                    }
-                }
+                add_row(fine, level.members[m], level.member_weight[m], level.shares.data(), piece, rows);
             }
+            rows.sum_of(static_cast<std::uint32_t>(piece));  // it has a pivot whatever it holds
             rows.end_row();
         }
         rows.place = {};
     });
-    std::vector<std::uint32_t> first{0}, columns;
-    for (const CoarseRows& rows : made) {
-        for (const std::uint32_t count : rows.count) first.push_back(first.back() + count);
-        columns.insert(columns.end(), rows.columns.begin(), rows.columns.end());
-    }
-    coarse.shape(std::move(first), std::move(columns));
-    float* to = coarse.value(0);
-    for (const CoarseRows& rows : made) to = std::copy(rows.values.begin(), rows.values.end(), to);
+    mirror(made, pieces, coarse);
 }
 
 /// Whatever the matrix, some damping makes it positive.
@@ -335,9 +385,9 @@ void Multigrid::restrict_to(Level& level, const std::vector<double>& fine) const
     each_row(level.rows, [&](std::size_t piece) {
         double sum[3]{};
         for (std::uint32_t m = level.first_member[piece]; m < level.first_member[piece + 1]; ++m) {
-            const std::size_t row = level.members[m];
-            const double weight = share_of(level.shares[row], piece);
-            for (std::size_t k = 0; k < 3; ++k) sum[k] += weight * fine[3 * row + k];
+            const double* of = &fine[3 * std::size_t(level.members[m])];
+            const double weight = level.member_weight[m];
+            for (std::size_t k = 0; k < 3; ++k) sum[k] += weight * of[k];
         }
         for (std::size_t k = 0; k < 3; ++k) level.residual[3 * piece + k] = sum[k];
     });
@@ -346,11 +396,13 @@ void Multigrid::restrict_to(Level& level, const std::vector<double>& fine) const
 void Multigrid::add_pieces(const Level& level, std::vector<double>& fine) const {
     each_row(level.shares.size(), [&](std::size_t row) {
         const Shares& shares = level.shares[row];
+        double sum[3]{fine[3 * row], fine[3 * row + 1], fine[3 * row + 2]};
         for (std::size_t s = 0; s < 4; ++s) {
             if (shares.weight[s] == 0) continue;
-            for (std::size_t k = 0; k < 3; ++k)
-                fine[3 * row + k] += shares.weight[s] * level.step[3 * std::size_t(shares.of[s]) + k];
+            const double* of = &level.step[3 * std::size_t(shares.of[s])];
+            for (std::size_t k = 0; k < 3; ++k) sum[k] += shares.weight[s] * of[k];
         }
+        for (std::size_t k = 0; k < 3; ++k) fine[3 * row + k] = sum[k];
     });
 }
 

@@ -62,6 +62,7 @@ class Multigrid : public Preconditioner {
         std::size_t rows = 0;
         std::vector<Shares> shares;                        ///< per row of the finer level: its pieces here
         std::vector<std::uint32_t> first_member, members;  ///< per piece: its rows in the finer level
+        std::vector<double> member_weight;                 ///< of each, how much of it belongs to the piece
         std::vector<std::size_t> coarser;                  ///< indices of levels; none: solved as a whole
         std::vector<double> inverse;                       ///< of each pivot, 9 a row
         BlockMatrix matrix;                                ///< not on the first level, whose matrix is given

@@ -276,12 +276,24 @@ bool Neighbours<Real>::same_stretch(std::size_t sample, std::uint32_t other) con
 /// Samples that may be near those of one segment, and where they are: what a thread needs while it lists.
 template <class Real>
 struct Neighbours<Real>::Candidates {
+    std::size_t count = 0;  ///< the arrays may be longer
     std::vector<std::uint32_t> samples;
     std::vector<Real> x, y, z, radius;
 
-    void clear() {
-        samples.clear();
-        x.clear(), y.clear(), z.clear(), radius.clear();
+    void make_room(std::size_t more) {
+        if (count + more <= samples.size()) return;
+        const std::size_t size = 2 * (count + more);
+        samples.resize(size);
+        x.resize(size), y.resize(size), z.resize(size), radius.resize(size);
+    }
+    /// Writes down a sample, which is overwritten by the next if it is not kept: no branch that could be guessed wrong.
+    void add(std::uint32_t sample, Real at_x, Real at_y, Real at_z, Real of_radius, bool is_kept) {
+        samples[count] = sample;
+        x[count] = at_x;
+        y[count] = at_y;
+        z[count] = at_z;
+        radius[count] = of_radius;
+        count += is_kept ? 1 : 0;
     }
 };
 
@@ -291,8 +303,8 @@ struct Neighbours<Real>::Box {
     std::array<double, 3> low{}, high{};
 
     [[nodiscard]] bool holds(double x, double y, double z, double reach) const {
-        return x >= low[0] - reach && x <= high[0] + reach && y >= low[1] - reach && y <= high[1] + reach &&
-               z >= low[2] - reach && z <= high[2] + reach;
+        return (x >= low[0] - reach) & (x <= high[0] + reach) & (y >= low[1] - reach) & (y <= high[1] + reach) &
+               (z >= low[2] - reach) & (z <= high[2] + reach);
     }
 };
 
@@ -376,17 +388,15 @@ void Neighbours<Real>::list_candidates(const std::vector<Grid>& grids) {
 
 template <class Real>
 void Neighbours<Real>::gather_candidates(std::size_t segment, Candidates& near) const {
-    near.clear();
+    const std::uint32_t begin = m_first_candidate[segment], end = m_first_candidate[segment + 1];
+    near.count = 0;
+    near.make_room(end - begin + 1);
     const Box box = box_of(segment);
-    const auto radius = static_cast<double>(m_radius[m_fabric.segment_places()[segment].sample]);
-    for (std::uint32_t e = m_first_candidate[segment]; e < m_first_candidate[segment + 1]; ++e) {
+    const double reach = static_cast<double>(m_radius[m_fabric.segment_places()[segment].sample]) + m_skin;
+    for (std::uint32_t e = begin; e < end; ++e) {
         const std::uint32_t b = m_candidates[e];
-        if (!box.holds(m_x[b], m_y[b], m_z[b], radius + m_radius[b] + m_skin)) continue;
-        near.samples.push_back(b);
-        near.x.push_back(m_x[b]);
-        near.y.push_back(m_y[b]);
-        near.z.push_back(m_z[b]);
-        near.radius.push_back(m_radius[b]);
+        near.add(b, m_x[b], m_y[b], m_z[b], m_radius[b],
+                 box.holds(m_x[b], m_y[b], m_z[b], reach + static_cast<double>(m_radius[b])));
     }
 }
 
@@ -410,17 +420,42 @@ void Neighbours<Real>::list_neighbours() {
          [&](std::size_t part) { return segments[part * at_once].sample; });
 }
 
+namespace {
+
+/// Numbers of the places that lie nearer to a point than `reach` and their own radius; how many. `found` has room for one
+/// more than all.
+template <class Real>
+WEAVE_WIDE std::size_t take_near(std::size_t count, const Real* x, const Real* y, const Real* z, const Real* radius,
+                                 const std::array<Real, 3>& at, double reach, std::uint32_t* found) {
+    std::size_t taken = 0;
+    for (std::size_t i = 0; i < count; ++i) {
+        const double dx = x[i] - at[0], dy = y[i] - at[1], dz = z[i] - at[2], limit = reach + static_cast<double>(radius[i]);
+        found[taken] = static_cast<std::uint32_t>(i);
+        taken += dx * dx + dy * dy + dz * dz < limit * limit ? 1 : 0;
+    }
+    return taken;
+}
+
+}  // namespace
+
 template <class Real>
 void Neighbours<Real>::list_near(std::uint32_t sample, const Candidates& candidates,
                                  std::vector<std::uint32_t>& list) const {
-    const double x = m_x[sample], y = m_y[sample], z = m_z[sample], reach = m_radius[sample] + m_skin;
-    for (std::size_t i = 0; i < candidates.samples.size(); ++i) {
-        const double dx = candidates.x[i] - x, dy = candidates.y[i] - y, dz = candidates.z[i] - z,
-                     limit = reach + candidates.radius[i];
-        if (dx * dx + dy * dy + dz * dz >= limit * limit) continue;
-        const std::uint32_t b = candidates.samples[i];
-        if (b != sample && !same_stretch(sample, b) && !m_transition.parts(sample, own(b))) list.push_back(b);
+    const std::size_t before = list.size(), count = candidates.count;
+    list.resize(before + count + 1);
+    const std::size_t found = take_near(count, candidates.x.data(), candidates.y.data(), candidates.z.data(),
+                                        candidates.radius.data(), std::array{m_x[sample], m_y[sample], m_z[sample]},
+                                        static_cast<double>(m_radius[sample]) + m_skin, &list[before]);
+    std::size_t kept = before;
+    for (std::size_t i = before; i < before + found; ++i) {
+        const std::uint32_t b = candidates.samples[list[i]];
+        if (b != sample && !same_stretch(sample, b) && !m_transition.parts(sample, own(b))) list[kept++] = b;
     }
+    list.resize(kept);
+    // Images among their own samples, so that those of one segment follow one another.
+    std::sort(list.begin() + static_cast<std::ptrdiff_t>(before), list.end(), [&](std::uint32_t p, std::uint32_t q) {
+        return std::pair(own(p), p) < std::pair(own(q), q);
+    });
 }
 
 template <class Real>
