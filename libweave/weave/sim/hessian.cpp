@@ -174,7 +174,8 @@ void Hessian<Real>::list_near_segments(Energy<Real>& energy) {
 /// near to these.
 template <class Real>
 void Hessian<Real>::list_columns(std::uint32_t row, std::vector<std::uint32_t>& columns) const {
-    // The next segment of a yarn has three rows of the last one.
+    // The next segment of a yarn has three rows of the last one. What lies before belongs to other rows.
+    const std::size_t before = columns.size();
     const auto add_slots = [&](std::uint32_t segment) {
         const std::uint32_t first = m_first_row[segment];
         if (first == no_row) {
@@ -182,7 +183,7 @@ void Hessian<Real>::list_columns(std::uint32_t row, std::vector<std::uint32_t>& 
             for (std::uint32_t j = m_first_share[slot]; j < m_first_share[slot + 4]; ++j) columns.push_back(m_shares[j].row);
             return;
         }
-        const bool goes_on = !columns.empty() && columns.back() >= first && columns.back() < first + 4;
+        const bool goes_on = columns.size() > before && columns.back() >= first && columns.back() < first + 4;
         for (std::uint32_t column = goes_on ? columns.back() + 1 : first; column < first + 4; ++column)
             columns.push_back(column);
     };
