@@ -113,20 +113,25 @@ void Hessian<Real>::make_chunks() {
 template <class Real>
 void Hessian<Real>::list_near_segments(Energy<Real>& energy) {
     Neighbours<Real>& neighbours = energy.neighbours();
+    const FrictionView<Real> rubbing = energy.friction().view();
     m_first_near.assign(m_fabric.segments() + 1, 0);
     m_near.clear();
     std::vector<std::uint32_t> seen(m_fabric.segments(), 0xffffffffU);
     for (std::uint32_t s = 0; s < m_fabric.segments(); ++s) {
         const SegmentPlace& segment = m_fabric.segment_places()[s];
         const std::size_t begin = m_near.size();
+        const auto add = [&](std::uint32_t own_sample) {
+            const std::uint32_t other = neighbours.segment_of(own_sample);
+            if (seen[other] == s) return;
+            seen[other] = s;
+            m_near.push_back(other);
+        };
         for (std::uint32_t k = 0; k < m_fabric.constants()[segment.yarn].samples; ++k) {
-            const std::uint32_t* first = neighbours.first() + segment.sample + k;
-            for (std::uint32_t e = first[0]; e < first[1]; ++e) {
-                const std::uint32_t other = neighbours.segment_of(neighbours.own(neighbours.others()[e]));
-                if (seen[other] == s) continue;
-                seen[other] = s;
-                m_near.push_back(other);
-            }
+            const std::uint32_t sample = segment.sample + k;
+            for (std::uint32_t e = neighbours.first()[sample]; e < neighbours.first()[sample + 1]; ++e)
+                add(neighbours.own(neighbours.others()[e]));
+            if (!energy.friction().is_on()) continue;
+            for (std::uint32_t p = rubbing.first[sample]; p < rubbing.first[sample + 1]; ++p) add(rubbing.pairs[p].other);
         }
         std::sort(m_near.begin() + static_cast<std::ptrdiff_t>(begin), m_near.end());
         m_first_near[s + 1] = static_cast<std::uint32_t>(m_near.size());
@@ -178,9 +183,10 @@ void Hessian<Real>::make_shape(Energy<Real>& energy, BlockMatrix& matrix) {
 template <class Real>
 void Hessian<Real>::assemble(Energy<Real>& energy, const std::vector<Real>& state, Curvature curvature,
                              BlockMatrix& matrix) {
-    if (m_shape_of_build != energy.neighbours().builds() || matrix.rows() != rows()) {
+    const std::size_t build = energy.neighbours().builds() + energy.friction().renewals();
+    if (m_shape_of_build != build || matrix.rows() != rows()) {
         make_shape(energy, matrix);
-        m_shape_of_build = energy.neighbours().builds();
+        m_shape_of_build = build;
     } else {
         matrix.clear_values();
     }
@@ -217,6 +223,8 @@ void Hessian<Real>::add_segment(Energy<Real>& energy, const FabricView<Real>& fa
     scratch.touched.assign(near, 0);
     for (std::uint32_t k = 0; k < yarn.samples; ++k)
         add_sample(energy.neighbours(), fabric, index, k, convex, scratch);
+    for (std::uint32_t k = 0; energy.friction().is_on() && k < yarn.samples; ++k)
+        add_friction(energy, fabric, index, k, scratch);
     scatter(segment.slot, segment.slot, scratch.own, matrix);
     for (std::uint32_t n = 0; n < near; ++n) {
         if (scratch.touched[n] != 0)
@@ -275,6 +283,26 @@ void Hessian<Real>::add_sample(const Neighbours<Real>& neighbours, const FabricV
     const Mat<double> mixed = slope * pull.transpose();
     scratch.own.add(mine.value, mine.slope, mixed);
     scratch.own.add(mine.slope, mine.value, mixed.transpose());
+}
+
+/// What held friction adds at one sample; it is convex as it is.
+template <class Real>
+void Hessian<Real>::add_friction(Energy<Real>& energy, const FabricView<Real>& fabric, std::uint32_t index,
+                                 std::uint32_t k, Scratch& scratch) const {
+    const SegmentPlace& segment = fabric.segments[index];
+    const Basis<double>& mine = m_bases[m_constants[segment.yarn].basis + k];
+    const std::uint32_t a = segment.sample + k;
+    const FrictionView<Real> friction = energy.friction().view();
+    for (std::uint32_t p = friction.first[a]; p < friction.first[a + 1]; ++p) {
+        const FrictionPair<Real>& pair = friction.pairs[p];
+        const Mat<double> by_place =
+            friction_curvature<Real>(pair, place_of(fabric.samples, a) - place_of(fabric.samples, pair.other));
+        const std::uint32_t other = energy.neighbours().segment_of(pair.other);
+        const SegmentPlace& place = fabric.segments[other];
+        const Basis<double>& theirs = m_bases[m_constants[place.yarn].basis + (pair.other - place.sample)];
+        scratch.own.add(mine.value, mine.value, by_place);
+        other_sum(index, other, scratch).add(mine.value, theirs.value, -by_place);
+    }
 }
 
 template <class Real>

@@ -52,6 +52,8 @@ class Hessian {
                      BlockMatrix& matrix, Scratch& scratch) const;
     void add_sample(const Neighbours<Real>& neighbours, const FabricView<Real>& fabric, std::uint32_t index,
                     std::uint32_t k, bool convex, Scratch& scratch) const;
+    void add_friction(Energy<Real>& energy, const FabricView<Real>& fabric, std::uint32_t index, std::uint32_t k,
+                      Scratch& scratch) const;
     SlotBlocks& other_sum(std::uint32_t index, std::uint32_t other, Scratch& scratch) const;
     void scatter(std::uint32_t slot, std::uint32_t other_slot, const SlotBlocks& local, BlockMatrix& matrix) const;
 
@@ -66,7 +68,7 @@ class Hessian {
     std::vector<std::vector<Chunk>> m_chunks;  ///< by colour: chunks of one colour share no row
     std::vector<std::uint32_t> m_first_segment{0}, m_segments_of_row;  ///< per row: the segments that reach it
     std::vector<std::uint32_t> m_first_near, m_near;  ///< per segment: the segments that may touch it
-    std::size_t m_shape_of_build = 0;
+    std::size_t m_shape_of_build = 0;  ///< builds of the neighbours, and renewals of friction
 };
 
 extern template class Hessian<float>;
