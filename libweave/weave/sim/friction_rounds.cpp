@@ -1,5 +1,7 @@
 #include <weave/sim/friction_rounds.hpp>
 
+#include <Eigen/Dense>
+
 #include <algorithm>
 
 namespace weave::sim {
@@ -12,6 +14,9 @@ constexpr std::size_t most_rounds = 40;
 constexpr double round_share = 0.1;
 /// Where yarns still lie in one another, what they press with says little: so early rounds are short.
 constexpr double first_residual = 0.1;
+/// Answers of earlier rounds that are used: with 4 of them `orthogonal` did not come to agree from some starts.
+constexpr Eigen::Index most_remembered = 2;
+constexpr double longest_step = 1;  ///< times the way of the last round
 
 /// Rounds under way.
 class Rounds {
@@ -23,18 +28,59 @@ class Rounds {
     FrictionResult run() {
         double goal = std::max(m_options.residual, first_residual);
         while (true) {
-            renew();
+            m_energy.renew_friction(m_state, stick_share);
             const double residual = residual_now();
             m_result.agreed = m_result.rounds > 0 && residual <= m_options.residual;
             m_result.last.residual = residual;
             if (m_result.agreed || !may_go_on()) return ended();
             if (m_result.rounds > 0) goal = std::max(m_options.residual / 2, round_share * residual);
+            hold_next();
             relax_round(goal);
         }
     }
 
   private:
-    void renew() { m_energy.renew_friction(m_state, stick_share); }
+    /// Holds the friction of the state for the next round; once rounds have shown how they answer to what is
+    /// held, that of a state which by all they have shown comes to rest where it is held (Anderson's method):
+    /// rounds may swing to and fro for ever else.
+    void hold_next() {
+        if (m_result.rounds == 0) {
+            m_held = to_vector(m_state);
+            return;
+        }
+        Eigen::VectorXd way = to_vector(m_state) - m_held, step = way;
+        if (m_way.size() > 0) remember(way - m_way);
+        if (m_answers.cols() > 0) {
+            Eigen::ColPivHouseholderQR<Eigen::MatrixXd> known(m_answers);
+            known.setThreshold(1e-3);
+            const Eigen::VectorXd shares = known.solve(way);
+            step -= (m_moves + m_answers) * shares;
+            step *= std::min(1.0, longest_step * way.norm() / std::max(1e-300, step.norm()));
+        }
+        m_way = std::move(way);
+        m_move = step;
+        m_held += step;
+        const std::vector<double> held(m_held.begin(), m_held.end());
+        if (m_answers.cols() > 0) m_energy.renew_friction(held, stick_share);
+    }
+
+    /// What is held has moved by `m_move`, and where the round comes to rest from there has changed by
+    /// `answer`.
+    void remember(const Eigen::VectorXd& answer) {
+        const Eigen::Index kept = std::min<Eigen::Index>(m_answers.cols(), most_remembered - 1);
+        const auto shift = [&](Eigen::MatrixXd& matrix, const Eigen::VectorXd& latest) {
+            Eigen::MatrixXd next(latest.size(), kept + 1);
+            next << latest, matrix.leftCols(kept);
+            matrix = std::move(next);
+        };
+        if (kept == 0) m_moves.resize(answer.size(), 0), m_answers.resize(answer.size(), 0);
+        shift(m_moves, m_move);
+        shift(m_answers, answer);
+    }
+
+    static Eigen::VectorXd to_vector(const std::vector<double>& state) {
+        return Eigen::Map<const Eigen::VectorXd>(state.data(), static_cast<Eigen::Index>(state.size()));
+    }
 
     double residual_now() {
         const double reference = reference_force(m_energy, m_state);
@@ -98,6 +144,10 @@ class Rounds {
     const RelaxOptions& m_options;
     const RelaxOnce& m_once;
     double m_value = 0;
+    /// State whose friction a round holds, how far from it the last one came to rest, and by how much it
+    /// moved since.
+    Eigen::VectorXd m_held, m_way, m_move;
+    Eigen::MatrixXd m_moves, m_answers;  ///< of earlier rounds, the latest first
     FrictionResult m_result;
 };
 
