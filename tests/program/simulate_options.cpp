@@ -65,6 +65,11 @@ TEST_CASE("options that make no sense are refused in a line that names them") {
     refused({"--flip", "9,1"}, 2, {"--flip 9,1", "2 picks and 2 ends"});
     refused({"--save-design", "g.weave"}, 2, {"--save-design g.weave", "--flip"});
     refused({"--resume", "none.yarns"}, 3, {"none.yarns"});
+    refused({"--starts", "0"}, 2, {"--starts"});
+    refused({"--starts", "2", "--flip", "1,1"}, 2, {"--starts", "flips"});
+    refused({"--symmetry"}, 2, {"--symmetry", "one repeat"});
+    refused({"--symmetry", "--flip", "1,1"}, 2, {"--symmetry", "flips"});
+    refused({"--symmetry", "--resume", "x.yarns"}, 2, {"--symmetry", "--resume"});
     shop.must({"samples", "orthogonal", "-o", "d.weave"});
     const Ended illegal = shop.run({"flip", "d.weave", "--pick", "1", "--end", "1", "-o", "g.weave"});
     if (illegal.exit == 1) refused({"--flip", "1,1", "--save-design", "g.weave"}, 1, {"--flip 1,1", "in the way"});
@@ -238,5 +243,108 @@ TEST_CASE("a pin on a yarn that the cloth does not have is refused, and told by 
         pin(system, count - 1);
         shop.must({"simulate", "p.weave", "--explain"});
         CHECK(shop.run({"info", "p.weave"}).complaints().empty());
+    }
+}
+
+TEST_CASE("friction of the design or of this run holds yarns nearer to where they started, with both solvers") {
+    const Workshop shop;
+    shop.must({"samples", "layer-to-layer", "-o", "d.weave"});
+    CHECK(choice_of(shop.json({"simulate", "d.weave", "--explain"}), "friction") == "off");
+    CHECK(choice_of(shop.json({"simulate", "d.weave", "--explain", "--set", "friction=0.3"}), "friction") == "0.3");
+    const auto thickness = [&](const std::string& file) { return shop.json({"inspect", file}).at("thickness_mm").get<double>(); };
+    const Json smooth = shop.json({"simulate", "d.weave", "--threads", "1", "-o", "smooth.yarns"});
+    CHECK_FALSE(smooth.contains("friction"));
+    for (const char* solver : {"relax", "paper"}) {
+        const Json rough = shop.json({"simulate", "d.weave", "--threads", "1", "--set", "friction=0.3", "--solver", solver, "-o", "rough.yarns"});
+        INFO(solver << " " << rough.at("friction").dump());
+        CHECK(rough.at("converged") == true);
+        CHECK(rough.at("order_kept") == true);
+        CHECK(rough.at("residual").get<double>() <= 1e-3);
+        CHECK(rough.at("friction").at("coefficient") == 0.3);
+        CHECK(rough.at("friction").at("agreed") == true);
+        CHECK(rough.at("friction").at("rounds").get<int>() >= 2);
+        CHECK(rough.at("friction").at("press_N").get<double>() > 0);
+        // Without friction its layers sink into one another.
+        CHECK(thickness("rough.yarns") > 1.2 * thickness("smooth.yarns"));
+    }
+    // What is at rest with friction stays there when it is taken up again: slip of some hundredths of a radius holds it.
+    const Json again = shop.json({"simulate", "d.weave", "--threads", "1", "--set", "friction=0.3", "--resume", "rough.yarns", "-o", "again.yarns"});
+    CHECK(again.at("friction").at("stuck_share").get<double>() > 0.9);
+    CHECK(shop.json({"compare", "rough.yarns", "again.yarns"}).at("max_mm").get<double>() < 0.01);
+    Json design = Json::parse(shop.get("d.weave"));
+    design["scene"]["friction"] = 0.3;
+    shop.put("r.weave", design.dump());
+    const Json own = shop.json({"simulate", "r.weave", "--threads", "1", "-o", "own.yarns"});
+    CHECK(own.at("friction").at("coefficient") == 0.3);
+    const Ended said = shop.must({"simulate", "r.weave", "--threads", "1", "-o", "own.yarns"});
+    CHECK(said.out.find("friction 0.3: its forces agree") != std::string::npos);
+    // A period that relaxes takes it too.
+    shop.must({"samples", "plain", "-o", "p.weave"});
+    const Json free = shop.json({"simulate", "p.weave", "--threads", "1", "--set", "friction=0.3", "--boundary", "y=relaxing:0.2", "-o", "free.yarns"});
+    CHECK(free.at("periods").at("balanced") == true);
+    CHECK(free.at("friction").at("agreed") == true);
+}
+
+TEST_CASE("further starts tell how much the result owes to its own, also when it is looked at later") {
+    const Workshop shop;
+    shop.must({"samples", "satin-5", "-o", "d.weave"});
+    const Json plain = shop.json({"simulate", "d.weave", "--threads", "1", "--fidelity", "draft", "-o", "p.yarns"});
+    CHECK_FALSE(plain.contains("starts"));
+    CHECK(shop.json({"inspect", "p.yarns"}).at("starts").is_null());
+    const Json said = shop.json({"simulate", "d.weave", "--threads", "1", "--fidelity", "draft", "--starts", "2", "-o", "d.yarns"});
+    CHECK(said.at("starts").at("runs") == 2);
+    CHECK(said.at("starts").at("noise_radii") == 0.05);
+    CHECK(said.at("energy_N_mm") == plain.at("energy_N_mm"));  // the yarns are those of the planned start
+    CHECK(shop.json({"inspect", "d.yarns"}).at("starts") == said.at("starts"));
+    CHECK(shop.must({"inspect", "d.yarns"}).out.find("to its start") != std::string::npos);
+    CHECK(shop.must({"inspect", "p.yarns"}).out.find("to its start") == std::string::npos);
+    const Json other = shop.json({"simulate", "d.weave", "--threads", "1", "--fidelity", "draft", "--starts", "2", "--seed", "7", "-o", "e.yarns"});
+    CHECK(other.at("starts").at("furthest") != said.at("starts").at("furthest"));
+}
+
+TEST_CASE("the whole of a tiled cloth, started with noise, is compared with its smallest repeat") {
+    const Workshop shop;
+    shop.must({"samples", "plain", "-o", "p.weave"});
+    shop.must({"tile", "p.weave", "--x", "2", "--y", "2", "-o", "d.weave"});
+    const Json said = shop.json({"simulate", "d.weave", "--threads", "1", "--symmetry", "--residual", "1e-5", "-o", "d.yarns"});
+    const Json symmetry = said.at("symmetry");
+    INFO(symmetry.dump());
+    CHECK(symmetry.at("repeats") == Json({2, 2}));
+    CHECK(symmetry.at("converged") == true);
+    CHECK(symmetry.at("order_kept") == true);
+    CHECK(symmetry.at("broken") == (symmetry.at("between_repeats").at("max_radii").get<double>() > 0.1));
+    const Json one = shop.json({"simulate", "p.weave", "--threads", "1", "--residual", "1e-5", "-o", "p.yarns"});
+    CHECK(said.at("points") == one.at("points"));
+    CHECK(symmetry.at("energy_of_repeats_N_mm").get<double>() == Approx(4 * one.at("energy_N_mm").get<double>()).epsilon(1e-6));
+    CHECK(shop.json({"inspect", "d.yarns"}).at("symmetry") == symmetry);
+    const std::string words = shop.must({"inspect", "d.yarns"}).out;
+    CHECK(words.find(symmetry.at("broken") == true ? "SYMMETRY BROKEN" : "Symmetric: relaxed as a whole") != std::string::npos);
+    const Json whole = shop.json({"simulate", "d.weave", "--threads", "1", "--symmetry", "--whole", "--residual", "1e-5", "-o", "w.yarns"});
+    CHECK(whole.at("points").get<int>() == 4 * one.at("points").get<int>());
+    CHECK(whole.at("energy_N_mm") == symmetry.at("energy_N_mm"));
+}
+
+TEST_CASE("a block tiled 4 by 4 costs what the single one does, and gives the same yarns") {
+    const Workshop shop;
+    for (const char* sample : {"plain", "satin-5"}) {
+        INFO(sample);
+        shop.must({"samples", sample, "-o", "p.weave"});
+        shop.must({"tile", "p.weave", "--x", "4", "--y", "4", "-o", "d.weave"});
+        const Json one = shop.json({"simulate", "p.weave", "--threads", "1", "-o", "p.yarns"}),
+                   many = shop.json({"simulate", "d.weave", "--threads", "1", "-o", "d.yarns"});
+        // The same numbers of the same kind of step: no clock is asked, since other work runs beside.
+        for (const char* key : {"points", "contacts", "iterations", "evaluations", "residual", "energy_N_mm"}) CHECK(many.at(key) == one.at(key));
+        const weave::Yarns small = yarns_in(shop, "p.yarns"), large = yarns_in(shop, "d.yarns");
+        REQUIRE(large.yarns.size() == 4 * small.yarns.size());
+        std::size_t same = 0;
+        for (const weave::SimulatedYarn& yarn : large.yarns) {
+            for (const weave::SimulatedYarn& of : small.yarns) {
+                if (yarn.system != of.system || yarn.number != of.number) continue;
+                REQUIRE(yarn.spline.control.size() == 4 * of.spline.control.size());
+                CHECK(std::equal(of.spline.control.begin(), of.spline.control.end(), yarn.spline.control.begin()));
+                ++same;
+            }
+        }
+        CHECK(same == small.yarns.size());
     }
 }

@@ -11,6 +11,8 @@
 #include <weave/picture/cloth_view.hpp>
 #include <weave/sim/exports.hpp>
 #include <weave/sim/simulate.hpp>
+#include <weave/sim/starts.hpp>
+#include <weave/sim/symmetry.hpp>
 #include <weave/sim/yarns_file.hpp>
 
 #include <algorithm>
@@ -28,10 +30,11 @@ namespace {
 struct Wish {
     std::string file, out, fidelity = "standard", region, solver = "relax", backend = "cpu", resume, save_design;
     std::vector<std::string> set, boundaries, pins, fields, flips;
-    bool wraparound = false, explain = false, whole = false;
+    bool wraparound = false, explain = false, whole = false, symmetry = false;
     std::optional<double> residual, points, seconds;
     std::optional<std::size_t> steps;
-    std::size_t threads = 0;
+    std::size_t threads = 0, starts = 0;
+    std::uint64_t seed = 1;
 };
 
 Error usage_error(std::string message, std::string where) {
@@ -57,6 +60,10 @@ Status check_wish(const Wish& wish) {
     WEAVE_CHECK_OK(check_backend(wish.backend));
     if (!wish.save_design.empty() && wish.flips.empty())
         return usage_error("without --flip the design stays as it is", "--save-design " + wish.save_design);
+    if (!wish.flips.empty() && (wish.starts > 0 || wish.symmetry))
+        return usage_error("what is looked at from other starts takes no flips", wish.symmetry ? "--symmetry" : "--starts");
+    if (wish.symmetry && !wish.resume.empty())
+        return usage_error("the smallest repeat and the whole begin at the same start: without --resume", "--symmetry");
     return {};
 }
 
@@ -166,6 +173,17 @@ std::string coverage_in_words(const Json& report) {
            number("ends", 1) + " of the cloth\n";
 }
 
+std::string friction_in_words(const Json& report) {
+    if (!report.contains("friction")) return "";
+    const Json& friction = report.at("friction");
+    char line[200];
+    std::snprintf(line, sizeof line, "friction %g: its forces %s after %zu rounds; %.0f %% of what presses sticks, the rest slipped by up to %.2f mm\n",
+                  friction.at("coefficient").get<double>(), friction.at("agreed").get<bool>() ? "agree with the rest" : "do NOT agree with the rest",
+                  friction.at("rounds").get<std::size_t>(), 100 * friction.at("stuck_share").get<double>(),
+                  friction.at("farthest_slip_mm").get<double>());
+    return line;
+}
+
 std::string ending_in_words(const Json& report) {
     char line[200];
     std::snprintf(line, sizeof line, "%s: residual %.1e (goal %.0e) after %zu steps and %.2f s, %zu points, greatest overlap %.0f %%\n",
@@ -177,7 +195,8 @@ std::string ending_in_words(const Json& report) {
     std::string order = lost > 0 ? counted(lost, "crossing") + " no longer as the card says\n"
                         : slid > 0 ? "" : "every crossing lies as the card says\n";
     if (slid > 0) order += counted(slid, "crossing") + " no longer where planned, open or not held; no yarn passed through another there\n";
-    return line + order + coverage_in_words(report) + flips_in_words(report);
+    return line + order + coverage_in_words(report) + friction_in_words(report) + flips_in_words(report) +
+           sim::starts_text(report) + sim::symmetry_text(report);
 }
 
 /// The state to go on from, out of a .yarns file.
@@ -207,6 +226,32 @@ Result<Yarns> relaxed(const Block& block, Task& task, const sim::Plan& plan, con
     WEAVE_TRY(options.start, sim::start_from(whole, repeat, repeat.design_sha256, {repeat.scene_sha256}));
     options.flips = task.flips;
     return sim::simulate(task.design, whole, options);
+}
+
+/// The smallest repeat, then the whole from a start with noise: the first of them, or with --whole the second, with what
+/// both together tell.
+Result<Yarns> compared_with_whole(const Block& block, const Task& task, const Wish& wish) {
+    sim::SimulationRequest request = task.request;
+    request.reduce = true;
+    WEAVE_TRY(const sim::Plan reduced, sim::make_plan(task.design, block, request));
+    if (reduced.repeats[0] * reduced.repeats[1] == 1)
+        return usage_error("this cloth is simulated as one repeat: there are no others to compare it with", "--symmetry");
+    request.reduce = false;
+    WEAVE_TRY(const sim::Plan whole, sim::make_plan(task.design, block, request));
+    Yarns repeat = sim::simulate(task.design, reduced, task.options);
+    if (interrupted()) return repeat;
+    sim::WholeRun run = sim::relaxed_whole(task.design, reduced, whole, task.options, repeat, wish.seed);
+    Yarns yarns = wish.whole ? std::move(run.yarns) : std::move(repeat);
+    if (!interrupted()) yarns.report["symmetry"] = std::move(run.symmetry);
+    return yarns;
+}
+
+/// The yarns of one run, with what further runs tell.
+Result<Yarns> simulated(const Block& block, Task& task, const sim::Plan& plan, const Wish& wish) {
+    WEAVE_TRY(Yarns yarns, wish.symmetry ? compared_with_whole(block, task, wish) : relaxed(block, task, plan, wish));
+    if (wish.starts > 0 && !interrupted())
+        yarns.report["starts"] = sim::relaxed_again(task.design, plan, task.options, yarns, wish.starts, wish.seed);
+    return yarns;
 }
 
 /// The design with the flips that were made, in the scene of its file.
@@ -240,7 +285,7 @@ Status run_simulation(Program& program, const Wish& wish) {
     Teller teller(wish.residual.value_or(planned->goal));
     task.options.watch = [&](const sim::Progress& progress) { return teller(progress); };
     const HeldInterrupt held;
-    WEAVE_TRY(const Yarns yarns, relaxed(block, task, *planned, wish));
+    WEAVE_TRY(const Yarns yarns, simulated(block, task, *planned, wish));
     teller.end();
     WEAVE_TRY(const std::string bytes, write_yarns(yarns));
     WEAVE_CHECK_OK(write_file(wish.out, bytes));
@@ -267,7 +312,7 @@ void add_simulate(CLI::App& app, Program& program) {
     command->add_option("--residual", wish->residual, "how still is still: greatest force over the reference force")
         ->check(CLI::PositiveNumber.description(""))
         ->type_name("N");
-    command->add_option("--set", wish->set, "a number of the scene for this run, such as warp.strain=1.02")->type_name("NAME=N");
+    command->add_option("--set", wish->set, "a number of the scene for this run, such as warp.strain=1.02 or friction=0.2")->type_name("NAME=N");
     command->add_option("--backend", wish->backend, "what computes: cpu (if nothing is said) or cuda")->type_name("WORD");
     command->add_option("--boundary", wish->boundaries, "the rim for this run: x= or y= with periodic, frozen, free or relaxing:FORCE")
         ->type_name("RIM")
@@ -284,6 +329,12 @@ void add_simulate(CLI::App& app, Program& program) {
     command->add_option("--region", wish->region, "only a part, with frozen rims: picks:1-40,ends:1-60")->type_name("PART");
     command->add_flag("--wraparound", wish->wraparound, "the picks of a feeder are one yarn that turns at the edges");
     command->add_flag("--whole", wish->whole, "do not reduce a periodic cloth to its smallest repeat");
+    command->add_option("--starts", wish->starts, "relax so many times more from starts with noise, and tell how much the result owes to its start")
+        ->check(CLI::Range(1, 1000).description(""))
+        ->type_name("N");
+    command->add_flag("--symmetry", wish->symmetry, "relax the whole cloth too, from a start with noise, and tell whether its repeats lie alike "
+                                                    "(with --whole its yarns are written)");
+    command->add_option("--seed", wish->seed, "of that noise; 1 if nothing is said")->type_name("N");
     command->add_flag("--explain", wish->explain, "tell what would be simulated and why, and end");
     command->add_option("--steps", wish->steps, "stop after so many steps")->type_name("N");
     command->add_option("--seconds", wish->seconds, "stop after so long")->type_name("N");

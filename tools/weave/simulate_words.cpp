@@ -47,6 +47,10 @@ Status set_number(Scene& scene, const std::string& text) {
     const auto [name, digits] = split(text, '=');
     const std::optional<double> value = number_of<double>(digits);
     if (!value) return usage_error("write it as NAME=NUMBER, such as warp.strain=1.01", where);
+    if (name == "friction") {
+        scene.friction = *value;
+        return {};
+    }
     const auto [system, what] = split(name, '.');
     SystemScene* of = system == "warp" ? &scene.warp : system == "weft" ? &scene.weft : nullptr;
     std::optional<double>* number = nullptr;
@@ -54,7 +58,7 @@ Status set_number(Scene& scene, const std::string& text) {
     if (of != nullptr && what == "stiffness") number = &of->stiffness_scale;
     if (of != nullptr && what == "radius") number = &of->radius_scale;
     if (number == nullptr)
-        return usage_error("NAME is warp or weft with strain, stiffness or radius (the latter two are factors), such as weft.radius",
+        return usage_error("NAME is friction, or warp or weft with strain, stiffness or radius (the latter two are factors), such as weft.radius",
                            where);
     *number = *value;
     return {};

@@ -11,22 +11,6 @@ namespace {
 
 constexpr int places_a_segment = 4;
 
-/// From a place to the nearest of a spline, looked for from parameter `t` on; the part along the yarn is left
-/// out.
-Vec3 across(const Spline& spline, const Vec3& place, double t) {
-    const auto last = static_cast<double>(spline.segments());
-    const double start = t;
-    for (int round = 0; round < 12; ++round) {
-        const Vec3 tangent = spline.tangent(t);
-        const double square = tangent.squaredNorm();
-        if (square == 0) break;
-        t += std::clamp((place - spline.place(t)).dot(tangent) / square, -0.5, 0.5);
-        t = std::clamp(t, start - last / 2, start + last / 2);
-        if (!spline.is_periodic) t = std::clamp(t, 0.0, last);
-    }
-    return spline.place(t) - place;
-}
-
 /// Calls found(yarn, place, parameter in the other) for places evenly spread over every yarn.
 template <class Found>
 void each_place(const std::vector<Spline>& from, const std::vector<Spline>& to, const Found& found) {
@@ -43,27 +27,46 @@ void each_place(const std::vector<Spline>& from, const std::vector<Spline>& to, 
 
 }  // namespace
 
-Deviation deviation_of(const std::vector<Spline>& from, const std::vector<Spline>& to, bool may_drift) {
+Vec3 way_across(const Spline& spline, const Vec3& place, double t) {
+    const auto last = static_cast<double>(spline.segments());
+    const double start = t;
+    for (int round = 0; round < 12; ++round) {
+        const Vec3 tangent = spline.tangent(t);
+        const double square = tangent.squaredNorm();
+        if (square == 0) break;
+        t += std::clamp((place - spline.place(t)).dot(tangent) / square, -0.5, 0.5);
+        t = std::clamp(t, start - last / 2, start + last / 2);
+        if (!spline.is_periodic) t = std::clamp(t, 0.0, last);
+    }
+    return spline.place(t) - place;
+}
+
+Vec3 drift_of(const std::vector<Spline>& from, const std::vector<Spline>& to) {
     // Along a yarn nothing holds its points, so the drift is that which leaves least across the yarns; a few
     // rounds of taking the mean off find it.
     Vec3 drift(0, 0, 0);
-    for (int round = 0; may_drift && round < 8; ++round) {
+    for (int round = 0; round < 8; ++round) {
         Vec3 sum(0, 0, 0);
         Eigen::Matrix3d weight = Eigen::Matrix3d::Zero();
         each_place(from, to, [&](std::size_t y, const Vec3& place, double t) {
             const Vec3 tangent = to[y].tangent(t).normalized();
             const Eigen::Matrix3d normal = Eigen::Matrix3d::Identity() - tangent * tangent.transpose();
-            sum += normal * across(to[y], place + drift, t);
+            sum += normal * way_across(to[y], place + drift, t);
             weight += normal;
         });
         if (weight.trace() == 0) break;
         drift += weight.ldlt().solve(sum);
     }
+    return drift;
+}
+
+Deviation deviation_of(const std::vector<Spline>& from, const std::vector<Spline>& to, bool may_drift) {
+    const Vec3 drift = may_drift ? drift_of(from, to) : Vec3(0, 0, 0);
     Deviation deviation;
     double squares = 0;
     std::size_t count = 0;
     each_place(from, to, [&](std::size_t y, const Vec3& place, double t) {
-        const double distance = across(to[y], place + drift, t).norm();
+        const double distance = way_across(to[y], place + drift, t).norm();
         squares += distance * distance;
         ++count;
         if (distance <= deviation.max_mm) return;

@@ -17,4 +17,10 @@ struct Deviation {
 /// whole is taken off first where `may_drift`: a periodic cloth rests anywhere.
 Deviation deviation_of(const std::vector<Spline>& from, const std::vector<Spline>& to, bool may_drift);
 
+/// The way from a place to the nearest of a centreline near parameter `t`, without its part along the yarn, mm.
+Vec3 way_across(const Spline& to, const Vec3& place, double t);
+
+/// The movement of the whole that leaves least across the yarns, to be added to places of `from`.
+Vec3 drift_of(const std::vector<Spline>& from, const std::vector<Spline>& to);
+
 }  // namespace weave::sim

@@ -19,6 +19,7 @@ Energy<Real>::Energy(const Fabric<Real>& fabric, const Executor& executor)
     : m_fabric(fabric),
       m_executor(executor),
       m_transition(fabric),
+      m_friction(fabric),
       m_neighbours(fabric, executor, m_transition),
       m_spheres(spheres_of<Real>(fabric.scene())),
       m_segment_energy(fabric.segments()),
@@ -38,16 +39,31 @@ FabricView<Real> Energy<Real>::view(const std::vector<Real>& state) {
 }
 
 template <class Real>
-double Energy<Real>::evaluate(const std::vector<Real>& state, std::vector<Real>& gradient, Terms terms) {
-    ++m_evaluations;
+void Energy<Real>::lay_samples(const std::vector<Real>& state) {
     m_executor.each_wide(m_fabric.segments(), PlaceSamples<Real>{view(state)});
     m_neighbours.update();
+}
+
+template <class Real>
+void Energy<Real>::renew_friction(const std::vector<Real>& state, double stick) {
+    lay_samples(state);
+    m_friction.renew(view(state), m_neighbours, m_executor, stick);
+}
+
+template <class Real>
+double Energy<Real>::evaluate(const std::vector<Real>& state, std::vector<Real>& gradient, Terms terms) {
+    ++m_evaluations;
+    lay_samples(state);
     m_executor.each_wide(m_fabric.segments(), SegmentForces<Real>{view(state), terms, m_segment_energy.data(),
                                                                   m_segment_gradient.data()});
     if (terms.elastic && !m_spheres.empty()) {
         m_executor.each(m_fabric.segments(),
                         FieldForces<Real>{view(state), m_spheres.data(), m_spheres.size(),
                                           m_segment_energy.data(), m_segment_gradient.data()});
+    }
+    if (terms.elastic && m_friction.is_on()) {
+        m_executor.each(m_fabric.segments(), FrictionForces<Real>{view(state), m_friction.view(), m_segment_energy.data(),
+                                                                  m_segment_gradient.data()});
     }
     gather(gradient);
     double energy = m_executor.sum(m_fabric.segments(),
@@ -70,9 +86,9 @@ std::array<double, 2> Energy<Real>::period_gradient(const std::vector<Real>& sta
             gradient[k] += follow.turns * yarn.turns[k] * static_cast<double>(by_slot[3 * follow.slot + k]);
     }
     const FabricView<Real> fabric = view(state);
+    const std::array<double, 2> rubbing = m_friction.image_pull(fabric);
     for (std::size_t k = 0; k < 2; ++k) {
-        gradient[k] +=
-            m_executor.sum(m_fabric.samples(), [&](std::size_t a) { return image_pull(fabric, a, k); });
+        gradient[k] += rubbing[k] + m_executor.sum(m_fabric.samples(), [&](std::size_t a) { return image_pull(fabric, a, k); });
     }
     return gradient;
 }

@@ -3,6 +3,7 @@
 #include <weave/sim/execute.hpp>
 #include <weave/sim/fabric.hpp>
 #include <weave/sim/fields.hpp>
+#include <weave/sim/friction.hpp>
 #include <weave/sim/neighbours.hpp>
 #include <weave/sim/transition.hpp>
 
@@ -12,7 +13,7 @@
 
 namespace weave::sim {
 
-/// Energy of the yarns and its gradient: stretch, bending and contact, and the fields that the scene has.
+/// Energy of the yarns and its gradient: stretch, bending and contact, and the fields and held friction that the scene has.
 template <class Real>
 class Energy {
   public:
@@ -29,6 +30,10 @@ class Energy {
     [[nodiscard]] Neighbours<Real>& neighbours() { return m_neighbours; }
     [[nodiscard]] FabricView<Real> view(const std::vector<Real>& state);
     [[nodiscard]] const Transition<Real>& transition() const { return m_transition; }
+    [[nodiscard]] const Friction<Real>& friction() const { return m_friction; }
+    /// Holds the friction of the pairs that touch in a state (friction.hpp), where the scene has friction; `stick`: the
+    /// transition length over the mean radius of two yarns. Until then there is none.
+    void renew_friction(const std::vector<Real>& state, double stick);
     [[nodiscard]] const Fabric<Real>& fabric() const { return m_fabric; }
     [[nodiscard]] const Executor& executor() const { return m_executor; }
     [[nodiscard]] std::size_t evaluations() const { return m_evaluations; }
@@ -42,6 +47,7 @@ class Energy {
     void shorten(const std::vector<Real>& state, std::vector<Real>& change);
 
   private:
+    void lay_samples(const std::vector<Real>& state);
     void move_samples(const std::vector<Real>& state, const std::vector<Real>& change);
     [[nodiscard]] double safe_share_of(const FabricView<Real>& fabric, std::size_t sample, double most) const;
     [[nodiscard]] double crossing_share(std::size_t a, std::size_t b, const Vec<Real>& apart,
@@ -54,6 +60,7 @@ class Energy {
     const Fabric<Real>& m_fabric;
     const Executor& m_executor;
     Transition<Real> m_transition;
+    Friction<Real> m_friction;
     Neighbours<Real> m_neighbours;
     std::vector<Sphere<Real>> m_spheres;
     std::vector<Real> m_segment_energy, m_segment_gradient;

@@ -144,6 +144,8 @@ void Hessian<Real>::make_chunks() {
 template <class Real>
 void Hessian<Real>::list_near_segments(Energy<Real>& energy) {
     Neighbours<Real>& neighbours = energy.neighbours();
+    const FrictionView<Real> rubbing = energy.friction().view();
+    const bool rubs = energy.friction().is_on();
     constexpr std::size_t at_once = 256;
     std::vector<std::vector<std::uint32_t>> parts((m_fabric.segments() + at_once - 1) / at_once);
     m_first_near.assign(m_fabric.segments() + 1, 0);
@@ -159,6 +161,10 @@ void Hessian<Real>::list_near_segments(Energy<Real>& energy) {
                 // Neighbours of one segment follow one another.
                 if (near.size() == before || near.back() != other) near.push_back(other);
             }
+            for (std::uint32_t p = rubs ? rubbing.first[segment.sample] : 0,
+                               end = rubs ? rubbing.first[segment.sample + samples] : 0;
+                 p < end; ++p)
+                near.push_back(neighbours.segment_of(rubbing.pairs[p].other));
             const auto begin = near.begin() + static_cast<std::ptrdiff_t>(before);
             std::sort(begin, near.end());
             near.erase(std::unique(begin, near.end()), near.end());
@@ -256,9 +262,10 @@ void Hessian<Real>::mirror(const Executor& executor, BlockMatrix& matrix) const 
 template <class Real>
 void Hessian<Real>::assemble(Energy<Real>& energy, const std::vector<Real>& state, Curvature curvature,
                              BlockMatrix& matrix) {
-    if (m_shape_of_build != energy.neighbours().builds() || matrix.rows() != rows()) {
+    const std::size_t build = energy.neighbours().builds() + energy.friction().renewals();
+    if (m_shape_of_build != build || matrix.rows() != rows()) {
         make_shape(energy, matrix);
-        m_shape_of_build = energy.neighbours().builds();
+        m_shape_of_build = build;
     } else {
         matrix.clear_values();
     }
@@ -303,6 +310,8 @@ inline void Hessian<Real>::add_segment(Energy<Real>& energy, const FabricView<Re
     scratch.touched.assign(near, 0);
     for (std::uint32_t k = 0; k < yarn.samples; ++k)
         add_sample(energy.neighbours(), fabric, index, k, scratch);
+    for (std::uint32_t k = 0; energy.friction().is_on() && k < yarn.samples; ++k)
+        add_friction(energy, fabric, index, k, scratch);
     scatter(index, index, scratch.own, matrix);
     for (std::uint32_t n = 0; n < near; ++n) {
         if (scratch.touched[n] != 0)
@@ -397,14 +406,40 @@ inline void Hessian<Real>::add_sample(const Neighbours<Real>& neighbours, const 
     scratch.own.add({{mine.value, &of_value}, {mine.slope, &of_slope}});
 }
 
+/// What held friction adds at one sample; it is convex as it is.
+template <class Real>
+void Hessian<Real>::add_friction(Energy<Real>& energy, const FabricView<Real>& fabric, std::uint32_t index,
+                                 std::uint32_t k, Scratch& scratch) const {
+    const SegmentPlace& segment = fabric.segments[index];
+    const Basis<double>& mine = m_bases[m_constants[segment.yarn].basis + k];
+    const std::uint32_t a = segment.sample + k;
+    const FrictionView<Real> friction = energy.friction().view();
+    for (std::uint32_t p = friction.first[a]; p < friction.first[a + 1]; ++p) {
+        const FrictionPair<Real>& pair = friction.pairs[p];
+        const Mat<double> by_place =
+            friction_curvature<Real>(pair, place_of(fabric.samples, a) - place_of(fabric.samples, pair.other));
+        const std::uint32_t other = energy.neighbours().segment_of(pair.other);
+        const SegmentPlace& place = fabric.segments[other];
+        const Basis<double>& theirs = m_bases[m_constants[place.yarn].basis + (pair.other - place.sample)];
+        scratch.own.add(mine.value, mine.value, by_place);
+        if (place.yarn > segment.yarn) continue;  // mirrored
+        other_sum(index, other, scratch).add(mine.value, theirs.value, -by_place);
+    }
+}
+
+template <class Real>
+inline SlotBlocks& Hessian<Real>::other_sum(std::uint32_t index, std::uint32_t other, Scratch& scratch) const {
+    const auto begin = m_near.begin() + m_first_near[index], end = m_near.begin() + m_first_near[index + 1];
+    const auto at = static_cast<std::size_t>(std::lower_bound(begin, end, other) - begin);
+    if (scratch.touched[at] == 0) scratch.other[at].clear();
+    scratch.touched[at] = 1;
+    return scratch.other[at];
+}
+
 template <class Real>
 inline void Hessian<Real>::add_meeting(std::uint32_t index, const Meeting& meeting, Scratch& scratch) const {
     if (meeting.segment >= m_fabric.segments()) return;
-    const auto begin = m_near.begin() + m_first_near[index], end = m_near.begin() + m_first_near[index + 1];
-    const auto at = static_cast<std::size_t>(std::lower_bound(begin, end, meeting.segment) - begin);
-    SlotBlocks& sum = scratch.other[at];
-    if (scratch.touched[at] == 0) sum.clear();
-    scratch.touched[at] = 1;
+    SlotBlocks& sum = other_sum(index, meeting.segment, scratch);
     if (scratch.convex) return sum.add({{meeting.rows_by_place, &meeting.by_place}});
     ColumnBlocks by_tangent;
     by_tangent.clear();

@@ -54,6 +54,9 @@ class Hessian {
     void lay_pulls(const Executor& executor, const FabricView<Real>& fabric);
     WEAVE_INLINE void add_sample(const Neighbours<Real>& neighbours, const FabricView<Real>& fabric, std::uint32_t index,
                     std::uint32_t k, Scratch& scratch) const;
+    void add_friction(Energy<Real>& energy, const FabricView<Real>& fabric, std::uint32_t index, std::uint32_t k,
+                      Scratch& scratch) const;
+    WEAVE_INLINE SlotBlocks& other_sum(std::uint32_t index, std::uint32_t other, Scratch& scratch) const;
     WEAVE_INLINE void add_meeting(std::uint32_t index, const Meeting& meeting, Scratch& scratch) const;
     void list_mirrored(const BlockMatrix& matrix);
     void mirror(const Executor& executor, BlockMatrix& matrix) const;
@@ -76,7 +79,7 @@ class Hessian {
     /// Blocks that belong to a yarn of higher number are those of that yarn's row: from which block on in each row, and
     /// where the others lie.
     std::vector<std::uint32_t> m_first_mirrored, m_mirrored_from;
-    std::size_t m_shape_of_build = 0;
+    std::size_t m_shape_of_build = 0;  ///< builds of the neighbours, and renewals of friction
 };
 
 extern template class Hessian<float>;

@@ -109,7 +109,7 @@ Json reported(const Yarns& yarns, const char* name) {
 Json inspection_json(const Yarns& yarns, const Inspection& inspection) {
     Json json{
         {"title", yarns.title}, {"design_sha256", yarns.design_sha256}, {"scene_sha256", yarns.scene_sha256}};
-    for (const char* name : {"fidelity", "converged", "residual", "max_overlap", "coverage"})
+    for (const char* name : {"fidelity", "converged", "residual", "max_overlap", "coverage", "friction", "starts", "symmetry"})
         json[name] = reported(yarns, name);
     json["picks"] = inspection.picks;
     json["ends"] = inspection.ends;

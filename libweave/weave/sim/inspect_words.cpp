@@ -2,6 +2,8 @@
 
 #include <weave/core/text.hpp>
 #include <weave/sim/inspect.hpp>
+#include <weave/sim/starts.hpp>
+#include <weave/sim/symmetry.hpp>
 
 #include <algorithm>
 #include <array>
@@ -235,6 +237,7 @@ std::string inspection_text(const Yarns& yarns, const Inspection& inspection) {
         counted(inspection.ends, "end") + ", " +
         format("%.1f mm along the ends, %.1f mm along the picks\n", yarns.size_mm[0], yarns.size_mm[1]);
     text += run_text(yarns, inspection) + measures_text(yarns, inspection);
+    text += sim::starts_text(yarns.report) + sim::symmetry_text(yarns.report);
     std::string found = sheets_text(inspection);
     for (const System system : {System::weft, System::warp}) found += leaning_text(inspection, system);
     for (const System system : {System::weft, System::warp}) found += bunched_text(inspection, system);

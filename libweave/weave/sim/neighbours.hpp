@@ -36,6 +36,7 @@ class Neighbours {
     [[nodiscard]] const std::uint32_t* others() const { return m_others.data(); }
     [[nodiscard]] std::size_t entries() const { return m_others.size(); }
     [[nodiscard]] std::size_t halo() const { return m_halo.size(); }
+    [[nodiscard]] const HaloSample* halo_samples() const { return m_halo.data(); }
     /// The own sample that a sample is, or is an image of.
     [[nodiscard]] std::uint32_t own(std::uint32_t sample) const {
         return sample < m_own ? sample : m_halo[sample - m_own].of;

@@ -64,7 +64,8 @@ class Search {
                 return m_options.watch(progress);
             };
         }
-        m_result.last = relax(energy, state, options);
+        m_result.friction = relax_with_friction(energy, state, options);
+        m_result.last = m_result.friction.last;
         m_result.force_N = energy.period_gradient(state);
         m_iterations += m_result.last.iterations;
         m_seconds += m_result.last.seconds;
@@ -130,7 +131,12 @@ SimScene with_periods(SimScene scene, const std::array<double, 2>& period_mm) {
 
 PeriodsResult relax_periods(SimScene& scene, const RimForces& forces, const RelaxOptions& options, double tolerance,
                             const Executor& executor) {
-    return Search(scene, forces, options, tolerance, executor).run();
+    SlipStart start{{}, scene.period_mm};
+    for (const SimYarn& yarn : scene.yarns) start.control.push_back(yarn.control);
+    if (scene.friction > 0) scene.slip_from = std::move(start);
+    PeriodsResult result = Search(scene, forces, options, tolerance, executor).run();
+    scene.slip_from.reset();
+    return result;
 }
 
 }  // namespace weave::sim

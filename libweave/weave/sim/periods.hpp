@@ -1,6 +1,7 @@
 #pragma once
 
 #include <weave/sim/execute.hpp>
+#include <weave/sim/friction_rounds.hpp>
 #include <weave/sim/relax.hpp>
 #include <weave/sim/scene.hpp>
 
@@ -18,6 +19,7 @@ using RimForces = std::array<std::optional<double>, 2>;
 
 struct PeriodsResult {
     RelaxResult last;                   ///< relaxation at the last periods; its iterations and seconds are those of all
+    FrictionResult friction;            ///< of that relaxation
     std::array<double, 2> force_N{};    ///< what pulls the rims together in the end: ∂E/∂P
     std::size_t rounds = 0;
     bool balanced = false;              ///< whether that is as asked for, within the tolerance
@@ -27,7 +29,7 @@ struct PeriodsResult {
 SimScene with_periods(SimScene scene, const std::array<double, 2>& period_mm);
 
 /// Relaxes yarns and free periods together: yarns at rest in one period after another, each by the secant of the force
-/// on the rim. `scene` holds the start and then the result. Balanced: the force differs by at most `tolerance` times the
+/// on the rim. `scene` holds the start, from which slip counts in every period, and then the result. Balanced: the force differs by at most `tolerance` times the
 /// reference force of each yarn that crosses the rim.
 PeriodsResult relax_periods(SimScene& scene, const RimForces& forces, const RelaxOptions& options, double tolerance,
                             const Executor& executor);

@@ -124,7 +124,7 @@ class Planner {
         m_plan.points_per_key = m_request.points_per_key.value_or(resolution.points_per_key);
         m_plan.scene.sample_spacing = m_request.sample_spacing.value_or(resolution.sample_spacing);
         WEAVE_CHECK_OK(check_request());
-        WEAVE_CHECK_OK(check_terms());
+        WEAVE_CHECK_OK(check_pins(m_design.scene, m_block));
         WEAVE_CHECK_OK(lay_curves());
         WEAVE_CHECK_OK(set_boundaries());
         WEAVE_CHECK_OK(find_held());
@@ -146,12 +146,6 @@ class Planner {
         if (!(m_plan.scene.sample_spacing > 0 && m_plan.scene.sample_spacing <= 0.45))
             return Error{ErrorCode::usage, "sample spacing must be above 0 and at most 0.45 of two radii", {}};
         return {};
-    }
-
-    /// Better no answer than one that leaves out what the scene asks for.
-    [[nodiscard]] Status check_terms() const {
-        if (m_design.scene.friction > 0) return invalid("friction is not simulated yet: set it to 0", "scene.friction");
-        return check_pins(m_design.scene, m_block);
     }
 
     Status lay_curves() {
@@ -362,7 +356,8 @@ class Planner {
              m_design.scene.pins.empty() && m_request.held.empty() ? "the scene has none" : "held at their planned places");
         tell("fields", scene.fields.empty() ? "off" : std::to_string(scene.fields.size()), scene.fields.empty() ? "the scene has none" : "as the scene says");
         tell("gravity", scene.gravity ? "on" : "off", "as the scene says");
-        tell("friction", "off", "its coefficient is 0");
+        tell("friction", scene.friction > 0 ? short_number(scene.friction) : "off",
+             scene.friction > 0 ? "slip counts from the start; normal forces are renewed until they agree" : "its coefficient is 0");
     }
 
     const Design& m_design;

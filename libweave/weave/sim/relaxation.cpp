@@ -1,3 +1,4 @@
+#include <weave/sim/friction_rounds.hpp>
 #include <weave/sim/relaxation.hpp>
 
 #include <algorithm>
@@ -69,7 +70,7 @@ RelaxResult Relaxation::relax_now(const RelaxOptions& options) {
     const Fabric<double> fabric(m_scene);
     Energy<double> energy(fabric, m_executor);
     std::vector<double> state = fabric.state();
-    const RelaxResult result = relax(energy, state, options);
+    const RelaxResult result = relax_with_friction(energy, state, options).last;
     std::vector<std::vector<Vec3>> control = fabric.control(state);
     for (std::size_t y = 0; y < control.size(); ++y) m_scene.yarns[y].control = std::move(control[y]);
     return result;

@@ -18,7 +18,8 @@ struct LiveParameters {
 };
 
 /// A relaxation that goes on while its parameters change. What was asked for is reached by and by, a part of the way
-/// each time the yarns have given way, so that no jump makes them pass through one another.
+/// each time the yarns have given way, so that no jump makes them pass through one another. Slip against friction counts
+/// from the beginning of each part.
 class Relaxation {
   public:
     /// `threads`: 0 for one a core. The plan is copied.

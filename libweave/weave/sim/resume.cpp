@@ -1,5 +1,6 @@
 #include <weave/core/text.hpp>
 #include <weave/curve/spline.hpp>
+#include <weave/sim/periods.hpp>
 #include <weave/sim/resume.hpp>
 
 #include <algorithm>
@@ -39,6 +40,25 @@ Spline first_part(const Spline& spline, std::size_t repeats, const Vec3& shift) 
 }
 
 }  // namespace
+
+SimScene scene_at(const Plan& plan, const StartState& start) {
+    SimScene scene = plan.scene;
+    for (std::size_t y = 0; y < scene.yarns.size(); ++y) scene.yarns[y].control = start.control[y];
+    const std::array<double, 2> wanted = scene.period_mm;
+    std::array<double, 2> came = start.size_mm;
+    scene.period_mm = came;
+    for (std::size_t k = 0; k < 2; ++k) {
+        if (!plan.rim_force_N[k]) came[k] = wanted[k];
+    }
+    for (SimYarn& yarn : scene.yarns) {
+        for (Eigen::Index k = 0; k < 2; ++k) yarn.shift[k] *= scene.period_mm[std::size_t(k)] / wanted[std::size_t(k)];
+    }
+    scene = with_periods(std::move(scene), came);
+    for (std::size_t k = 0; k < 2; ++k) {
+        if (!scene.is_periodic[k]) scene.period_mm[k] = wanted[k];
+    }
+    return scene;
+}
 
 Result<StartState> start_from(const Plan& plan, const Yarns& yarns, const std::string& design_sha256,
                               const std::vector<std::string>& scenes) {

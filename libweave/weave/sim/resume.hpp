@@ -15,6 +15,10 @@ struct StartState {
     std::array<double, 2> size_mm{};         ///< of the repeat, which may have relaxed
 };
 
+/// The scene of a plan with its yarns at a start. Yarns of another period are drawn to the plan's, unless it is what is
+/// looked for.
+SimScene scene_at(const Plan& plan, const StartState& start);
+
 /// The state of relaxed yarns for a plan of the same design: each yarn is found again by its system and number, and its
 /// spline taken over, through other points where the plan has another number of them. Where the plan holds one repeat of
 /// the cloth, the first repeat of the yarns is taken.

@@ -42,6 +42,12 @@ struct TransitionPair {
     double contact = 0;                 ///< share of the contact of the two stretches, 0 to 1
 };
 
+/// A state that the yarns have come from.
+struct SlipStart {
+    std::vector<std::vector<Vec3>> control;  ///< of each yarn
+    std::array<double, 2> period_mm{};
+};
+
 /// Everything that is simulated: yarns in one repeat, or in a piece with rims.
 struct SimScene {
     std::vector<SimYarn> yarns;
@@ -50,7 +56,9 @@ struct SimScene {
     std::vector<ForceField> fields;
     std::optional<TransitionPair> transition;
     double gravity_mm_ms2 = 0;  ///< along -z
-    double friction = 0;
+    double friction = 0;        ///< Coulomb coefficient μ between yarns
+    /// Where slip against friction counts from; absent: from the control points above.
+    std::optional<SlipStart> slip_from;
     /// Greatest distance of contact samples, as a share of the smallest sum of two radii (1/4: see the accuracy notes).
     double sample_spacing = 0.25;
 };

@@ -2,6 +2,7 @@
 #include <weave/design/edit.hpp>
 #include <weave/loom/pick_table.hpp>
 #include <weave/sim/flips.hpp>
+#include <weave/sim/friction_rounds.hpp>
 #include <weave/sim/order.hpp>
 #include <weave/sim/paper.hpp>
 #include <weave/sim/periods.hpp>
@@ -258,7 +259,7 @@ class Simulation {
         : m_design(design), m_plan(plan), m_options(options), m_executor(options.threads), m_scene(plan.scene) {}
 
     Yarns run() {
-        take_start();
+        if (m_options.start) m_scene = scene_at(m_plan, *m_options.start);
         relax_scene();
         for (const Flip& flip : m_options.flips) {
             if (m_last.ending == Ending::stopped || m_last.ending == Ending::time) break;
@@ -268,25 +269,6 @@ class Simulation {
     }
 
   private:
-    void take_start() {
-        if (!m_options.start) return;
-        for (std::size_t y = 0; y < m_scene.yarns.size(); ++y) m_scene.yarns[y].control = m_options.start->control[y];
-        // Yarns of another period are drawn to this one, unless it is what is looked for.
-        const std::array<double, 2> wanted = m_scene.period_mm;
-        std::array<double, 2> came = m_options.start->size_mm;
-        m_scene.period_mm = came;
-        for (std::size_t k = 0; k < 2; ++k) {
-            if (!m_plan.rim_force_N[k]) came[k] = wanted[k];
-        }
-        for (SimYarn& yarn : m_scene.yarns) {
-            for (Eigen::Index k = 0; k < 2; ++k) yarn.shift[k] *= m_scene.period_mm[std::size_t(k)] / wanted[std::size_t(k)];
-        }
-        m_scene = with_periods(std::move(m_scene), came);
-        for (std::size_t k = 0; k < 2; ++k) {
-            if (!m_scene.is_periodic[k]) m_scene.period_mm[k] = wanted[k];
-        }
-    }
-
     [[nodiscard]] RelaxOptions relax_options() const {
         RelaxOptions options;
         options.residual = m_options.residual.value_or(m_plan.goal);
@@ -302,12 +284,17 @@ class Simulation {
         if (periods) {
             m_periods = relax_periods(m_scene, m_plan.rim_force_N, relax_options(), rim_tolerance, m_executor);
             m_last = m_periods->last;
+            m_friction = m_periods->friction;
         }
         m_fabric = std::make_unique<Fabric<double>>(m_scene);
         m_energy = std::make_unique<Energy<double>>(*m_fabric, m_executor);
         m_state = m_fabric->state();
-        if (!periods && m_options.solver == Solver::relax) m_last = relax(*m_energy, m_state, relax_options());
-        if (!periods && m_options.solver == Solver::paper) m_last = relax_in_time(*m_energy, m_state, relax_options());
+        if (!periods) {
+            m_friction = relax_with_friction(*m_energy, m_state, relax_options(), [&](auto& energy, auto& state, const auto& options) {
+                return m_options.solver == Solver::relax ? relax(energy, state, options) : relax_in_time(energy, state, options);
+            });
+            m_last = m_friction.last;
+        }
         std::vector<std::vector<Vec3>> control = m_fabric->control(m_state);
         for (std::size_t y = 0; y < control.size(); ++y) m_scene.yarns[y].control = std::move(control[y]);
         m_seconds += m_last.seconds;
@@ -393,6 +380,12 @@ class Simulation {
                         {"plan", lines_json(m_plan)},
                         {"peak_bytes", peak_bytes()}};
         if (!m_options.flips.empty()) yarns.report["flips"] = m_flips;
+        if (m_scene.friction > 0) {
+            yarns.report["friction"] = {{"coefficient", m_scene.friction}, {"rounds", m_friction.rounds},
+                                        {"agreed", m_friction.agreed}, {"press_N", m_friction.slip.press_N},
+                                        {"stuck_share", m_friction.slip.stuck_share},
+                                        {"farthest_slip_mm", m_friction.slip.farthest_mm}};
+        }
         if (m_periods) {
             yarns.report["periods"] = {{"size_mm", m_plan.curves.size_mm}, {"force_N", m_periods->force_N},
                                        {"rounds", m_periods->rounds}, {"balanced", m_periods->balanced}};
@@ -412,6 +405,7 @@ class Simulation {
     std::unique_ptr<Energy<double>> m_energy;
     std::vector<double> m_state;
     RelaxResult m_last;
+    FrictionResult m_friction;
     std::optional<PeriodsResult> m_periods;
     Json m_flips = Json::array();
     double m_seconds = 0;

@@ -1,0 +1,43 @@
+#pragma once
+
+// Reading a report that may come from anyone's file, and saying parts of it.
+
+#include <weave/core/json.hpp>
+#include <weave/sim/yarns.hpp>
+
+#include <array>
+#include <cstdio>
+#include <string>
+
+namespace weave::sim {
+
+/// A member of an object, or null.
+inline Json part_of(const Json& object, const char* name) {
+    return object.is_object() && object.contains(name) ? object.at(name) : Json(nullptr);
+}
+
+/// A member that is a number, or 0.
+inline double number_in(const Json& object, const char* name) {
+    const Json part = part_of(object, name);
+    return part.is_number() ? part.get<double>() : 0;
+}
+
+inline std::string short_format(const char* pattern, double value) {
+    std::array<char, 120> text{};
+    std::snprintf(text.data(), text.size(), pattern, value);
+    return text.data();
+}
+
+/// `kind` and `number`, from 1, of a yarn.
+inline Json yarn_json(const SimulatedYarn& yarn) {
+    return {{"kind", yarn.system == System::warp ? "end" : "pick"}, {"number", yarn.number + 1}};
+}
+
+/// ` (end 3)` of the same, or nothing.
+inline std::string yarn_words(const Json& object) {
+    const Json kind = part_of(object, "kind");
+    if (kind != "end" && kind != "pick") return "";
+    return " (" + kind.get<std::string>() + short_format(" %.0f)", number_in(object, "number"));
+}
+
+}  // namespace weave::sim

@@ -1,0 +1,177 @@
+#include <weave/core/text.hpp>
+#include <weave/sim/deviation.hpp>
+#include <weave/sim/energy.hpp>
+#include <weave/sim/inspect.hpp>
+#include <weave/sim/order.hpp>
+#include <weave/sim/report_words.hpp>
+#include <weave/sim/starts.hpp>
+
+#include <algorithm>
+#include <cmath>
+#include <random>
+
+namespace weave::sim {
+
+namespace {
+
+/// Evenly from -1 to 1, the same on every machine.
+double noise(std::mt19937_64& random) {
+    return static_cast<double>(random() >> 11) * 0x1p-52 - 1;
+}
+
+/// Noise of every control point that may move, at most `start_noise_radii` long.
+std::vector<double> noise_of(const Fabric<double>& fabric, std::uint64_t seed) {
+    std::mt19937_64 random(seed);
+    std::vector<double> change(3 * fabric.slots(), 0);
+    for (std::size_t slot = 0; slot < fabric.slots(); ++slot) {
+        if (fabric.moves()[slot] == 0) continue;
+        const double radius = fabric.constants()[fabric.yarn_of_slot()[slot]].radius_mm;
+        for (std::size_t k = 0; k < 3; ++k)
+            change[3 * slot + k] = start_noise_radii / std::sqrt(3.0) * radius * noise(random);
+    }
+    fabric.follow_change(change);
+    return change;
+}
+
+std::vector<Spline> splines_of(const Yarns& yarns) {
+    std::vector<Spline> splines;
+    for (const SimulatedYarn& yarn : yarns.yarns) splines.push_back(yarn.spline);
+    return splines;
+}
+
+std::size_t lost_in(const Plan& plan, const std::vector<std::vector<Vec3>>& control) {
+    std::vector<Spline> splines(plan.curves.yarns.size());
+    for (std::size_t y = 0; y < control.size(); ++y) {
+        const SimYarn& yarn = plan.scene.yarns[y];
+        splines[plan.curve_of[y]] = {control[y], yarn.is_periodic, yarn.shift};
+    }
+    return lost_crossings(plan.curves, splines).size();
+}
+
+bool holds_a_place(const SimScene& scene) {
+    return !scene.fields.empty() || std::ranges::any_of(scene.yarns, [](const SimYarn& yarn) {
+        return std::ranges::count(yarn.frozen, 1) > 0;
+    });
+}
+
+/// One run in figures.
+Json figures_of(const Yarns& yarns) {
+    Json figures{{"converged", yarns.report.at("converged")},
+                 {"order_kept", yarns.report.at("order_kept")},
+                 {"energy_N_mm", yarns.report.at("energy_N_mm")}};
+    const Result<Inspection> inspection = inspect(yarns);
+    if (!inspection) return figures;
+    figures["thickness_mm"] = inspection->thickness_mm;
+    if (inspection->warp_crimp) figures["warp_crimp"] = inspection->warp_crimp->mean;
+    if (inspection->weft_crimp) figures["weft_crimp"] = inspection->weft_crimp->mean;
+    return figures;
+}
+
+/// Least and greatest of a figure over all runs that have it.
+Json spread_of(const std::vector<Json>& runs, const char* name) {
+    Json spread;
+    for (const Json& run : runs) {
+        if (!run.contains(name)) continue;
+        const double value = run.at(name);
+        if (spread.is_null()) spread = {{"least", value}, {"most", value}};
+        spread["least"] = std::min(spread["least"].get<double>(), value);
+        spread["most"] = std::max(spread["most"].get<double>(), value);
+    }
+    return spread;
+}
+
+std::size_t how_many_are_not(const std::vector<Json>& runs, const char* name) {
+    return static_cast<std::size_t>(
+        std::ranges::count_if(runs, [&](const Json& run) { return !run.at(name).get<bool>(); }));
+}
+
+}  // namespace
+
+StartState perturbed_start(const Plan& plan, const std::optional<StartState>& start, std::uint64_t seed,
+                           std::size_t threads) {
+    SimScene scene = start ? scene_at(plan, *start) : plan.scene;
+    const Executor executor(threads);
+    const Fabric<double> fabric(scene);
+    Energy<double> energy(fabric, executor);
+    std::vector<double> state = fabric.state(), change = noise_of(fabric, seed), gradient;
+    energy.evaluate(state, gradient);
+    energy.shorten(state, change);
+    const std::size_t lost = lost_in(plan, fabric.control(state));
+    // Samples do not see yarns that all but meet between them: the crossings themselves have the last word.
+    for (double share = energy.safe_share(state, change, 1); share > 1e-3; share /= 2) {
+        std::vector<double> moved = state;
+        for (std::size_t i = 0; i < state.size(); ++i) moved[i] += share * change[i];
+        StartState noisy{fabric.control(moved), scene.period_mm};
+        if (lost_in(plan, noisy.control) <= lost) return noisy;
+    }
+    return {fabric.control(state), scene.period_mm};
+}
+
+Json relaxed_again(const Design& design, const Plan& plan, const SimulationOptions& options,
+                   const Yarns& first, std::size_t runs, std::uint64_t seed) {
+    const std::vector<Spline> own = splines_of(first);
+    const bool may_drift = !holds_a_place(plan.scene);
+    std::vector<Json> all{figures_of(first)};
+    Json furthest{{"max_mm", 0.0}, {"max_radii", 0.0}, {"rms_mm", 0.0}};
+    std::size_t elsewhere = 0;
+    for (std::size_t k = 0; k < runs; ++k) {
+        SimulationOptions again = options;
+        again.flips.clear();
+        again.start = perturbed_start(plan, options.start, seed + k, options.threads);
+        const Yarns yarns = simulate(design, plan, again);
+        if (yarns.report.at("ending") == "stopped") break;
+        const Deviation deviation = deviation_of(splines_of(yarns), own, may_drift);
+        const double radii =
+            first.yarns.empty() ? 0 : deviation.max_mm / first.yarns[deviation.yarn].radius_mm;
+        all.push_back(figures_of(yarns));
+        all.back()["max_radii"] = radii;
+        elsewhere += radii > same_rest_radii ? 1 : 0;
+        if (radii <= furthest["max_radii"].get<double>()) continue;
+        furthest = {{"max_mm", deviation.max_mm}, {"max_radii", radii}, {"rms_mm", deviation.rms_mm}};
+        furthest.update(yarn_json(first.yarns[deviation.yarn]));
+    }
+    Json json{{"runs", all.size() - 1},
+              {"noise_radii", start_noise_radii},
+              {"seed", seed},
+              {"elsewhere", elsewhere},
+              {"not_at_rest", how_many_are_not(all, "converged")},
+              {"order_lost", how_many_are_not(all, "order_kept")},
+              {"furthest", furthest}};
+    for (const char* name : {"warp_crimp", "weft_crimp", "thickness_mm", "energy_N_mm"})
+        json[name] = spread_of(all, name);
+    json["each"] = all;
+    return json;
+}
+
+std::string starts_text(const Json& report) {
+    const Json starts = part_of(report, "starts");
+    const double runs = number_in(starts, "runs");
+    if (!(runs >= 1)) return "";
+    const Json furthest = part_of(starts, "furthest");
+    const double elsewhere = number_in(starts, "elsewhere"), radii = number_in(furthest, "max_radii");
+    std::string text = counted(static_cast<std::size_t>(std::min(runs, 1e6)), "more relaxation") +
+                       short_format(" from starts up to %g radii off", number_in(starts, "noise_radii"));
+    if (elsewhere == 0) {
+        text = "Not sensitive to its start: " + text +
+               short_format(" came to the same place, to %.2g radii", radii);
+    } else {
+        text = "SENSITIVE to its start: of " + text + short_format(" %.0f ended elsewhere", elsewhere) +
+               short_format(", by up to %.1f radii", radii) + yarn_words(furthest);
+    }
+    const auto spread = [&](const char* name, const char* words, double unit, const char* pattern) {
+        const Json part = part_of(starts, name);
+        if (!part.is_object()) return;
+        text += words + short_format(pattern, unit * number_in(part, "least")) + " to " +
+                short_format(pattern, unit * number_in(part, "most"));
+    };
+    spread("warp_crimp", "; crimp warp ", 100, "%.2f %%");
+    spread("weft_crimp", ", weft ", 100, "%.2f %%");
+    spread("thickness_mm", ", thickness ", 1, "%.3f mm");
+    if (number_in(starts, "not_at_rest") > 0)
+        text += short_format("; not at rest: %.0f of them", number_in(starts, "not_at_rest"));
+    if (number_in(starts, "order_lost") > 0)
+        text += short_format("; with lost crossings: %.0f", number_in(starts, "order_lost"));
+    return text + "\n";
+}
+
+}  // namespace weave::sim
