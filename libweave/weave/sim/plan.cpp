@@ -98,14 +98,17 @@ Result<Block> first_repeat(const Block& block, std::size_t rows, std::size_t col
 
 /// Length that a weft is cut to: as it lies on the loom, straight along each pick and round each turn.
 double inserted_length(const YarnCurve& curve) {
-    const auto flat = [](const KeyPoint& key) {
-        return key.row == KeyPoint::none ? key.place : Vec3(key.place.x(), key.place.y(), 0);
-    };
     if (curve.is_periodic && curve.shift.y() != 0) return curve.shift.norm();
+    const auto between = [](const KeyPoint& from, const KeyPoint& to, const Vec3& shift) {
+        Vec3 way = to.place + shift - from.place;
+        // What a pick climbs within the cloth it does only later, when the warps press it there.
+        if (from.row != KeyPoint::none && to.row != KeyPoint::none) way.z() = 0;
+        return way.norm();
+    };
     double length = 0;
     for (std::size_t k = 0; k + 1 < curve.keys.size(); ++k)
-        length += (flat(curve.keys[k + 1]) - flat(curve.keys[k])).norm();
-    if (curve.is_periodic) length += (flat(curve.keys.front()) + curve.shift - flat(curve.keys.back())).norm();
+        length += between(curve.keys[k], curve.keys[k + 1], Vec3(0, 0, 0));
+    if (curve.is_periodic) length += between(curve.keys.back(), curve.keys.front(), curve.shift);
     return length;
 }
 
