@@ -258,9 +258,9 @@ Design i_beam() {
     design.warp.beams = {{"flanges"}, {"web"}};
     design.warp.beam_order.once = {0, 0, 0, 0, 1, 1, 1, 1, 1, 0, 0, 0, 0};
     design.warp.colours = {colour("#7d3c98")};
-    design.warp.density_ends_per_cm = 40;
+    design.warp.density_ends_per_cm = 80;
     design.warp.ends_per_dent = 13;
-    design.weft.density_picks_per_cm = 4;
+    design.weft.density_picks_per_cm = 8;
     design.weft.feeders = {{"bottom flange", 0}, {"web", 0}, {"top flange", 0}};
     design.weft.feeder_order = beam_feeders();
     add_in_order(design, "flange-repeat", stacks(2, 2, beam_wefts, beam_ends, flange_stack));

@@ -95,7 +95,7 @@ class Courses {
             row.clear();
         }
         if (m_subject.yarn_of(strand).spline.is_periodic)
-            std::ranges::rotate(course, course.begin() + static_cast<std::ptrdiff_t>(least_rotation(course)));
+            std::rotate(course.begin(), course.begin() + static_cast<std::ptrdiff_t>(least_rotation(course)), course.end());
         return m_courses.emplace(course, m_courses.size()).first->second;
     }
 
