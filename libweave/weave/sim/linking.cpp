@@ -58,7 +58,7 @@ int crossing(const Piece& first, const Piece& second, const Vec3& moved) {
 /// Pieces by the cell over which their middle lies, periods folded into one.
 class Cells {
   public:
-    Cells(const std::vector<Piece>& pieces, const std::array<double, 2>& period) : m_period(period) {
+    Cells(const std::vector<Piece>& pieces, const std::array<double, 2>& period) {
         double longest = 1e-9;
         for (const Piece& piece : pieces)
             longest = std::max(longest, std::hypot(piece.along.x(), piece.along.y()));
@@ -105,7 +105,6 @@ class Cells {
         return (static_cast<std::uint64_t>(cell[0]) << 32U) ^ static_cast<std::uint32_t>(cell[1]);
     }
 
-    std::array<double, 2> m_period;
     std::array<double, 2> m_width{};
     std::array<std::int64_t, 2> m_around{};
     std::unordered_map<std::uint64_t, std::vector<std::uint32_t>> m_members;

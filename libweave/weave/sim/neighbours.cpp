@@ -302,9 +302,11 @@ template <class Real>
 struct Neighbours<Real>::Box {
     std::array<double, 3> low{}, high{};
 
+    /// All six are asked: no branch that could be guessed wrong.
     [[nodiscard]] bool holds(double x, double y, double z, double reach) const {
-        return (x >= low[0] - reach) & (x <= high[0] + reach) & (y >= low[1] - reach) & (y <= high[1] + reach) &
-               (z >= low[2] - reach) & (z <= high[2] + reach);
+        const int inside = int(x >= low[0] - reach) & int(x <= high[0] + reach) & int(y >= low[1] - reach) &
+                           int(y <= high[1] + reach) & int(z >= low[2] - reach) & int(z <= high[2] + reach);
+        return inside != 0;
     }
 };
 
