@@ -50,7 +50,8 @@ class Looker {
 
     bool operator()(const sim::Progress& progress) {
         const double began = now();
-        if (progress.iteration >= m_next) look(progress);
+        // Of the last residual there is no later step to find it by.
+        if (progress.iteration >= m_next || progress.residual <= told_residuals.back()) look(progress);
         m_away += now() - began;
         return !interrupted();
     }
