@@ -135,10 +135,11 @@ class Motion {
     }
 
     void advance() {
-        if (m_limit == 0 || m_result.iterations >= m_measured + between_limits || m_force > 2 * m_force_then)
+        const std::size_t since = m_result.iterations - m_measured;
+        if (m_limit == 0 || since >= (m_gains ? between_doubts : between_limits) || m_force > 2 * m_force_then)
             measure_limit();
-        const double step = m_paper.step * m_limit;
-        const double kept = std::pow(1 - m_paper.damping, m_paper.step);
+        const double step = m_paper.step * m_caution * m_limit;
+        const double kept = std::pow(1 - m_paper.damping, m_paper.step * m_caution);
         m_change.resize(m_state.size());
         m_energy.executor().each(m_inverse_mass.size(), [&](std::size_t slot) {
             for (std::size_t i = 3 * slot; i < 3 * slot + 3; ++i) {
@@ -204,12 +205,24 @@ class Motion {
             most * most));
     }
 
+    /// Energy of places and of motion: damped yarns only lose it, so where it grows the step is too long for some place that
+    /// the last look did not find.
+    [[nodiscard]] double mechanical_energy() const {
+        const double size = mass_norm(m_velocity);
+        return m_value + size * size / 2;
+    }
+
     /// 2/ω by power iteration on M⁻¹H, from differences of the gradient, going on from the last direction.
     void measure_limit() {
-        const bool anew = m_limit == 0 || m_force > 2 * m_force_then;
+        const double mechanical = mechanical_energy();
+        m_gains = m_limit > 0 && mechanical > m_mechanical_then;
+        m_mechanical_then = mechanical;
+        // Who asks for a step beyond the limit gets it.
+        if (m_paper.step <= 1) m_caution = m_gains ? std::max(0.3, 0.8 * m_caution) : std::min(1.0, 1.02 * m_caution);
+        const bool anew = m_limit == 0 || m_gains || m_force > 2 * m_force_then;
         if (m_direction.empty()) m_direction.assign(m_state.size(), Real(0));
         double square = 0;
-        for (int round = 0; round < (anew ? 24 : 4); ++round) {
+        for (int round = 0; round < (anew ? 40 : 4); ++round) {
             if (round == 0) stir();
             const double size = mass_norm(m_direction),
                          reach = greatest_force(m_energy.executor(), m_direction);
@@ -252,7 +265,7 @@ class Motion {
         }));
     }
 
-    static constexpr std::size_t between_references = 100, between_limits = 50;
+    static constexpr std::size_t between_references = 100, between_limits = 50, between_doubts = 10;
 
     Energy<Real>& m_energy;
     std::vector<Real>& m_state;
@@ -262,6 +275,9 @@ class Motion {
     std::vector<Real> m_velocity, m_gradient, m_more, m_change, m_trial, m_product, m_direction;
     double m_value = 0, m_force = 0, m_least = 0;
     double m_limit = 0, m_force_then = 0;  ///< 2/ω in ms, and the greatest force when it was measured
+    double m_mechanical_then = 0;
+    double m_caution = 1;                  ///< share of the step that is taken, less where the yarns gained energy
+    bool m_gains = false;                  ///< the yarns had more energy than at the look before
     double m_clear = 0, m_travelled = 0;   ///< least distance when last looked up, and the ways since, mm
     std::size_t m_referred = 0, m_measured = 0;
     RelaxResult m_result;
