@@ -209,8 +209,10 @@ void add_renumber(CLI::App& app, Program& program) {
 Result<StencilMap> map_of(const ColourImage& image, const std::map<Colour, std::uint16_t>& numbers) {
     StencilMap map{image.rows, image.columns, {}};
     map.blocks.reserve(image.pixels.size());
+    auto found = numbers.end();
     for (std::size_t k = 0; k < image.pixels.size(); ++k) {
-        const auto found = numbers.find(image.pixels[k]);
+        if (found == numbers.end() || found->first != image.pixels[k])  // mostly it is that of the pixel before
+            found = numbers.find(image.pixels[k]);
         if (found == numbers.end()) {
             return bad_input("the pixel in row " + std::to_string(k / image.columns + 1) +
                              " from the bottom and column " + std::to_string(k % image.columns + 1) +
