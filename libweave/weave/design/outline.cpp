@@ -37,6 +37,8 @@ struct Part {
 class Draughtsman {
   public:
     std::optional<Outline> draw(const Design& design, std::optional<CardPlace> place);
+    /// Why the cloth cannot be woven, where its counts tell so.
+    [[nodiscard]] const std::optional<Error>& error() const { return m_error; }
 
   private:
     bool put_together(Part& part);
@@ -79,6 +81,7 @@ class Draughtsman {
 
     std::map<std::string, Part> m_parts;
     std::vector<LostFlip> m_lost;
+    std::optional<Error> m_error;
     std::size_t m_units = most_units;
 };
 
@@ -304,9 +307,15 @@ std::optional<Outline> Draughtsman::draw(const Design& design, std::optional<Car
         part.node = design.blocks.at(name).get();
         const std::vector<std::string> children = children_of(*part.node);
         std::vector<Extent> extents;
+        std::vector<SizedPart> sizes;
         for (const std::string& child : children) {
             part.children.push_back(&m_parts.at(child));
             extents.push_back(part.children.back()->extent);
+            sizes.push_back({&part.children.back()->grid, extents.back().height});
+        }
+        if (Status fits = check_counts_fit(part.node->source, sizes); !fits) {
+            m_error = std::move(fits).error().under("blocks." + name);
+            return {};
         }
         if (held + needed_for(*part.node, extents) > Evaluator::standard_limit) return {};
         if (!put_together(part) || !flip(part, name)) return {};
@@ -330,7 +339,9 @@ std::optional<Outline> Draughtsman::draw(const Design& design, std::optional<Car
 
 Result<Outline> outline(const Design& design, std::optional<CardPlace> place) {
     WEAVE_CHECK_OK(check(design));
-    if (auto drawn = Draughtsman().draw(design, place)) return std::move(*drawn);
+    Draughtsman draughtsman;
+    if (auto drawn = draughtsman.draw(design, place)) return std::move(*drawn);
+    if (draughtsman.error()) return *draughtsman.error();
     WEAVE_TRY(Evaluation evaluation, evaluate(design));
     const Block& block = *evaluation.block;
     Outline outline{block.grid(), block.height(), std::move(evaluation.lost_flips), {}};
