@@ -16,9 +16,11 @@ struct GridAndHeight {
 };
 
 /// What attach() refuses of blocks so large, before their stacks are looked at.
-Status check_attach(GridAndHeight block, GridAndHeight other, Face face, std::span<const std::string> names = {});
+Status check_attach(GridAndHeight block, GridAndHeight other, Face face,
+                    std::span<const std::string> names = {});
 
 /// What renumber_row() or renumber_column() refuses of a block of this grid.
-Status check_renumber(const BlockGrid& grid, System system, std::size_t line, std::span<const std::size_t> order);
+Status check_renumber(const BlockGrid& grid, System system, std::size_t line,
+                      std::span<const std::size_t> order);
 
 }  // namespace weave

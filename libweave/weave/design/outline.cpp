@@ -53,11 +53,11 @@ class Draughtsman {
         return true;
     }
 
-    // The grid of a block that is made from others; nothing where they do not fit together.
+    // The grid of a block that is made from others, whose counts fit; nothing where more than those must be looked at.
     static std::optional<BlockGrid> grid_of(const TileOperation& operation, const Part& part);
     static std::optional<BlockGrid> grid_of(const AttachOperation& operation, const Part& part);
     static std::optional<BlockGrid> grid_of(const StencilOperation& operation, const Part& part);
-    static std::optional<BlockGrid> grid_of(const RenumberOperation& operation, const Part& part);
+    static std::optional<BlockGrid> grid_of(const RenumberOperation&, const Part& part);
     static std::optional<BlockGrid> grid_of(const CardLeaf& leaf, const Part& part);
     template <class Leaf>
     static std::optional<BlockGrid> grid_of(const Leaf&, const Part& part) {
@@ -127,14 +127,11 @@ std::optional<BlockGrid> Draughtsman::grid_of(const AttachOperation& operation, 
     switch (operation.face) {
         case Face::plus_x:
         case Face::minus_x:
-            if (one.p() != other.p()) return {};
             return BlockGrid(joined(one.t(), other.t()), one.p());
         case Face::plus_y:
         case Face::minus_y:
-            if (one.t() != other.t()) return {};
             return BlockGrid(one.t(), joined(one.p(), other.p()));
         default:
-            if (one.rows() != other.rows() || one.columns() != other.columns()) return {};
             const Extent extent = extent_to_be(operation, {first->extent, second->extent});
             if (!check_slots(extent.stacks, extent.height)) return {};
             return BlockGrid(summed(one.t(), other.t()), summed(one.p(), other.p()));
@@ -164,11 +161,8 @@ std::optional<BlockGrid> Draughtsman::grid_of(const StencilOperation& operation,
     return BlockGrid(std::move(*t), std::move(*p));
 }
 
-std::optional<BlockGrid> Draughtsman::grid_of(const RenumberOperation& operation, const Part& part) {
-    const BlockGrid& grid = part.children[0]->grid;
-    const Counts& counts = operation.system == System::weft ? grid.t() : grid.p();
-    if (operation.line >= counts.size() || !new_numbers(operation.order, counts[operation.line])) return {};
-    return grid;
+std::optional<BlockGrid> Draughtsman::grid_of(const RenumberOperation&, const Part& part) {
+    return part.children[0]->grid;
 }
 
 std::optional<BlockGrid> Draughtsman::grid_of(const CardLeaf& leaf, const Part& part) {
