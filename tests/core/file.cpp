@@ -321,6 +321,40 @@ TEST_CASE("a pipe gets the bytes; one that nobody reads any more gives an error 
     CHECK(folder.entries() == 1);
 }
 
+TEST_CASE("a pipe is written to by the name that the system gives it, which leads to no place") {
+    int ends[2];
+    REQUIRE(::pipe2(ends, O_CLOEXEC) == 0);
+    REQUIRE(write_file("/proc/self/fd/" + std::to_string(ends[1]), "bytes"));
+    const Folder folder;
+    fs::create_symlink("/proc/self/fd/" + std::to_string(ends[1]), folder.path / "link");
+    REQUIRE(write_file(folder.path / "link", " more"));
+    char buffer[16];
+    const ssize_t got = ::read(ends[0], buffer, sizeof buffer);
+    CHECK(std::string(buffer, static_cast<std::size_t>(std::max<ssize_t>(got, 0))) == "bytes more");
+    ::close(ends[0]);
+    ::close(ends[1]);
+    CHECK(fs::is_symlink(folder.path / "link"));
+}
+
+TEST_CASE("of two that write one new folder at once, one is refused, as if the other had been there before") {
+    const Folder folder;
+    std::size_t refusals = 0;
+    for (std::size_t round = 0; round < 40; ++round) {
+        const fs::path out = folder.path / std::to_string(round);
+        Status ended[2];
+        std::thread other([&] { ended[1] = write_folder(out, {{"a", "1"}}); });
+        ended[0] = write_folder(out, {{"a", "0"}});
+        other.join();
+        REQUIRE(bool(ended[0]) != bool(ended[1]));
+        const Error& error = ended[ended[0] ? 1 : 0].error();
+        CHECK(error.code == ErrorCode::refused);
+        CHECK(error.message == "exists already and is not an empty folder");
+        CHECK(read_file(out / "a").value() == (ended[0] ? "0" : "1"));
+        ++refusals;
+    }
+    CHECK(folder.entries() == refusals);
+}
+
 namespace {
 
 /// In a process of its own, where `file` is a mount point: what came of writing it.

@@ -1,5 +1,6 @@
 #include <weave/design/document.hpp>
 #include <weave/design/edit.hpp>
+#include <weave/design/evaluate.hpp>
 
 #include <catch2/catch.hpp>
 
@@ -216,19 +217,95 @@ TEST_CASE("renaming takes every reference along, and a name may stay") {
     CHECK(design == before);
 }
 
-TEST_CASE("a flip at a crossing that has one takes its place; undo brings back order and all") {
+TEST_CASE("a flip comes after the others, or takes the place of the last; undo brings back order and all") {
     Design design = small();
     for (const Flip flip : {Flip{0, 0, true}, Flip{0, 1, true}, Flip{1, 0, false}})
         REQUIRE(weave::apply_edit(design, PutFlip{"toe", flip}));
     const Design before = design;
     const Edit undo = weave::apply_edit(design, PutFlip{"toe", {0, 0, false}}).value();
-    CHECK(design.blocks.at("toe")->flips == std::vector<Flip>{{0, 1, true}, {1, 0, false}, {0, 0, false}});
+    const std::vector<Flip> all{{0, 0, true}, {0, 1, true}, {1, 0, false}, {0, 0, false}};
+    CHECK(design.blocks.at("toe")->flips == all);
+    REQUIRE(weave::apply_edit(design, PutFlip{"toe", {0, 0, true}}));
+    const std::vector<Flip> last_changed{{0, 0, true}, {0, 1, true}, {1, 0, false}, {0, 0, true}};
+    CHECK(design.blocks.at("toe")->flips == last_changed);
+    REQUIRE(weave::apply_edit(design, RemoveFlip{"toe", 0, 0}));
+    CHECK(design.blocks.at("toe")->flips == std::vector<Flip>{{0, 1, true}, {1, 0, false}});
     REQUIRE(weave::apply_edit(design, undo));
     CHECK(design == before);
     const Edit again = weave::apply_edit(design, RemoveFlip{"toe", 0, 1}).value();
     CHECK(design.blocks.at("toe")->flips == std::vector<Flip>{{0, 0, true}, {1, 0, false}});
     REQUIRE(weave::apply_edit(design, again));
     CHECK(write_document(design) == write_document(before));
+}
+
+namespace {
+
+/// The crossings of two blocks of the same size that differ.
+std::vector<std::pair<std::size_t, std::size_t>> differing(const Block& a, const Block& b) {
+    std::vector<std::pair<std::size_t, std::size_t>> places;
+    for (std::size_t pick = 0; pick < a.picks(); ++pick) {
+        for (std::size_t end = 0; end < a.ends(); ++end) {
+            if (a.weft_over(pick, end) != b.weft_over(pick, end)) places.emplace_back(pick, end);
+        }
+    }
+    return places;
+}
+
+std::vector<Flip> lost_flips(const Evaluation& cloth) {
+    std::vector<Flip> flips;
+    for (const LostFlip& lost : cloth.lost_flips) flips.push_back(lost.flip);
+    return flips;
+}
+
+}  // namespace
+
+TEST_CASE("in any sequence each possible flip changes one pixel, its own, and loses or revives no other") {
+    std::size_t made = 0, again = 0, lost = 0;
+    for_all(
+        [&](Random& random) {
+            // Few yarns in few stacks, so that flips depend on one another and crossings come again and again.
+            const auto count = [&] { return static_cast<std::uint32_t>(random.between(1, 3)); };
+            Design design = design_of({{"cloth", std::make_shared<const Node>(Node{
+                                                     StacksLeaf{std::make_shared<const Block>(
+                                                         random_block(random, {count()}, {count(), 1}))},
+                                                     {}})}},
+                                      "cloth");
+            Evaluation now = evaluate(design).value();
+            const auto any_crossing = [&] {
+                return std::pair(random.between(0, now.block->picks() - 1), random.between(0, now.block->ends() - 1));
+            };
+            for (std::size_t k = random.between(0, 3); k > 0; --k) {  // whatever a file may hold, lost ones too
+                const auto [pick, end] = any_crossing();
+                REQUIRE(weave::apply_edit(design, PutFlip{"cloth", {pick, end, random.coin()}}));
+            }
+            now = evaluate(design).value();
+            lost += now.lost_flips.size();
+            std::vector<std::pair<Edit, Design>> undo;
+            for (std::size_t step = 0; step < 12; ++step) {
+                const auto [pick, end] = any_crossing();
+                if (!flip(*now.block, pick, end)) continue;
+                const std::vector<Flip>& flips = design.blocks.at("cloth")->flips;
+                again += std::any_of(flips.begin(), flips.end(), [&, pick = pick, end = end](const Flip& flip) {
+                    return flip.pick == pick && flip.end == end;
+                });
+                const Design before = design;
+                const Flip wish{pick, end, !now.block->weft_over(pick, end)};
+                undo.emplace_back(weave::apply_edit(design, PutFlip{"cloth", wish}).value(), before);
+                const Evaluation then = evaluate(design).value();
+                REQUIRE(differing(*now.block, *then.block) == std::vector{std::pair(pick, end)});
+                REQUIRE(lost_flips(then) == lost_flips(now));
+                now = then;
+                ++made;
+            }
+            for (; !undo.empty(); undo.pop_back()) {
+                REQUIRE(weave::apply_edit(design, undo.back().first));
+                REQUIRE(design == undo.back().second);
+            }
+        },
+        std::max<std::size_t>(property_cases() / 4, 100));
+    CHECK(made > 0);
+    CHECK(again > 0);
+    CHECK(lost > 0);
 }
 
 TEST_CASE("JSON that is no edit is refused with its place") {

@@ -174,3 +174,25 @@ TEST_CASE("what is beyond the evaluator's limit is beyond that of an outline") {
     CHECK_THAT(error.message, Catch::Contains("hold more than the limit"));
     CHECK(error.text() == evaluate(design).error().text());
 }
+
+TEST_CASE("what the counts of large blocks refuse is told without laying them out, before what memory holds") {
+    const auto told = [](NodeSource source) {
+        const Design design = design_of({{"plain", plain()},
+                                         {"big", node(TileOperation{"plain", 16384, 8192, 1})},
+                                         {"cloth", node(std::move(source))}},
+                                        "cloth");
+        const double before = peak_mb();
+        const Result<Outline> cloth = outline(design);
+        CHECK(peak_mb() - before < 50);
+        REQUIRE_FALSE(cloth);
+        return cloth.error().text();
+    };
+    CHECK_THAT(told(TileOperation{"big", 2, 1, 1}), Catch::StartsWith("blocks.cloth: a card image of 65536 picks"));
+    CHECK_THAT(told(AttachOperation{"big", "big", Face::plus_x}),
+               Catch::StartsWith("blocks.cloth: a card image of 65536 picks and 16384 ends"));
+    CHECK_THAT(told(AttachOperation{"big", "big", Face::minus_z}),
+               Catch::StartsWith("blocks.cloth: a card image of 65536 picks and 32768 ends"));
+    CHECK_THAT(told(AttachOperation{"big", "plain", Face::plus_y}), Catch::Contains("on the faces that meet"));
+    CHECK_THAT(told(RenumberOperation{"big", System::weft, 0, {1}}), Catch::Contains("must name each of its 1 picks"));
+    CHECK_THAT(told(RenumberOperation{"big", System::warp, 99999, {0}}), Catch::Contains("there is no column 99999"));
+}

@@ -271,6 +271,33 @@ TEST_CASE("an accepted flip changes one pixel, its own, and a second one changes
     CHECK(differing(before, card_of(shop, "f.weave")).empty());
 }
 
+TEST_CASE("a flip of a crossing that was flipped before neither loses nor revives another one") {
+    const Workshop shop;
+    const std::string stack = R"({"format": "weave", "version": 1, "root": "s", "blocks": {"s":
+        {"kind": "stacks", "stacks": [["T0 P0 T1 P1"]]}}})";
+    shop.put("s.weave", stack);
+    const std::pair<std::size_t, std::size_t> places[]{{2, 2}, {1, 2}, {1, 1}, {2, 2}};
+    for (const auto& [pick, end] : places) {
+        const CardImage before = card_of(shop, "s.weave");
+        shop.must({"flip", "s.weave", "--pick", std::to_string(pick), "--end", std::to_string(end), "-o", "s.weave"});
+        const std::vector<std::pair<std::size_t, std::size_t>> own{{pick, end}};
+        CHECK(differing(before, card_of(shop, "s.weave")) == own);
+    }
+    // The first flip of this file keeps that of pick 2 and end 2 from being made, and goes on to do so.
+    shop.put("t.weave", R"({"format": "weave", "version": 1, "root": "t", "blocks": {"t": {"kind": "stacks",
+        "stacks": [["P1~ P2 P0 T1 T0"], ["T2~ P1 P0~ - P2 -"]], "flips": [
+            {"pick": 0, "end": 0, "weft": "under"}, {"pick": 1, "end": 2, "weft": "over"},
+            {"pick": 1, "end": 1, "weft": "under"}, {"pick": 2, "end": 1, "weft": "under"},
+            {"pick": 0, "end": 2, "weft": "over"}]}}})");
+    const auto card = [&](const std::string& design) {
+        CHECK(shop.run({"card", design, "-o", "card.bmp"}).complaints().size() == 1);
+        return weave::read_bitmap(shop.get("card.bmp")).value().card;
+    };
+    CHECK(shop.run({"flip", "t.weave", "--pick", "1", "--end", "1", "-o", "f.weave"}).exit == 0);
+    const std::vector<std::pair<std::size_t, std::size_t>> own{{1, 1}};
+    CHECK(differing(card("t.weave"), card("f.weave")) == own);
+}
+
 TEST_CASE("a flip of one crossing among 400 million is made without laying the cloth out") {
     const Workshop shop;
     shop.must({"preset", "plain", "-o", "p.weave"});

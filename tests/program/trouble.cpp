@@ -111,6 +111,27 @@ TEST_CASE("a stencil that would be too large is refused before its picture is re
                  {"cut.png with block 0 = m.weave", "38400 picks and 44800 ends is larger than the limit"});
 }
 
+TEST_CASE("what does not fit a cloth of 500 million crossings is refused by its counts, the limit of crossings first") {
+    const Workshop shop;
+    shop.must({"preset", "plain", "-o", "plain.weave"});
+    shop.must({"tile", "plain.weave", "--x", "16384", "--y", "8192", "-o", "big.weave"});
+    using Words = std::vector<std::string>;
+    const std::vector<std::pair<Words, Words>> calls{
+        {{"tile", "big.weave", "--x", "2"}, {"65536 picks and 16384 ends", "crossings"}},
+        {{"attach", "big.weave", "big.weave", "--face", "+x"}, {"65536 picks and 16384 ends", "crossings"}},
+        {{"attach", "big.weave", "big.weave", "--face", "-z"}, {"65536 picks and 32768 ends", "crossings"}},
+        {{"attach", "big.weave", "plain.weave", "--face", "+y"}, {"32768 rows", "on the faces that meet"}},
+        {{"attach", "big.weave", "plain.weave", "--face", "+z"}, {"32768 rows", "on top of each other"}},
+        {{"renumber", "big.weave", "--row", "0", "--order", "1"}, {"row 0", "1 picks once"}},
+        {{"renumber", "big.weave", "--row", "99999", "--order", "0"}, {"no row 99999", "32767"}},
+    };
+    for (auto [words, pieces] : calls) {
+        words.insert(words.end(), {"-o", "new.weave"});
+        pieces.push_back("big.weave");
+        shop.refused(words, 3, pieces);
+    }
+}
+
 TEST_CASE("a program that reads along is told of a failure in JSON, and nothing else") {
     const Workshop shop;
     furnish(shop);

@@ -64,6 +64,45 @@ TEST_CASE("weave --version tells name and version") {
     CHECK(ended.out.find('.') != std::string::npos);
 }
 
+TEST_CASE("what is told to a full device ends with 5, help and version too") {
+    const Workshop shop;
+    for (const char* words : {"--help", "--version", "tile --help", "samples"}) {
+        INFO(words);
+        const std::string call = std::string(WEAVE_PROGRAM) + " " + words + " > /dev/full 2> /dev/null";
+        const int status = std::system(call.c_str());
+        REQUIRE(WIFEXITED(status));
+        CHECK(WEXITSTATUS(status) == 5);
+    }
+}
+
+TEST_CASE("one pick is no picks: a cloth is told in words that fit its numbers") {
+    const Workshop shop;
+    shop.put("one.weave", R"({"format": "weave", "version": 1, "root": "a", "blocks": {"a": {"kind": "stacks",
+        "stacks": [["T0 P0"]]}}})");
+    CHECK(shop.must({"tile", "one.weave", "-o", "t.weave"}).out == "t.weave: 1 pick and 1 end in 1 row and 1 column, 2 high\n");
+    CHECK(shop.must({"tile", "one.weave", "--x", "2", "-o", "t.weave"}).out ==
+          "t.weave: 2 picks and 1 end in 2 rows and 1 column, 2 high\n");
+}
+
+TEST_CASE("a design is written to standard output where that is a pipe") {
+    const Workshop shop;
+    const Ended ended = shop.must({"preset", "plain", "-o", "/dev/stdout", "--json"});
+    CHECK(ended.out.find("\"format\": \"weave\"") != std::string::npos);
+}
+
+TEST_CASE("a number is decimal, with zeros in front as well") {
+    const Workshop shop;
+    shop.must({"preset", "plain", "-o", "p.weave"});
+    CHECK(shop.json({"tile", "p.weave", "--x", "010", "--y", "08", "-o", "t.weave"}).at("picks") == 20);
+    CHECK(shop.json({"info", "t.weave"}).at("ends") == 16);
+    shop.must({"flip", "t.weave", "--pick", "010", "--end", "1", "-o", "f.weave"});
+    const weave::Json flips = weave::parse_json(shop.get("f.weave"))->at("blocks").at("plain-tiled").at("flips");
+    CHECK(flips.at(0).at("pick") == 9);
+    shop.must({"card", "t.weave", "-o", "t.png"});
+    shop.must({"import", "t.png", "--t", "02,2", "--p", "001", "-o", "i.weave"});
+    CHECK(shop.json({"renumber", "i.weave", "--row", "09", "--order", "01,00", "-o", "r.weave"}).at("rows") == 10);
+}
+
 TEST_CASE("a call that makes no sense ends with 2 and says what is wrong with it") {
     const Workshop shop;
     shop.must({"preset", "twill", "-o", "t.weave"});
@@ -112,11 +151,27 @@ TEST_CASE("a call that makes no sense ends with 2 and says what is wrong with it
         {{"render", "t.weave", "--view", "warp:0", "-o", "new.png"}, {"0", "1 to 4"}},
         {{"flip", "t.weave", "--pick", "0", "--end", "1", "-o", "new.weave"}, {"--pick"}},
         {{"flip", "t.weave", "--pick", "-1", "--end", "1", "-o", "new.weave"}, {"--pick", "-1"}},
+        {{"flip", "t.weave", "--pick", "0x2", "--end", "1", "-o", "new.weave"}, {"--pick", "0x2"}},
+        {{"flip", "t.weave", "--pick", "+2", "--end", "1", "-o", "new.weave"}, {"--pick", "+2"}},
+        {{"flip", "t.weave", "--pick", "", "--end", "1", "-o", "new.weave"}, {"--pick"}},
+        {{"render", "t.weave", "--view", "weft:1", "--from-end", "0x1", "-o", "new.png"}, {"--from-end", "0x1"}},
+        {{"simulate", "t.weave", "--steps", "0x10", "-o", "new.yarns"}, {"--steps", "0x10"}},
+        {{"simulate", "t.weave", "--points", "0x4", "-o", "new.yarns"}, {"--points", "0x4"}},
+        {{"renumber", "t.weave", "--row", "0", "--order", "1,,0", "-o", "new.weave"}, {"--order"}},
+        {{"renumber", "t.weave", "--row", "0", "--order", "0,", "-o", "new.weave"}, {"--order"}},
+        {{"renumber", "t.weave", "--row", "0", "--order", ",0", "-o", "new.weave"}, {"--order"}},
+        {{"renumber", "t.weave", "--row", "0", "--order", "", "-o", "new.weave"}, {"--order"}},
+        {{"renumber", "t.weave", "--row", "0", "--order", "0x0", "-o", "new.weave"}, {"--order", "0x0"}},
+        {{"import", "t.png", "--t", "2,,2", "-o", "new.weave"}, {"--t"}},
+        {{"import", "t.png", "--p", "2,", "-o", "new.weave"}, {"--p"}},
         {{"flip", "t.weave", "--pick", "1.5", "--end", "1", "-o", "new.weave"}, {"--pick", "1.5"}},
         {{"flip", "t.weave", "--pick", "1", "--end", "16777217", "-o", "new.weave"}, {"--end", "16777217"}},
         {{"flip", "t.weave", "--pick", "1", "--end", "18446744073709551617", "-o", "new.weave"}, {"--end"}},
         {{"check", "t.weave"}, {"--loom"}},
         {{"export", "t.weave", "-o", "new"}, {"--loom"}},
+        {{"export", "t.weave", "--loom", program_tests::loom("tc2"), "-o", ""}, {"--out"}},
+        {{"tile", "t.weave", "-o", ""}, {"--out"}},
+        {{"import", "t.png", "-o", ""}, {"--out"}},
     };
     shop.must({"card", "t.weave", "-o", "t.wif"});
     for (const std::string option : {"--pick-1", "--end-1", "--lifted"}) {  // which WIF knows nothing of

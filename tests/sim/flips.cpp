@@ -132,6 +132,26 @@ TEST_CASE("a crossing of relaxed cloth changes sides, and no other does") {
     }
 }
 
+TEST_CASE("a flip that the card cannot make alone, or has made, is not tried in the cloth") {
+    Relaxed of = relaxed("layer-to-layer");
+    SimulationOptions options;
+    options.threads = 1;
+    for (std::size_t pick = 0; pick < of.block->picks() && options.flips.empty(); ++pick) {
+        for (std::size_t end = 0; end < of.block->ends() && options.flips.empty(); ++end) {
+            if (!flip(*of.block, pick, end)) options.flips = {{pick, end, !of.block->weft_over(pick, end)}};
+        }
+    }
+    REQUIRE(options.flips.size() == 1);
+    options.flips.push_back({0, 0, of.block->weft_over(0, 0)});
+    const Yarns yarns = simulate(of.design, of.plan, options);
+    const Json& flips = yarns.report.at("flips");
+    CHECK(flips.at(0).at("done") == false);
+    CHECK_THAT(flips.at(0).at("reason").get<std::string>(), Catch::Contains("in the way stand"));
+    CHECK(flips.at(1).at("done") == false);
+    CHECK(flips.at(1).at("reason") == "they lie so already");
+    CHECK(yarns.design_sha256 == design_sha256(of.design));
+}
+
 TEST_CASE("a crossing that is held where it is does not flip, and all stays as it was") {
     Relaxed of = relaxed("plain");
     SimulationRequest request;

@@ -143,10 +143,10 @@ Status run_stability(Program& program, const StabilityWish& wish) {
 
 void add_shared_options(CLI::App* command, BenchOptions& options, const std::string& seconds_help) {
     command->add_option("--seconds", options.seconds, seconds_help)
-        ->check(CLI::PositiveNumber.description(""))
+        ->check(positive_number())
         ->capture_default_str()
         ->type_name("N");
-    command->add_option("--threads", options.threads, "processor cores to use; 0: all")->type_name("N");
+    command->add_option("--threads", options.threads, "processor cores to use; 0: all")->transform(whole_number())->type_name("N");
 }
 
 void add_tradeoff(CLI::App& bench, Program& program) {
@@ -173,13 +173,15 @@ void add_scale(CLI::App& bench, Program& program) {
     command->add_option("-o,--out", wish->options.folder, "a folder for scale.json and scale.md")
         ->type_name("FOLDER");
     command->add_option("--least", wish->scale.least, "the smallest size in points")
+        ->transform(whole_number())
         ->capture_default_str()
         ->type_name("N");
     command->add_option("--most", wish->scale.most, "the largest size in points")
+        ->transform(whole_number())
         ->capture_default_str()
         ->type_name("N");
     command->add_option("--residual", wish->scale.residual, "how still is still")
-        ->check(CLI::PositiveNumber.description(""))
+        ->check(positive_number())
         ->capture_default_str()
         ->type_name("N");
     add_shared_options(command, wish->options,

@@ -7,7 +7,10 @@
 #include <weave/design/outline.hpp>
 #include <weave/design/pins.hpp>
 
+#include <charconv>
+#include <cmath>
 #include <iostream>
+#include <limits>
 
 namespace weave::program {
 
@@ -91,6 +94,33 @@ void on_run(CLI::App* command, Program& program, std::function<Status()> run) {
     });
 }
 
+std::string settle_whole(std::string& word, std::int64_t low, std::int64_t high) {
+    const std::optional<std::int64_t> number = parse_whole(word);
+    if (!number) return "'" + word + "' is not a whole number";
+    if (*number < low || *number > high)
+        return "Value " + word + " not in range " + std::to_string(low) + " to " + std::to_string(high);
+    word = std::to_string(*number);
+    return "";
+}
+
+CLI::Validator whole_number() {
+    return between(std::int64_t{0}, std::numeric_limits<std::int64_t>::max());
+}
+
+CLI::Validator positive_number() {
+    return {[](std::string& word) {
+                double value = 0;
+                const auto [end, code] = std::from_chars(word.data(), word.data() + word.size(), value);
+                const bool is_number = code == std::errc{} && end == word.data() + word.size();
+                return is_number && value > 0 && std::isfinite(value) ? "" : "'" + word + "' is not a number above 0";
+            },
+            ""};
+}
+
+CLI::Validator output_name() {
+    return {[](std::string& name) { return name.empty() ? std::string("name what is to be written") : ""; }, ""};
+}
+
 void note_lost_flips(const Program& program, const std::vector<LostFlip>& lost_flips,
                      const std::string& file) {
     for (const LostFlip& lost : lost_flips) program.note(file + ": " + lost_flip_line(lost));
@@ -156,10 +186,9 @@ Status save_cloth(Program& program, const Design& design, const std::string& fil
                     {"columns", grid.columns()},
                     {"height", woven->height},
                     {"warnings", notes}},
-                   on_one_line(file) + ": " + std::to_string(grid.picks()) + " picks and " +
-                       std::to_string(grid.ends()) + " ends in " + std::to_string(grid.rows()) +
-                       " rows and " + std::to_string(grid.columns()) + " columns, " +
-                       std::to_string(woven->height) + " high\n");
+                   on_one_line(file) + ": " + counted(grid.picks(), "pick") + " and " +
+                       counted(grid.ends(), "end") + " in " + counted(grid.rows(), "row") + " and " +
+                       counted(grid.columns(), "column") + ", " + std::to_string(woven->height) + " high\n");
     return {};
 }
 

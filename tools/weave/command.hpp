@@ -1,6 +1,7 @@
 #pragma once
 
 #include <weave/core/json.hpp>
+#include <weave/core/text.hpp>
 #include <weave/design/design.hpp>
 #include <weave/design/evaluate.hpp>
 #include <weave/io/bitmap.hpp>
@@ -8,6 +9,7 @@
 
 #include <CLI/CLI.hpp>
 
+#include <cstdint>
 #include <filesystem>
 #include <functional>
 #include <memory>
@@ -43,10 +45,48 @@ Json error_json(const Error& error);
 /// Adds a command; `run` is called with the program when it is chosen. Every command takes --json.
 CLI::App* add_command(CLI::App& app, Program& program, const std::string& name, const std::string& help);
 
-/// A whole number within limits. The limits stay out of the help, where only the meaning of a number counts.
+/// What is wrong with a word that is to be a whole number within these limits, in decimal digits; empty where it
+/// is one. It is written anew, so that a 0 in front does not make it octal.
+std::string settle_whole(std::string& word, std::int64_t low, std::int64_t high);
+
+/// A whole number within limits, to be used with transform(). The limits stay out of the help, where only the
+/// meaning of a number counts.
 template <class Whole>
 CLI::Validator between(Whole low, Whole high) {
-    return CLI::Range(low, high).description("");
+    return {[low = static_cast<std::int64_t>(low), high = static_cast<std::int64_t>(high)](std::string& word) {
+                return settle_whole(word, low, high);
+            },
+            ""};
+}
+
+/// A whole number from 0 on, to be used with transform().
+CLI::Validator whole_number();
+
+/// A number above 0 in decimal digits, such as 0.5 or 1e-6.
+CLI::Validator positive_number();
+
+/// The name of what is to be written, which must not be empty.
+CLI::Validator output_name();
+
+/// An option that is a list such as 1,0,2: whole numbers within limits, none of them left out. `list` must outlive
+/// the command.
+template <class Whole>
+CLI::Option* add_list(CLI::App* command, const std::string& name, std::vector<Whole>& list, Whole low, Whole high,
+                      const std::string& help) {
+    const auto read = [&list, name, low, high](const std::vector<std::string>& texts) {
+        for (const std::string& text : texts) {
+            for (std::string& word : CLI::detail::split(text + ' ', ',')) {  // or nothing after the last comma is lost
+                CLI::detail::trim(word);
+                const std::string trouble =
+                    settle_whole(word, static_cast<std::int64_t>(low), static_cast<std::int64_t>(high));
+                if (!trouble.empty()) throw CLI::ValidationError(name, trouble);
+                list.push_back(static_cast<Whole>(*parse_whole(word)));
+            }
+        }
+    };
+    return command->add_option_function<std::vector<std::string>>(name, read, help)
+        ->allow_extra_args(false)
+        ->type_name("N,N,");
 }
 
 /// Lets `run` be the command's work: its error, if any, is told and becomes the exit code.

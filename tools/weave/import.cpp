@@ -117,25 +117,21 @@ void add_import_command(CLI::App& app, Program& program) {
         add_command(app, program, "import", "Make a design from a card image (PNG, TIFF, BMP) or a WIF file");
     const auto request = std::make_shared<ImportRequest>();
     command->add_option("IN", request->in, "the file to read")->required();
-    command->add_option("-o,--out", request->out, "the .weave file to write")->type_name("FILE")->required();
-    const CLI::Validator count = between(std::uint32_t{0}, std::uint32_t{1} << 28);
-    CLI::Option* t =
-        command->add_option("--t", request->t, "picks of each row, repeated over the card, such as 2,2")
-            ->delimiter(',')
-            ->allow_extra_args(false)
-            ->check(count)
-            ->type_name("N,N,");
-    CLI::Option* p = command->add_option("--p", request->p, "ends of each column, repeated, such as 2,2")
-                         ->delimiter(',')
-                         ->allow_extra_args(false)
-                         ->check(count)
-                         ->type_name("N,N,");
+    command->add_option("-o,--out", request->out, "the .weave file to write")
+        ->check(output_name())
+        ->type_name("FILE")
+        ->required();
+    constexpr std::uint32_t most = 1 << 28;
+    CLI::Option* t = add_list(command, "--t", request->t, std::uint32_t{0}, most,
+                              "picks of each row, repeated over the card, such as 2,2");
+    CLI::Option* p = add_list(command, "--p", request->p, std::uint32_t{0}, most,
+                              "ends of each column, repeated, such as 2,2");
     CLI::Option* infer =
         command->add_flag("--infer", request->infer,
                           "find rows and columns from the card; lists the possible groupings, best first");
     command->add_option("--grouping", request->grouping, "which of the possible groupings to take, from 1")
         ->needs(infer)
-        ->check(between(1, 1000))
+        ->transform(between(1, 1000))
         ->type_name("N");
     infer->excludes(t)->excludes(p);
     add_reading_options(command, {request, &request->reading});

@@ -219,8 +219,10 @@ void add_render(CLI::App& app, Program& program) {
     command
         ->add_option("--from-pick", wish->from_pick,
                      "for warp:N and block: begin at this pick, where the cloth is too large to show whole")
+        ->transform(whole_number())
         ->type_name("N");
     command->add_option("--from-end", wish->from_end, "for weft:N and block: begin at this end")
+        ->transform(whole_number())
         ->type_name("N");
     command->add_option("--side", wish->cloth.side, "3d: top, bottom, front, back, left, right, corner, or AZIMUTH,ELEVATION")
         ->type_name("SIDE");

@@ -133,6 +133,7 @@ void add_export(CLI::App& app, Program& program) {
     command->add_option("FILE", *file, "the .weave file")->required();
     command->add_option("--loom", *loom, "the loom's profile, a .json file")->type_name("FILE")->required();
     command->add_option("-o,--out", *folder, "the folder to write; it must not exist, or be empty")
+        ->check(output_name())
         ->type_name("FOLDER")
         ->required();
     on_run(command, program, [=, &program] { return export_sample(program, *file, *loom, *folder); });

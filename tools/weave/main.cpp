@@ -70,10 +70,13 @@ int main(int count, char** words) {
     try {
         app.parse(count, words);
     } catch (const CLI::ParseError& trouble) {
-        if (trouble.get_exit_code() == 0) return app.exit(trouble);  // --help, --version
-        program.json = asks_for_json(count, words);                  // which the parser need not have reached
-        program.fail({weave::ErrorCode::usage, usage_trouble(app, trouble), ""});
-        std::cerr << "Try 'weave --help' or 'weave COMMAND --help'.\n";
+        if (trouble.get_exit_code() == 0) {
+            app.exit(trouble);  // tells what --help and --version ask for
+        } else {
+            program.json = asks_for_json(count, words);  // which the parser need not have reached
+            program.fail({weave::ErrorCode::usage, usage_trouble(app, trouble), ""});
+            std::cerr << "Try 'weave --help' or 'weave COMMAND --help'.\n";
+        }
     } catch (const std::bad_alloc&) {
         program.fail(weave::system_fault("this machine has not enough memory for it"));
     } catch (const std::exception& trouble) {

@@ -100,7 +100,10 @@ void add_preset(CLI::App& app, Program& program) {
     command->add_option("FAMILY", *family, "the family, see below")->required();
     command->add_option("SETTING", *settings,
                         "settings of the family as NAME=VALUE, such as up=3, as many as wanted");
-    command->add_option("-o,--out", *out, "the .weave file to write")->type_name("FILE")->required();
+    command->add_option("-o,--out", *out, "the .weave file to write")
+        ->check(output_name())
+        ->type_name("FILE")
+        ->required();
     command->footer(preset_help);
     on_run(command, program, [=, &program]() -> Status {
         WEAVE_TRY(Preset preset, parse_preset(*family, *settings));
@@ -122,10 +125,13 @@ void add_tile(CLI::App& app, Program& program) {
     const auto times = std::make_shared<TileOperation>();
     const CLI::Validator range = between(std::size_t{1}, most_times);
     command->add_option("FILE", *file, "the .weave file to repeat")->required();
-    command->add_option("--x", times->x, "times along the warp, 1 if left out")->check(range)->type_name("N");
-    command->add_option("--y", times->y, "times along the weft")->check(range)->type_name("N");
-    command->add_option("--z", times->z, "times in height")->check(range)->type_name("N");
-    command->add_option("-o,--out", *out, "the .weave file to write")->type_name("FILE")->required();
+    command->add_option("--x", times->x, "times along the warp, 1 if left out")->transform(range)->type_name("N");
+    command->add_option("--y", times->y, "times along the weft")->transform(range)->type_name("N");
+    command->add_option("--z", times->z, "times in height")->transform(range)->type_name("N");
+    command->add_option("-o,--out", *out, "the .weave file to write")
+        ->check(output_name())
+        ->type_name("FILE")
+        ->required();
     on_run(command, program, [=, &program]() -> Status {
         WEAVE_TRY(Design design, load_design(*file));
         times->of = design.root;
@@ -145,7 +151,10 @@ void add_attach(CLI::App& app, Program& program) {
     command->add_option("A", *first, "the .weave file that keeps its yarns")->required();
     command->add_option("B", *second, "the .weave file to join to it")->required();
     command->add_option("--face", *face, "the face of A")->required()->check(CLI::IsMember(face_names()));
-    command->add_option("-o,--out", *out, "the .weave file to write")->type_name("FILE")->required();
+    command->add_option("-o,--out", *out, "the .weave file to write")
+        ->check(output_name())
+        ->type_name("FILE")
+        ->required();
     on_run(command, program, [=, &program]() -> Status {
         WEAVE_TRY(Design design, load_design(*first));
         WEAVE_TRY(const Design other, load_design(*second));
@@ -172,22 +181,19 @@ void add_renumber(CLI::App& app, Program& program) {
     const CLI::Validator range = between(std::size_t{0}, std::size_t{1} << 28);
     command->add_option("FILE", *file, "the .weave file")->required();
     CLI::Option* row = command->add_option("--row", *line, "the row of the block, from 0 as in stacks")
-                           ->check(range)
+                           ->transform(range)
                            ->type_name("ROW");
     CLI::Option* column = command->add_option("--column", *line, "the column of the block, from 0")
-                              ->check(range)
+                              ->transform(range)
                               ->type_name("COLUMN");
     row->excludes(column);
-    command
-        ->add_option(
-            "--order", *order,
-            "the new order: for each place the old number within the row (or column), from 0, such as 1,0,2")
-        ->required()
-        ->delimiter(',')
-        ->allow_extra_args(false)
-        ->check(range)
-        ->type_name("N,N,");
-    command->add_option("-o,--out", *out, "the .weave file to write")->type_name("FILE")->required();
+    add_list(command, "--order", *order, std::size_t{0}, std::size_t{1} << 28,
+             "the new order: for each place the old number within the row (or column), from 0, such as 1,0,2")
+        ->required();
+    command->add_option("-o,--out", *out, "the .weave file to write")
+        ->check(output_name())
+        ->type_name("FILE")
+        ->required();
     on_run(command, program, [=, &program]() -> Status {
         if (row->count() + column->count() == 0) return usage_error("name a --row or a --column");
         WEAVE_TRY(Design design, load_design(*file));
@@ -203,8 +209,10 @@ void add_renumber(CLI::App& app, Program& program) {
 Result<StencilMap> map_of(const ColourImage& image, const std::map<Colour, std::uint16_t>& numbers) {
     StencilMap map{image.rows, image.columns, {}};
     map.blocks.reserve(image.pixels.size());
+    auto found = numbers.end();
     for (std::size_t k = 0; k < image.pixels.size(); ++k) {
-        const auto found = numbers.find(image.pixels[k]);
+        if (found == numbers.end() || found->first != image.pixels[k])  // mostly it is that of the pixel before
+            found = numbers.find(image.pixels[k]);
         if (found == numbers.end()) {
             return bad_input("the pixel in row " + std::to_string(k / image.columns + 1) +
                              " from the bottom and column " + std::to_string(k % image.columns + 1) +
@@ -293,7 +301,10 @@ void add_stencil(CLI::App& app, Program& program) {
         ->type_name("COLOUR=FILE")
         ->required()
         ->allow_extra_args(false);
-    command->add_option("-o,--out", *out, "the .weave file to write")->type_name("FILE")->required();
+    command->add_option("-o,--out", *out, "the .weave file to write")
+        ->check(output_name())
+        ->type_name("FILE")
+        ->required();
     on_run(command, program, [=, &program] { return make_stencil(program, *picture, *mappings, *out); });
 }
 
@@ -339,9 +350,12 @@ void add_flip(CLI::App& app, Program& program) {
     const auto end = std::make_shared<std::size_t>(0);
     const CLI::Validator from_1 = between(std::size_t{1}, std::size_t{most_yarns});
     command->add_option("FILE", *file, "the .weave file")->required();
-    command->add_option("--pick", *pick, "the pick, from 1")->required()->check(from_1)->type_name("N");
-    command->add_option("--end", *end, "the end, from 1")->required()->check(from_1)->type_name("N");
-    command->add_option("-o,--out", *out, "the .weave file to write")->type_name("FILE")->required();
+    command->add_option("--pick", *pick, "the pick, from 1")->required()->transform(from_1)->type_name("N");
+    command->add_option("--end", *end, "the end, from 1")->required()->transform(from_1)->type_name("N");
+    command->add_option("-o,--out", *out, "the .weave file to write")
+        ->check(output_name())
+        ->type_name("FILE")
+        ->required();
     on_run(command, program, [=, &program]() -> Status {
         WEAVE_TRY(Design design, load_design(*file));
         WEAVE_TRY(const Flip wish, flip_wished(program, design, *pick - 1, *end - 1, *file));

@@ -308,9 +308,9 @@ void add_simulate(CLI::App& app, Program& program) {
     command->add_option("--fidelity", wish->fidelity, "draft, standard (if nothing is said) or reference")->type_name("WORD");
     command->add_option("--solver", wish->solver, "relax (if nothing is said), or paper: in time as the paper did, the slow baseline")
         ->type_name("WORD");
-    command->add_option("--points", wish->points, "control points for each crossing, instead of the fidelity's")->type_name("N");
+    command->add_option("--points", wish->points, "control points for each crossing, instead of the fidelity's")->check(positive_number())->type_name("N");
     command->add_option("--residual", wish->residual, "how still is still: greatest force over the reference force")
-        ->check(CLI::PositiveNumber.description(""))
+        ->check(positive_number())
         ->type_name("N");
     command->add_option("--set", wish->set, "a number of the scene for this run, such as warp.strain=1.02 or friction=0.2")->type_name("NAME=N");
     command->add_option("--backend", wish->backend, "what computes: cpu (if nothing is said) or cuda")->type_name("WORD");
@@ -330,15 +330,15 @@ void add_simulate(CLI::App& app, Program& program) {
     command->add_flag("--wraparound", wish->wraparound, "the picks of a feeder are one yarn that turns at the edges");
     command->add_flag("--whole", wish->whole, "do not reduce a periodic cloth to its smallest repeat");
     command->add_option("--starts", wish->starts, "relax so many times more from starts with noise, and tell how much the result owes to its start")
-        ->check(CLI::Range(1, 1000).description(""))
+        ->transform(between(1, 1000))
         ->type_name("N");
     command->add_flag("--symmetry", wish->symmetry, "relax the whole cloth too, from a start with noise, and tell whether its repeats lie alike "
                                                     "(with --whole its yarns are written)");
-    command->add_option("--seed", wish->seed, "of that noise; 1 if nothing is said")->type_name("N");
+    command->add_option("--seed", wish->seed, "of that noise; 1 if nothing is said")->transform(whole_number())->type_name("N");
     command->add_flag("--explain", wish->explain, "tell what would be simulated and why, and end");
-    command->add_option("--steps", wish->steps, "stop after so many steps")->type_name("N");
-    command->add_option("--seconds", wish->seconds, "stop after so long")->type_name("N");
-    command->add_option("--threads", wish->threads, "processor cores to use; 0: all")->type_name("N");
+    command->add_option("--steps", wish->steps, "stop after so many steps")->transform(whole_number())->type_name("N");
+    command->add_option("--seconds", wish->seconds, "stop after so long")->check(positive_number())->type_name("N");
+    command->add_option("--threads", wish->threads, "processor cores to use; 0: all")->transform(whole_number())->type_name("N");
     on_run(command, program, [=, &program] { return run_simulation(program, *wish); });
 }
 

@@ -1,3 +1,4 @@
+#include <weave/block/operation_checks.hpp>
 #include <weave/block/operations.hpp>
 #include <weave/block/stack_moves.hpp>
 #include <weave/core/text.hpp>
@@ -52,9 +53,33 @@ struct MergedTables {
     }
 };
 
-Result<Block> attach_x(const Block& first, const Block& second, const Pair& names) {
-    WEAVE_CHECK_OK(check_same(first.p(), second.p(), "column", "end", names));
-    WEAVE_CHECK_OK(check_card_size(first.picks() + second.picks(), first.ends()));
+/// Both in the order of their yarns.
+Status check_ordered(GridAndHeight first, GridAndHeight second, Face face, const Pair& names) {
+    const BlockGrid &one = first.grid, &other = second.grid;
+    switch (face) {
+        case Face::plus_x:
+        case Face::minus_x:
+            WEAVE_CHECK_OK(check_same(one.p(), other.p(), "column", "end", names));
+            return check_card_size(one.picks() + other.picks(), one.ends());
+        case Face::plus_y:
+        case Face::minus_y:
+            WEAVE_CHECK_OK(check_same(one.t(), other.t(), "row", "pick", names));
+            return check_card_size(one.picks(), one.ends() + other.ends());
+        default:
+            break;
+    }
+    if (one.rows() != other.rows() || one.columns() != other.columns()) {
+        const auto size = [](const BlockGrid& grid) {
+            return counted(grid.rows(), "row") + " and " + counted(grid.columns(), "column");
+        };
+        return bad_input(names.one + " has " + size(one) + ", " + names.other + " " + size(other) +
+                         "; on top of each other they must be equal");
+    }
+    WEAVE_CHECK_OK(check_height(first.height + second.height));
+    return check_card_size(one.picks() + other.picks(), one.ends() + other.ends());
+}
+
+Result<Block> attach_x(const Block& first, const Block& second) {
     MergedTables merged;
     std::vector<std::uint32_t> cells;
     cells.reserve(first.cells().size() + second.cells().size());
@@ -68,9 +93,7 @@ Result<Block> attach_x(const Block& first, const Block& second, const Pair& name
                        std::max(first.height(), second.height()));
 }
 
-Result<Block> attach_y(const Block& first, const Block& second, const Pair& names) {
-    WEAVE_CHECK_OK(check_same(first.t(), second.t(), "row", "pick", names));
-    WEAVE_CHECK_OK(check_card_size(first.picks(), first.ends() + second.ends()));
+Result<Block> attach_y(const Block& first, const Block& second) {
     MergedTables merged;
     merged.add(first);
     merged.add(second);
@@ -86,16 +109,7 @@ Result<Block> attach_y(const Block& first, const Block& second, const Pair& name
                        std::max(first.height(), second.height()));
 }
 
-Result<Block> attach_z(const Block& lower, const Block& upper, const Pair& names) {
-    if (lower.rows() != upper.rows() || lower.columns() != upper.columns()) {
-        const auto size = [](const Block& block) {
-            return counted(block.rows(), "row") + " and " + counted(block.columns(), "column");
-        };
-        return bad_input(names.one + " has " + size(lower) + ", " + names.other + " " + size(upper) +
-                         "; on top of each other they must be equal");
-    }
-    WEAVE_CHECK_OK(check_height(lower.height() + upper.height()));
-    WEAVE_CHECK_OK(check_card_size(lower.picks() + upper.picks(), lower.ends() + upper.ends()));
+Result<Block> attach_z(const Block& lower, const Block& upper) {
     StackTable table;
     std::map<std::pair<std::uint32_t, std::uint32_t>, std::uint32_t> known;
     std::vector<std::uint32_t> cells(lower.cells().size());
@@ -160,17 +174,8 @@ Result<Counts> common_counts(std::span<const BlockPtr> blocks, std::span<const s
 Result<Block> with_line_renumbered(const Block& block, System system, std::size_t line,
                                    std::span<const std::size_t> order) {
     const bool row = system == System::weft;
-    const std::size_t lines = row ? block.rows() : block.columns();
-    const std::string name = row ? "row " : "column ";
-    if (line >= lines)
-        return bad_input("there is no " + name + std::to_string(line) + "; the last one is " +
-                         std::to_string(lines - 1));
-    const std::size_t count = row ? block.t()[line] : block.p()[line];
-    const auto numbers = new_numbers(order, count);
-    if (!numbers) {
-        return bad_input("the new order of " + name + std::to_string(line) + " must name each of its " +
-                         std::to_string(count) + (row ? " picks" : " ends") + " once, from 0 on");
-    }
+    WEAVE_CHECK_OK(check_renumber(block.grid(), system, line, order));
+    const auto numbers = new_numbers(order, order.size());
     MergedTables merged;
     merged.add(block);
     const std::vector<std::uint32_t>& moved = merged.moved.front();
@@ -223,25 +228,44 @@ const std::vector<std::string>& face_names() {
     return names;
 }
 
-Result<Block> attach(const Block& block, const Block& other, Face face, std::span<const std::string> names) {
+Status check_attach(GridAndHeight block, GridAndHeight other, Face face, std::span<const std::string> names) {
     assert(names.empty() || names.size() == 2);
     const Pair pair =
         names.empty() ? Pair{"the block", "the other"} : Pair{quoted(names[0]), quoted(names[1])};
+    const bool minus = face == Face::minus_x || face == Face::minus_y || face == Face::minus_z;
+    return minus ? check_ordered(other, block, face, pair.swapped()) : check_ordered(block, other, face, pair);
+}
+
+Result<Block> attach(const Block& block, const Block& other, Face face, std::span<const std::string> names) {
+    WEAVE_CHECK_OK(check_attach({block.grid(), block.height()}, {other.grid(), other.height()}, face, names));
     switch (face) {
         case Face::plus_x:
-            return attach_x(block, other, pair);
+            return attach_x(block, other);
         case Face::minus_x:
-            return attach_x(other, block, pair.swapped());
+            return attach_x(other, block);
         case Face::plus_y:
-            return attach_y(block, other, pair);
+            return attach_y(block, other);
         case Face::minus_y:
-            return attach_y(other, block, pair.swapped());
+            return attach_y(other, block);
         case Face::plus_z:
-            return attach_z(block, other, pair);
+            return attach_z(block, other);
         case Face::minus_z:
-            return attach_z(other, block, pair.swapped());
+            return attach_z(other, block);
     }
     return bad_input("a block has six faces");
+}
+
+Status check_renumber(const BlockGrid& grid, System system, std::size_t line, std::span<const std::size_t> order) {
+    const bool row = system == System::weft;
+    const std::size_t lines = row ? grid.rows() : grid.columns();
+    const std::string name = row ? "row " : "column ";
+    if (line >= lines)
+        return bad_input("there is no " + name + std::to_string(line) + "; the last one is " +
+                         std::to_string(lines - 1));
+    const std::size_t count = row ? grid.t()[line] : grid.p()[line];
+    if (new_numbers(order, count)) return {};
+    return bad_input("the new order of " + name + std::to_string(line) + " must name each of its " +
+                     std::to_string(count) + (row ? " picks" : " ends") + " once, from 0 on");
 }
 
 Status check_stencil_size(const BlockGrid& block, std::size_t rows, std::size_t columns) {

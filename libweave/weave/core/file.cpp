@@ -166,8 +166,8 @@ class BrokenPipesHeld {
     sigset_t m_pipe{}, m_before{};
 };
 
-Status write_through(const fs::path& target, std::string_view bytes, const fs::path& path) {
-    const Descriptor file(::open(target.c_str(), O_WRONLY | O_CLOEXEC));
+Status write_through(const fs::path& path, std::string_view bytes) {
+    const Descriptor file(::open(path.c_str(), O_WRONLY | O_CLOEXEC));
     if (file.number() < 0) return fault(path, "open");
     const BrokenPipesHeld held;
     return write_all(file, bytes, path);
@@ -198,6 +198,14 @@ Status seen_from(Status status, const fs::path& path) {
     return error;
 }
 
+Error refused(const fs::path& folder, const char* why) {
+    return {ErrorCode::refused, why, folder.string()};
+}
+
+Error taken(const fs::path& folder) {
+    return refused(folder, "exists already and is not an empty folder");
+}
+
 /// The real place of a folder to write. Refused where it is taken.
 Result<fs::path> free_folder(const fs::path& folder) {
     fs::path plain = folder;
@@ -206,12 +214,10 @@ Result<fs::path> free_folder(const fs::path& folder) {
     std::error_code code;
     fs::path target = fs::weakly_canonical(linked, code);
     if (code) return system_fault("cannot create: " + code.message(), folder.string());
-    const auto refused = [&](const char* why) { return Error{ErrorCode::refused, why, folder.string()}; };
     if (!fs::exists(target, code)) return target;
-    if (!fs::is_directory(target, code) || !fs::is_empty(target, code))
-        return refused("exists already and is not an empty folder");
+    if (!fs::is_directory(target, code) || !fs::is_empty(target, code)) return taken(folder);
     if (fs::equivalent(target, fs::current_path(code), code))
-        return refused("is the folder in which you are, which cannot be replaced; name another one");
+        return refused(folder, "is the folder in which you are, which cannot be replaced; name another one");
     return target;
 }
 
@@ -270,12 +276,12 @@ Result<std::string> read_file(const fs::path& path, std::uint64_t limit) {
 }
 
 Status write_file(const fs::path& path, std::string_view bytes) {
-    WEAVE_TRY(const fs::path target, real_target(path));
     struct stat old {};
-    const bool exists = ::stat(target.c_str(), &old) == 0;
+    const bool exists = ::stat(path.c_str(), &old) == 0;
     if (exists && S_ISDIR(old.st_mode)) return system_fault("is a folder, not a file", path.string());
-    if (exists && !S_ISREG(old.st_mode))
-        return write_through(target, bytes, path);  // a device or pipe: no rename
+    // A device or pipe: no rename. The name of a pipe in /proc is a link to no place, and leads there all the same.
+    if (exists && !S_ISREG(old.st_mode)) return write_through(path, bytes);
+    WEAVE_TRY(const fs::path target, real_target(path));
     if (exists) WEAVE_CHECK_OK(check_writable(target, old, path));
     Scaffold scaffold;
     const fs::path temporary = temporary_beside(target);
@@ -294,9 +300,9 @@ Status write_folder(const fs::path& folder, const std::vector<std::pair<std::str
     const fs::path temporary = temporary_beside(target);
     WEAVE_CHECK_OK(seen_from(write_beside(scaffold, temporary, files), folder));
     if (::rename(temporary.c_str(), target.c_str()) != 0) {
+        if (errno == ENOTEMPTY || errno == EEXIST || errno == ENOTDIR) return taken(folder);  // by now
         if (errno != EBUSY) return fault(folder, "put into place");
-        return Error{ErrorCode::refused, "is in use or a mount point; name a folder that does not exist",
-                     folder.string()};
+        return refused(folder, "is in use or a mount point; name a folder that does not exist");
     }
     scaffold.keep();
     flush_parent(target);

@@ -110,7 +110,8 @@ Result<Edit> make(Design& design, const PutFlip& edit) {
     const auto same_place = [&](const Flip& flip) {
         return flip.pick == edit.flip.pick && flip.end == edit.flip.end;
     };
-    std::erase_if(flips, same_place);
+    // Flips are made one after the other: one taken out from under later ones could undo or revive those.
+    if (!flips.empty() && same_place(flips.back())) flips.pop_back();
     flips.push_back(edit.flip);
     Edit undo = PutBlock{edit.block, found->second};
     found->second = with_flips(*found->second, std::move(flips));

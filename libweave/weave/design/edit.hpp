@@ -23,11 +23,13 @@ struct RenameBlock {
 struct SetRoot {
     std::string name;
 };
-/// Adds a flip to a block, or changes the one that it has at this crossing.
+/// Adds a flip after those of a block; where the last of them is of the same crossing it takes its place. What
+/// the flips before it came to stays as it was, so that no pixel but its own changes.
 struct PutFlip {
     std::string block;
     Flip flip;
 };
+/// Takes out every flip of this crossing. Those after it may come to something else.
 struct RemoveFlip {
     std::string block;
     std::size_t pick = 0, end = 0;

@@ -133,7 +133,13 @@ Result<BlockPtr> Evaluator::cloth(const std::vector<std::string>& order) {
         const std::vector<std::string> child_names = children_of(*latest(name).node);
         for (const std::string& child : child_names) children.push_back(at_hand.at(child));
         std::vector<Extent> extents;
-        for (const BlockPtr& child : children) extents.push_back(extent_of(*child));
+        std::vector<SizedPart> sizes;
+        for (const BlockPtr& child : children) {
+            extents.push_back(extent_of(*child));
+            sizes.push_back({&child->grid(), child->height()});
+        }
+        if (Status fits = check_counts_fit(latest(name).node->source, sizes); !fits)
+            return std::move(fits).error().under("blocks." + name);
         if (held + needed_for(*latest(name).node, extents) > m_limit) return too_much(name, m_limit);
         WEAVE_CHECK_OK(make(name, children));
         at_hand[name] = latest(name).block;

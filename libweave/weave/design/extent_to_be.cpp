@@ -1,3 +1,4 @@
+#include <weave/block/operation_checks.hpp>
 #include <weave/design/extent_to_be.hpp>
 
 #include <algorithm>
@@ -82,7 +83,33 @@ Extent to_be(const RenumberOperation& operation, const Extents& children) {
     return same;
 }
 
+/// What does not depend on how many stacks there are.
+Status fit(const TileOperation& operation, const std::vector<SizedPart>& children) {
+    const BlockGrid& grid = *children[0].grid;
+    return check_tile({grid.rows(), grid.columns(), grid.picks(), grid.ends(), children[0].height, 0, 0},
+                      operation.x, operation.y, operation.z);
+}
+
+Status fit(const AttachOperation& operation, const std::vector<SizedPart>& children) {
+    const std::string names[] = {operation.of, operation.other};
+    return check_attach({*children[0].grid, children[0].height}, {*children[1].grid, children[1].height},
+                        operation.face, names);
+}
+
+Status fit(const RenumberOperation& operation, const std::vector<SizedPart>& children) {
+    return check_renumber(*children[0].grid, operation.system, operation.line, operation.order);
+}
+
+template <class Other>
+Status fit(const Other&, const std::vector<SizedPart>&) {
+    return {};
+}
+
 }  // namespace
+
+Status check_counts_fit(const NodeSource& source, const std::vector<SizedPart>& children) {
+    return std::visit([&](const auto& one) { return fit(one, children); }, source);
+}
 
 Extent extent_to_be(const NodeSource& source, const std::vector<Extent>& children) {
     return std::visit([&](const auto& one) { return to_be(one, children); }, source);

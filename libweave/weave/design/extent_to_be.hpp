@@ -14,6 +14,16 @@ namespace weave {
 /// from, or more than those.
 Extent extent_to_be(const NodeSource& source, const std::vector<Extent>& children);
 
+/// A block as far as its own counts tell.
+struct SizedPart {
+    const BlockGrid* grid = nullptr;
+    std::size_t height = 0;
+};
+
+/// What the operation of a node refuses for the counts of its children alone, so that it can be said before
+/// anything is laid out, and before it is asked what fits into memory.
+Status check_counts_fit(const NodeSource& source, const std::vector<SizedPart>& children);
+
 /// At most what is held, beside its children, while the block of this node is made, in units of 4 bytes.
 std::size_t needed_for(const Node& node, const std::vector<Extent>& children);
 

@@ -37,6 +37,8 @@ struct Part {
 class Draughtsman {
   public:
     std::optional<Outline> draw(const Design& design, std::optional<CardPlace> place);
+    /// Why the cloth cannot be woven, where its counts tell so.
+    [[nodiscard]] const std::optional<Error>& error() const { return m_error; }
 
   private:
     bool put_together(Part& part);
@@ -51,11 +53,11 @@ class Draughtsman {
         return true;
     }
 
-    // The grid of a block that is made from others; nothing where they do not fit together.
+    // The grid of a block that is made from others, whose counts fit; nothing where more than those must be looked at.
     static std::optional<BlockGrid> grid_of(const TileOperation& operation, const Part& part);
     static std::optional<BlockGrid> grid_of(const AttachOperation& operation, const Part& part);
     static std::optional<BlockGrid> grid_of(const StencilOperation& operation, const Part& part);
-    static std::optional<BlockGrid> grid_of(const RenumberOperation& operation, const Part& part);
+    static std::optional<BlockGrid> grid_of(const RenumberOperation&, const Part& part);
     static std::optional<BlockGrid> grid_of(const CardLeaf& leaf, const Part& part);
     template <class Leaf>
     static std::optional<BlockGrid> grid_of(const Leaf&, const Part& part) {
@@ -79,6 +81,7 @@ class Draughtsman {
 
     std::map<std::string, Part> m_parts;
     std::vector<LostFlip> m_lost;
+    std::optional<Error> m_error;
     std::size_t m_units = most_units;
 };
 
@@ -124,14 +127,11 @@ std::optional<BlockGrid> Draughtsman::grid_of(const AttachOperation& operation, 
     switch (operation.face) {
         case Face::plus_x:
         case Face::minus_x:
-            if (one.p() != other.p()) return {};
             return BlockGrid(joined(one.t(), other.t()), one.p());
         case Face::plus_y:
         case Face::minus_y:
-            if (one.t() != other.t()) return {};
             return BlockGrid(one.t(), joined(one.p(), other.p()));
         default:
-            if (one.rows() != other.rows() || one.columns() != other.columns()) return {};
             const Extent extent = extent_to_be(operation, {first->extent, second->extent});
             if (!check_slots(extent.stacks, extent.height)) return {};
             return BlockGrid(summed(one.t(), other.t()), summed(one.p(), other.p()));
@@ -161,11 +161,8 @@ std::optional<BlockGrid> Draughtsman::grid_of(const StencilOperation& operation,
     return BlockGrid(std::move(*t), std::move(*p));
 }
 
-std::optional<BlockGrid> Draughtsman::grid_of(const RenumberOperation& operation, const Part& part) {
-    const BlockGrid& grid = part.children[0]->grid;
-    const Counts& counts = operation.system == System::weft ? grid.t() : grid.p();
-    if (operation.line >= counts.size() || !new_numbers(operation.order, counts[operation.line])) return {};
-    return grid;
+std::optional<BlockGrid> Draughtsman::grid_of(const RenumberOperation&, const Part& part) {
+    return part.children[0]->grid;
 }
 
 std::optional<BlockGrid> Draughtsman::grid_of(const CardLeaf& leaf, const Part& part) {
@@ -304,9 +301,15 @@ std::optional<Outline> Draughtsman::draw(const Design& design, std::optional<Car
         part.node = design.blocks.at(name).get();
         const std::vector<std::string> children = children_of(*part.node);
         std::vector<Extent> extents;
+        std::vector<SizedPart> sizes;
         for (const std::string& child : children) {
             part.children.push_back(&m_parts.at(child));
             extents.push_back(part.children.back()->extent);
+            sizes.push_back({&part.children.back()->grid, extents.back().height});
+        }
+        if (Status fits = check_counts_fit(part.node->source, sizes); !fits) {
+            m_error = std::move(fits).error().under("blocks." + name);
+            return {};
         }
         if (held + needed_for(*part.node, extents) > Evaluator::standard_limit) return {};
         if (!put_together(part) || !flip(part, name)) return {};
@@ -330,7 +333,9 @@ std::optional<Outline> Draughtsman::draw(const Design& design, std::optional<Car
 
 Result<Outline> outline(const Design& design, std::optional<CardPlace> place) {
     WEAVE_CHECK_OK(check(design));
-    if (auto drawn = Draughtsman().draw(design, place)) return std::move(*drawn);
+    Draughtsman draughtsman;
+    if (auto drawn = draughtsman.draw(design, place)) return std::move(*drawn);
+    if (draughtsman.error()) return *draughtsman.error();
     WEAVE_TRY(Evaluation evaluation, evaluate(design));
     const Block& block = *evaluation.block;
     Outline outline{block.grid(), block.height(), std::move(evaluation.lost_flips), {}};

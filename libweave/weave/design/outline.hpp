@@ -25,8 +25,8 @@ struct Outline {
 
 /// The outline of the cloth of a design. It is that of evaluate(), errors included, but as far as possible
 /// only the stacks at flips and at the crossing asked for are made, so that a cloth of 400 million crossings
-/// is told in milliseconds from its counts. Only what cannot be told so is evaluated: what is refused, cards
-/// read with several picks and ends a cell, thousands of flips on deep trees.
+/// is told in milliseconds from its counts. Only what cannot be told so is evaluated: what is refused for more
+/// than its counts, cards read with several picks and ends a cell, thousands of flips on deep trees.
 Result<Outline> outline(const Design& design, std::optional<CardPlace> place = {});
 
 }  // namespace weave

@@ -1,5 +1,6 @@
 #include <weave/design/document.hpp>
 #include <weave/design/edit.hpp>
+#include <weave/design/outline.hpp>
 #include <weave/loom/pick_table.hpp>
 #include <weave/sim/flips.hpp>
 #include <weave/sim/friction_rounds.hpp>
@@ -313,6 +314,10 @@ class Simulation {
 
     /// One flip with the relaxation that follows; undone where the cloth does not take it.
     void make(const Flip& flip) {
+        if (std::string reason = why_not(flip); !reason.empty()) {
+            tell_of(flip, false, std::move(reason), 0, 0);
+            return;
+        }
         const SimScene before = m_scene;
         const std::vector<Crossing> crossings = m_plan.curves.crossings;
         const std::size_t lost_before = lost();
@@ -338,9 +343,25 @@ class Simulation {
             result.done = false;
             result.reason = "the design does not take it";
         }
+        tell_of(flip, result.done, result.reason, flip_seconds, settle_seconds);
+    }
+
+    /// Why the card of the design, with the flips made so far, does not take this one; empty where it does.
+    [[nodiscard]] std::string why_not(const Flip& flip) const {
+        const Result<Outline> cloth = outline(m_design, CardPlace{flip.pick, flip.end});
+        if (!cloth) return cloth.error().text();
+        if (!cloth->at) return no_crossing(cloth->grid, flip.pick, flip.end).message;
+        const PlacedStack& at = *cloth->at;
+        if (at.stack.weft_over(flip.pick - at.first_pick, flip.end - at.first_end) == flip.weft_over)
+            return "they lie so already";
+        const Result<Stack> flipped = weave::flip(at, flip.pick, flip.end);
+        return flipped ? "" : flipped.error().message;
+    }
+
+    void tell_of(const Flip& flip, bool done, std::string reason, double flip_seconds, double settle_seconds) {
         m_flips.push_back({{"pick", flip.pick + 1}, {"end", flip.end + 1}, {"weft_over", flip.weft_over},
-                           {"done", result.done}, {"reason", result.reason}, {"flip_seconds", flip_seconds},
-                           {"settle_seconds", settle_seconds}, {"settle_iterations", result.done ? m_last.iterations : 0}});
+                           {"done", done}, {"reason", std::move(reason)}, {"flip_seconds", flip_seconds},
+                           {"settle_seconds", settle_seconds}, {"settle_iterations", done ? m_last.iterations : 0}});
     }
 
     Yarns measured() {
