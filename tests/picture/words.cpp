@@ -356,6 +356,18 @@ TEST_CASE("in a cloth of one column the arrow of the way out stands for that of 
     CHECK(places_of(leaving.marks, "1 to 2").size() == 1);
     CHECK(shuttles(leaving) == 0);
     CHECK(shuttles(slice_of(shuttle(WeftMode::periodic), block, {.view = View::weft_slice})) == 1);
+
+    // A pick that comes in and leaves at the same end: both ways run clear of its number and of the dots.
+    const Block tall =
+        block_of({4, 4, 4}, {2}, {"T0 P0 T1 T2 P1 T3", "T0 T1 P0 T2 T3 P1", "T0 P0 T1 T2 P1 T3"});
+    Design four = shuttle(WeftMode::wraparound);
+    four.weft.feeders.resize(4, four.weft.feeders[0]);
+    four.weft.feeder_order = {{0}, {1}, {2}, {3}};
+    const SlicePicture between = slice_of(four, tall, {.view = View::weft_slice, .line = 1});
+    CHECK(std::ranges::count_if(between.marks, is_stub) == 8);
+    CHECK(places_of(between.marks, "6 from 2").size() == 1);
+    CHECK(places_of(between.marks, "6 to 10").size() == 1);
+    check_stubs(between);
 }
 
 TEST_CASE("words go where they cover least, and never over one another") {

@@ -248,7 +248,7 @@ class SliceDrawer {
         const double edge = static_cast<double>(m_map.positions) - 1;
         const std::size_t last = path.levels.size() - 1;
         if (!reaches(path, false)) {
-            draw_tag(path, static_cast<double>(path.first) + 0.2, 0);
+            draw_tag(path, static_cast<double>(path.first) + (last == 0 ? 0 : 0.2), 0);
         } else if (!(m_trim && path.loose.front())) {
             name(-overhang - 0.14, path.levels.front(), Anchor::end);
         }
@@ -335,7 +335,8 @@ class SliceDrawer {
         std::string number, words;  ///< of the yarn; where it goes or comes from
         Colour colour;
         bool leaves = false;  ///< the shuttle, rather than comes in
-        Point tip{};          ///< of the stub
+        double start = 0;  ///< of its line from the end: beyond the tag of a yarn that is nothing but an end
+        Point tip{};       ///< of the stub
     };
 
     /// Where the drawn part of a path ends; nothing where all of it is trimmed off.
@@ -363,7 +364,10 @@ class SliceDrawer {
             return way.out == out && way.end.x == end->x && way.end.y == end->y;
         });
         if (known == m_ways_out.end()) {
-            m_ways_out.push_back({*end, out, std::to_string(path.number + 1), words, path.colour, leaves});
+            const std::string number = std::to_string(path.number + 1);
+            const bool point = path.levels.size() == 1;
+            const double start = point ? Canvas::text_width(number, 11, true) / 2 + 3 : 0;
+            m_ways_out.push_back({*end, out, number, words, path.colour, leaves, start});
         } else {
             known->words += ", " + words;
             known->leaves = known->leaves || leaves;
@@ -374,8 +378,8 @@ class SliceDrawer {
 
     /// A short dotted line out of the yarn's end: shorter or tilted where it would run into something.
     void draw_stub(WayOut& way) {
-        constexpr double begin = 9,
-                         clear = 8;  // beyond the yarn itself, and before the tip: no pointing at others
+        constexpr double begin = 14;  // from here on the line is clear of its own yarn and tag
+        constexpr double clear = 8;   // before the tip, which shall point at no other yarn
         double least = std::numeric_limits<double>::infinity();
         Point ahead{};
         for (const double angle : {0.0, 0.5, -0.5, 0.9, -0.9, 1.25, -1.25}) {
@@ -390,7 +394,8 @@ class SliceDrawer {
             }
         }
         const double head = way.leaves ? 8 : 0;
-        const Point stub[]{way.end, {way.tip.x - ahead.x * head, way.tip.y - ahead.y * head}};
+        const Point stub[]{{way.end.x + ahead.x * way.start, way.end.y + ahead.y * way.start},
+                           {way.tip.x - ahead.x * head, way.tip.y - ahead.y * head}};
         m_canvas.polyline(stub, {.colour = mix(way.colour, {0, 0, 0}, 0.3), .width = 2, .dash = {1, 4}});
         if (way.leaves) m_canvas.arrow_head(way.tip, ahead, 9, mix(way.colour, {0, 0, 0}, 0.5));
         m_places.add_curve(straight(way.end, way.tip));
