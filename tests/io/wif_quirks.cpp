@@ -162,6 +162,24 @@ TEST_CASE("WIF: shaft 0, several shafts and unlisted threads") {
     CHECK(rows(read(with("1=1\n2=2,3", "1=\n2=0"))) == "---/---");
 }
 
+TEST_CASE("WIF: a warning names the ends that the threading leaves out, but not those that it puts on shaft 0") {
+    check_warning(read(with("2=2\n3=3", "3=3")), 20, "[THREADING] leaves out end 2, read as on no shaft");
+    CHECK(read(with("2=2\n3=3", "2=0\n3=3")).warnings.empty());
+    CHECK(read(with("2=2\n3=3", "2=\n3=3")).warnings.empty());
+    const std::string wide = with("Threads=3", "Threads=30", with("3=3\n", "3=3\n5=1\n8=1\n30=2\n"));
+    check_warning(read(wide), 20, "leaves out ends 4, 6 to 7, 9 to 29, read as");
+    std::string odd = "1=1\n";
+    for (int end = 3; end < 30; end += 2) odd += std::to_string(end) + "=1\n";
+    check_warning(read(with("1=1\n2=2\n3=3\n", odd, with("Threads=3", "Threads=29"))), 20,
+                  "leaves out ends 2, 4, 6, 8, 10, 12 and 8 more, read as");
+    // listed among the colours alone
+    const std::string coloured = and_also("[WARP COLORS]\n4=1\n", with("Threads=3", "Threads=4"));
+    const DesignFromWif last = read(coloured);
+    CHECK(std::ranges::any_of(last.warnings, [](const std::string& text) {
+        return text.find("[THREADING] leaves out end 4") != std::string::npos;
+    }));
+}
+
 TEST_CASE("WIF: a last pick without a line lifts nothing; a declaration that is far too high is overstated") {
     const std::string four = with("2=2,3\n", "2=2,3\n3=1\n", with("Threads=2", "Threads=4"));
     const DesignFromWif kept = read(four);

@@ -67,6 +67,21 @@ TEST_CASE("slices and the block begin at the pick and end that are asked for") {
                  {"--from-pick"});
 }
 
+TEST_CASE("an option of the 3d view is refused with every other view, not passed over") {
+    const Workshop shop;
+    shop.must({"preset", "plain", "-o", "a.weave"});
+    const std::vector<std::vector<std::string>> options{{"--side", "top"},      {"--cut", "x=1"},
+                                                        {"--colour", "strain"}, {"--repeat", "2x2"},
+                                                        {"--size", "400x300"},  {"--perspective"}};
+    for (const std::vector<std::string>& option : options) {
+        for (const char* view : {"card", "face", "floats", "weft:1", "block"}) {
+            std::vector<std::string> words{"render", "a.weave", "--view", view, "-o", "x.png"};
+            words.insert(words.end(), option.begin(), option.end());
+            shop.refused(words, 2, {option[0] + " is for --view 3d", std::string("--view ") + view});
+        }
+    }
+}
+
 TEST_CASE("the card is the same in PNG, TIFF and BMP, whatever the case of the extension") {
     const Workshop shop;
     shop.must({"samples", "twill-g", "-o", "d.weave"});
@@ -97,6 +112,29 @@ TEST_CASE("a card written as WIF is imported again as the same card, whatever it
         CHECK(back.at("ends") == card.at("ends"));
         CHECK(shop.json({"info", "back.weave"}).at("card_sha256") == card.at("card_sha256"));
     }
+}
+
+TEST_CASE("a cloth with a row or a column without yarns is written as WIF, and says what is lost") {
+    const Workshop shop;
+    shop.put("d.weave", R"({"format":"weave","version":1,"root":"a","blocks":{"a":{"kind":"stacks",)"
+                        R"("stacks":[["T0 P0","T0","P1 T0 P2"],["P0","-","P1 P2"],["P0 T1","T1","P2 T1 P1"]]}}})");
+    const Json info = shop.json({"info", "d.weave"});
+    const program_tests::Ended ended = shop.run({"card", "d.weave", "-o", "c.wif"});
+    CHECK(ended.exit == 0);
+    CHECK(ended.complaints() ==
+          std::vector<std::string>{"weave: c.wif: WIF cannot hold, and the file does not say: the rows without "
+                                   "picks, the columns without ends"});
+    shop.must({"import", "c.wif", "-o", "back.weave"});
+    const Json back = shop.json({"info", "back.weave"});
+    CHECK(back.at("card_sha256") == info.at("card_sha256"));
+    CHECK(back.at("rows") == 2);
+    CHECK(back.at("columns") == 2);
+
+    shop.put("s.weave", R"({"format":"weave","version":1,"root":"a","blocks":{"a":{"kind":"slice","dots":"weft",)"
+                        R"j("positions":["T0 P0","P0 (T0)","P0 T0"]}}})j");
+    CHECK(shop.run({"card", "s.weave", "-o", "s.wif"}).exit == 0);
+    shop.must({"import", "s.wif", "-o", "s2.weave"});
+    CHECK(shop.json({"info", "s2.weave"}).at("card_sha256") == shop.json({"info", "s.weave"}).at("card_sha256"));
 }
 
 TEST_CASE("card tells in one line what WIF cannot hold of a design, and only what the design has") {

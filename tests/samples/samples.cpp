@@ -79,6 +79,14 @@ bool end_passes_between(const CardImage& card, std::size_t end, std::size_t a, s
 
 }  // namespace
 
+TEST_CASE("The stencil's card is read as stacks of two picks and two ends, which is what it is") {
+    const Evaluation cloth = evaluate(find_sample("three-colour-stencil")->make()).value();
+    const std::vector<Grouping> offered = possible_groupings(cloth.block->card_image());
+    REQUIRE_FALSE(offered.empty());
+    CHECK(offered[0].t == cloth.block->t());
+    CHECK(offered[0].p == cloth.block->p());
+}
+
 TEST_CASE("Every sample that is promised exists, once, with an account of where it comes from") {
     std::set<std::string> names;
     for (const Sample& sample : samples()) {

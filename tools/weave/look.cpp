@@ -104,6 +104,9 @@ std::string lost_in_wif(const Cloth& cloth) {
         if (has) lost += (lost.empty() ? "" : ", ") + std::string(what);
     };
     add(has_loose_yarns(*cloth.evaluation.block), "which yarns are loose on purpose");
+    const auto bare = [](const std::vector<std::uint32_t>& counts) { return std::ranges::count(counts, 0U) > 0; };
+    add(bare(cloth.evaluation.block->t()), "the rows without picks");
+    add(bare(cloth.evaluation.block->p()), "the columns without ends");
     add(scene.weft_mode == WeftMode::wraparound, "that the wefts turn (weft_mode wraparound)");
     add(scene.boundary_x != usual.boundary_x || scene.boundary_y != usual.boundary_y, "the boundaries");
     add(!scene.pins.empty(), "the pins");
@@ -176,6 +179,7 @@ struct Rendering {
     bool trim = false;
     std::optional<std::size_t> from_pick, from_end;
     ClothWords cloth;  ///< how relaxed cloth is looked at
+    std::string given_3d_option;  ///< the first of the options for `cloth` that was given
 };
 
 Status render_cloth(Program& program, const Rendering& wish) {
@@ -189,9 +193,16 @@ Status render_cloth(Program& program, const Rendering& wish) {
     return {};
 }
 
+/// Pictures of designs have no camera: an option for one would be passed over in silence.
+Status refuse_3d_options(const Rendering& wish) {
+    if (wish.given_3d_option.empty()) return {};
+    return Error{ErrorCode::usage, wish.given_3d_option + " is for --view 3d", "--view " + wish.view};
+}
+
 Status render(Program& program, const Rendering& wish) {
     if (wish.view == "3d") return render_cloth(program, wish);
-    const auto& [file, view, out, trim, from_pick, from_end, cloth_words] = wish;
+    WEAVE_CHECK_OK(refuse_3d_options(wish));
+    const auto& [file, view, out, trim, from_pick, from_end, cloth_words, given_3d_option] = wish;
     WEAVE_TRY(const PictureFormat format, picture_format_of(out));
     WEAVE_TRY(const Cloth cloth, load_cloth(program, file));
     const Progress progress("drawing " + out);
@@ -235,7 +246,12 @@ void add_render(CLI::App& app, Program& program) {
     command->add_option("-o,--out", wish->out, "the picture to write: .png or .svg")
         ->type_name("FILE")
         ->required();
-    on_run(command, program, [=, &program] { return render(program, *wish); });
+    on_run(command, program, [=, &program] {
+        for (const char* option : {"--side", "--cut", "--colour", "--repeat", "--size", "--perspective"}) {
+            if (command->count(option) > 0 && wish->given_3d_option.empty()) wish->given_3d_option = option;
+        }
+        return render(program, *wish);
+    });
 }
 
 }  // namespace

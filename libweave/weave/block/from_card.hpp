@@ -25,7 +25,7 @@ struct Grouping {
 /// Groupings that every cell of the card admits, best first, at most `most`. There is no single truth (any
 /// one-pick row admits all ends as one cell), so the ranking prefers, in this order, picks that keep one
 /// order over the whole width, stacks of equal counts, and counts that repeat. Never empty: t = p = 1 fits
-/// every card.
+/// every card. Stacks of equal counts that fit come before counts without a rule.
 std::vector<Grouping> possible_groupings(const CardImage& card, std::size_t most = 8);
 
 }  // namespace weave

@@ -300,12 +300,26 @@ CardImage corner_of(const CardImage& card) {
 
 /// Stacks of equal counts that every cell admits although neither system keeps its order over the whole
 /// cloth: layers that change places from region to region. Where the yarns tell nothing at all, small
-/// stacks are the likelier ones (`small_first`); where they tell something, large ones say more.
-std::vector<Ranked> even_stacks(const CardImage& card, std::size_t enough, bool small_first) {
-    std::array<std::pair<std::uint32_t, std::uint32_t>, 14> usual{{{6, 6}, {8, 4}, {6, 4}, {6, 3}, {4, 4}, {6, 2}, {3, 4},
-                                                                     {4, 3}, {3, 3}, {4, 2}, {2, 4}, {2, 3}, {3, 2},
-                                                                     {2, 2}}};
+/// stacks are the likelier ones (`small_first`); where they tell something, large ones say more, after the
+/// `likely` one (0, 0: none).
+std::vector<Ranked> even_stacks(const CardImage& card, std::size_t enough, bool small_first,
+                                std::pair<std::uint32_t, std::uint32_t> likely) {
+    std::array<std::pair<std::uint32_t, std::uint32_t>, 14> usual{{{6, 6},
+                                                                   {8, 4},
+                                                                   {6, 4},
+                                                                   {6, 3},
+                                                                   {4, 4},
+                                                                   {6, 2},
+                                                                   {3, 4},
+                                                                   {4, 3},
+                                                                   {3, 3},
+                                                                   {4, 2},
+                                                                   {2, 4},
+                                                                   {2, 3},
+                                                                   {3, 2},
+                                                                   {2, 2}}};
     if (small_first) std::reverse(usual.begin(), usual.end());
+    std::ranges::stable_partition(usual, [&](const auto& counts) { return counts == likely; });
     const CardImage corner = corner_of(card);
     std::vector<Ranked> found;
     for (const auto& [t, p] : usual) {
@@ -343,8 +357,18 @@ std::vector<Grouping> possible_groupings(const CardImage& card, std::size_t most
     const Yarns picks(card), ends(turned);
     const Readings pick_readings = readings_of(picks, true), end_readings = readings_of(ends, false);
     std::vector<Ranked> ranked = ranked_pairs(pick_readings, end_readings, card.ends());
-    const bool nothing_found = all_single(ranked.front().t.counts) && all_single(ranked.front().p.counts);
-    offer_early(ranked, even_stacks(card, nothing_found ? 3 : 2, nothing_found), nothing_found ? 2 : 3);
+    const Ranked& first = ranked.front();
+    const bool nothing_found = all_single(first.t.counts) && all_single(first.p.counts);
+    // A cloth has one count more often than counts that change without a rule. The longest run that keeps one
+    // order tells which: shorter ones came about where regions meet.
+    const bool regular = is_regular(first.t.counts) && is_regular(first.p.counts);
+    std::pair<std::uint32_t, std::uint32_t> likely{};
+    if (!regular)
+        likely = {*std::ranges::max_element(first.t.counts), *std::ranges::max_element(first.p.counts)};
+    offer_early(ranked, even_stacks(card, regular && !nothing_found ? 2 : 3, nothing_found, likely),
+                !regular        ? 0
+                : nothing_found ? 2
+                                : 3);
     std::vector<Grouping> groupings;
     for (const Ranked& candidate : ranked) {
         if (groupings.size() == most) break;

@@ -24,8 +24,8 @@ bool is_wif(std::string_view text);
 Result<DesignFromWif> read_wif(std::string_view text);
 
 /// A design as WIF 1.1: shafts are the different columns of the card, THREADING and LIFTPLAN, rising shed,
-/// colours, our private section with feeder order, t and p. Loose marks, the tree of blocks and the scene are
-/// not in it: WIF has no place for them. `card` is the card image of the design's root and
+/// colours, our private section with feeder order, t and p. Loose marks, rows and columns
+/// without yarns, the tree of blocks and the scene are not in it: WIF has no place for them. `card` is the card image of the design's root and
 /// `block` its block.
 Result<std::string> write_wif(const Design& design, const Block& block, const CardImage& card);
 

@@ -62,7 +62,7 @@ Result<Threads> threads_of(const File& file, const std::string& system, const st
                            Warnings& warnings) {
     const std::string noun = system == "warp" ? "end" : "pick";
     const Listed main = listed_in(file.find(main_list));
-    Threads threads{0, main.any && main.low == 0};
+    Threads threads{0, main.any && main.low == 0, 0};
     const auto note = [&](const Listed& listed) {
         if (listed.any) threads.count = std::max(threads.count, listed.high + (listed.low == 0 ? 1 : 0));
     };
@@ -78,6 +78,7 @@ Result<Threads> threads_of(const File& file, const std::string& system, const st
                                : section != nullptr ? section->line
                                                     : 1));
     }
+    threads.listed = threads.count;
     if (declared == nullptr) {
         warnings.add(shown(system) + " does not say Threads; " + counted(threads.count, noun) +
                      " are listed");
@@ -147,10 +148,40 @@ Result<std::uint32_t> declared_count(const File& file, const std::string& key) {
     return static_cast<std::uint32_t>(count);
 }
 
+/// Ends, from 0 and rising, as people say them: `end 4`, `ends 2, 5 to 7 and 9 more`.
+std::string said(const std::vector<std::size_t>& ends) {
+    constexpr std::size_t most_ranges = 6;
+    std::string text;
+    std::size_t at = 0;
+    for (std::size_t ranges = 0; at < ends.size() && ranges < most_ranges; ++ranges) {
+        const std::size_t first = at++;
+        while (at < ends.size() && ends[at] == ends[at - 1] + 1) ++at;
+        text += (ranges == 0 ? "" : ", ") + std::to_string(ends[first] + 1);
+        if (at - first > 1) text += " to " + std::to_string(ends[at - 1] + 1);
+    }
+    if (at < ends.size()) text += " and " + std::to_string(ends.size() - at) + " more";
+    return (ends.size() == 1 ? "end " : "ends ") + text;
+}
+
+/// The standard lets a file leave out an end that is on no shaft. An end that never moves is seldom meant, though.
+void warn_of_unthreaded(const Section& threading, const std::vector<std::pair<std::size_t, Entry>>& lines,
+                        const Threads& ends, Warnings& warnings) {
+    std::vector<bool> threaded(ends.count);
+    for (const auto& [end, entry] : lines) threaded[end] = true;
+    std::vector<std::size_t> left_out;
+    for (std::size_t end = 0; end < std::min(ends.count, ends.listed); ++end) {
+        if (!threaded[end]) left_out.push_back(end);
+    }
+    if (left_out.empty()) return;
+    warnings.add(threading.line, "[THREADING] leaves out " + said(left_out) + ", read as on no shaft");
+}
+
 /// For each shaft, from 1, the ends on it.
 Result<std::vector<EndSet>> read_threading(const File& file, const Threads& ends, std::uint32_t shafts,
                                            Warnings& warnings) {
-    WEAVE_TRY(const auto lines, per_thread(*file.find("threading"), ends, warnings));
+    const Section& threading = *file.find("threading");
+    WEAVE_TRY(const auto lines, per_thread(threading, ends, warnings));
+    warn_of_unthreaded(threading, lines, ends, warnings);
     std::vector<EndSet> on_shaft(std::size_t{shafts} + 1);
     for (const auto& [end, entry] : lines) {
         WEAVE_TRY(auto numbers, whole_list(entry.value, entry.line, shafts));
@@ -169,7 +200,7 @@ Result<std::vector<EndSet>> read_threading(const File& file, const Threads& ends
 Result<std::vector<EndSet>> read_tie_up(const File& file, std::uint32_t treadles,
                                         const std::vector<EndSet>& on_shaft, std::size_t row_bytes,
                                         Budget& budget, Warnings& warnings) {
-    WEAVE_TRY(const auto lines, per_thread(*file.find("tieup"), {treadles, false}, warnings));
+    WEAVE_TRY(const auto lines, per_thread(*file.find("tieup"), {treadles, false, treadles}, warnings));
     std::vector<EndSet> on_treadle(std::size_t{treadles} + 1);
     std::size_t bytes = 0;
     for (const auto& [treadle, entry] : lines) {

@@ -9,6 +9,7 @@ namespace weave::wif {
 struct Threads {
     std::size_t count = 0;
     bool from_zero = false;  ///< the file counts them from 0, not from 1
+    std::size_t listed = 0;  ///< a warning has told of those from here on, which no section lists
 };
 
 /// Which sections say how the picks are woven: TIEUP and TREADLING, or LIFTPLAN.
@@ -28,7 +29,8 @@ Result<Threads> picks_of(const File& file, Drive drive, Warnings& warnings);
 Result<std::vector<std::pair<std::size_t, Entry>>> per_thread(const Section& section, const Threads& threads,
                                                               Warnings& warnings);
 
-/// The card image: pick by pick the shafts that rise (or sink), and the ends on them.
+/// The card image: pick by pick the shafts that rise (or sink), and the ends on them. A warning names ends that
+/// [THREADING] leaves out; `shaft 0` says so itself.
 Result<CardImage> drawdown(const File& file, Drive drive, const Threads& ends, const Threads& picks,
                            Warnings& warnings);
 

@@ -3,6 +3,8 @@
 #include <weave/design/plan_json.hpp>
 #include <weave/io/wif_private.hpp>
 
+#include <algorithm>
+#include <iterator>
 #include <numeric>
 
 namespace weave::wif {
@@ -74,6 +76,13 @@ Status read_plans_of_ours(const Section& section, Design& design) {
     return {};
 }
 
+/// A row or column without yarns leaves no trace on the card, and a card is not read with one.
+Sequence woven_counts(const std::vector<std::uint32_t>& counts) {
+    std::vector<std::uint32_t> woven;
+    std::ranges::copy_if(counts, std::back_inserter(woven), [](std::uint32_t count) { return count > 0; });
+    return {shortest_repeat(woven)};
+}
+
 bool says(const Section& section, std::string_view key, const std::string& value) {
     const Entry* entry = section.find(key);
     return entry != nullptr && entry->value == value;
@@ -90,8 +99,8 @@ std::string private_section(const Design& design, const Block& block, const Card
     const std::string text = json.dump(-1, ' ', true, Json::error_handler_t::replace);
     std::string section = shown(private_name) + "\r\nVersion=1\r\nCard SHA-256=" + card.sha256() +
                           "\r\nText SHA-256=" + text_hash(before) + "\r\n";
-    section += "Picks of rows=" + to_text(Sequence{shortest_repeat(block.t())}) + "\r\n";
-    section += "Ends of columns=" + to_text(Sequence{shortest_repeat(block.p())}) + "\r\n";
+    section += "Picks of rows=" + to_text(woven_counts(block.t())) + "\r\n";
+    section += "Ends of columns=" + to_text(woven_counts(block.p())) + "\r\n";
     for (std::size_t at = 0, k = 1; at < text.size(); at += piece_size, ++k)
         section += std::to_string(k) + "=\"" + text.substr(at, piece_size) + "\"\r\n";
     return section;

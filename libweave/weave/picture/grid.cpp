@@ -19,13 +19,16 @@ double pixels_each(const Grid& grid) {
 }
 
 /// Calls mark(line, number) for the lines of a ruler: 1, 5, 10 and so on where every line is one yarn, else
-/// the first yarn of every line, or every few lines, that has room for its number.
+/// the first yarn of every line, or every few lines, that has room for its number. A line without yarns has
+/// none.
 template <class Mark>
 void rule(std::size_t lines, double pixels, double least,
           const std::function<std::size_t(std::size_t)>& number_of, Mark mark) {
     const std::size_t step = ruler_step(pixels / static_cast<double>(std::max<std::size_t>(lines, 1)), least);
-    const bool one_each = number_of(lines) == lines;
+    bool one_each = true;
+    for (std::size_t line = 0; line < lines && one_each; ++line) one_each = number_of(line + 1) == line + 1;
     for (std::size_t line = 0; line < lines; ++line) {
+        if (number_of(line + 1) == number_of(line)) continue;
         const std::size_t place = one_each ? line + 1 : line;
         if (line == 0 || place % step == 0) mark(line, number_of(line) + 1);
     }

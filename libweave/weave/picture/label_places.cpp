@@ -59,6 +59,24 @@ double LabelPlaces::harm(const Rectangle& place) const {
     return cost;
 }
 
+double LabelPlaces::harm_along(Point from, Point to) const {
+    constexpr double width = 5;
+    const auto steps = static_cast<std::size_t>(std::hypot(to.x - from.x, to.y - from.y) / step) + 1;
+    double cost = 0;
+    for (std::size_t k = 0; k <= steps; ++k) {
+        const double share = static_cast<double>(k) / static_cast<double>(steps);
+        const Point middle{from.x + share * (to.x - from.x), from.y + share * (to.y - from.y)};
+        cost += harm({middle.x - width / 2, middle.y - width / 2, width, width});
+    }
+    return cost;
+}
+
+bool LabelPlaces::fits(double width, double height, std::span<const Point> wishes) const {
+    return std::ranges::any_of(wishes, [&](Point wish) {
+        return harm({wish.x - width / 2, wish.y - height / 2, width, height}) == 0;
+    });
+}
+
 Rectangle LabelPlaces::take(double width, double height, std::span<const Point> wishes) {
     Rectangle best;
     double least = std::numeric_limits<double>::infinity();

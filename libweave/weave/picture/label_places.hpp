@@ -18,6 +18,12 @@ class LabelPlaces {
     /// A chain of cubic Bézier pieces as Canvas::curve() draws it.
     void add_curve(std::span<const Point> bezier);
 
+    /// What a straight line between two points would hide or run into: 0 where nothing.
+    [[nodiscard]] double harm_along(Point from, Point to) const;
+
+    /// Whether words of this size around one of the wishes would cover nothing.
+    [[nodiscard]] bool fits(double width, double height, std::span<const Point> wishes) const;
+
     /// The first of the wishes, each the middle of words of this size, that covers nothing; where all do, the one
     /// that covers least. Words are hidden last of all, lines rather than discs. It is taken from now on.
     Rectangle take(double width, double height, std::span<const Point> wishes);

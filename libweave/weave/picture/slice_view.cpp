@@ -4,6 +4,8 @@
 
 #include <algorithm>
 #include <cmath>
+#include <limits>
+#include <optional>
 
 namespace weave {
 
@@ -36,6 +38,7 @@ class SliceDrawer {
         for (const SliceDot& dot : m_map.dot_list) draw_dot(dot);
         for (const SlicePath& path : m_map.paths) draw_names(path);
         m_canvas.unclip();
+        for (WayOut& way : m_ways_out) draw_stub(way);
         for (const WayOut& way : m_ways_out) draw_name(way);
     }
 
@@ -175,10 +178,14 @@ class SliceDrawer {
                                 {0xff, 0xff, 0xff});  // a rim, so that it reads on dark yarns too
             m_canvas.arrow_head({point.x + ahead.x * 7, point.y + ahead.y * 7}, ahead, 14,
                                 mix(path.colour, {0, 0, 0}, 0.62));
+            m_places.add_disc(point, dot_radius);
         };
-        if (steps == 0)
+        if (steps == 0) {
+            // Where so short a yarn turns or leaves, the arrow there says the way; two would overlap.
+            if (!reaches(path, !path.leftwards) || (m_trim && path.loose[0])) return;
             return mark(at(static_cast<double>(path.first) + way * 0.42, static_cast<double>(path.levels[0])),
                         0);
+        }
         for (std::size_t k = (steps / 2 + 2 * path.number) % std::min<std::size_t>(steps, 6); k < steps;
              k += 6) {
             if (m_trim && (path.loose[k] || path.loose[k + 1])) continue;
@@ -241,7 +248,7 @@ class SliceDrawer {
         const double edge = static_cast<double>(m_map.positions) - 1;
         const std::size_t last = path.levels.size() - 1;
         if (!reaches(path, false)) {
-            draw_tag(path, static_cast<double>(path.first) + 0.2, 0);
+            draw_tag(path, static_cast<double>(path.first) + (last == 0 ? 0 : 0.2), 0);
         } else if (!(m_trim && path.loose.front())) {
             name(-overhang - 0.14, path.levels.front(), Anchor::end);
         }
@@ -273,7 +280,7 @@ class SliceDrawer {
             const SlicePath* to = path_of(turn.to_pick);
             if (!is_shown(turn) || (from == nullptr && to == nullptr)) continue;
             if (from == nullptr || to == nullptr) {
-                draw_way_out(turn, from != nullptr ? *from : *to, from != nullptr);
+                add_way_out(turn, from != nullptr ? *from : *to, from != nullptr);
                 continue;
             }
             const double a = end_of(*from, turn.side).y, b = end_of(*to, turn.side).y;
@@ -322,56 +329,115 @@ class SliceDrawer {
         m_canvas.arrow_head({middle.x, middle.y + down * 7}, {0, down}, 14, mix(colour, {0, 0, 0}, 0.62));
     }
 
-    /// A turn whose other pick lies in another row: the yarn leaves the slice, with the number of where it
-    /// goes or comes from.
-    void draw_way_out(const Turn& turn, const SlicePath& path, bool leaves) {
-        const Point a = end_of(path, turn.side);
-        const double out = turn.side == Side::right ? 1 : -1;
-        const Point stub[]{a, {a.x + out * 24, a.y}};
-        m_canvas.polyline(stub, {.colour = mix(path.colour, {0, 0, 0}, 0.3), .width = 2, .dash = {1, 4}});
-        if (leaves) m_canvas.arrow_head({a.x + out * 32, a.y}, {out, 0}, 9, mix(path.colour, {0, 0, 0}, 0.5));
-        m_places.add_curve(straight(a, {a.x + out * stub_reach, a.y}));
-        m_ways_out.push_back(
-            {a, out,
-             (leaves ? "to " : "from ") + std::to_string((leaves ? turn.to_pick : turn.from_pick) + 1)});
+    struct WayOut {
+        Point end;                  ///< of the yarn as drawn
+        double out = 1;             ///< 1 to the right, -1 to the left
+        std::string number, words;  ///< of the yarn; where it goes or comes from
+        Colour colour;
+        bool leaves = false;  ///< the shuttle, rather than comes in
+        double start = 0;  ///< of its line from the end: beyond the tag of a yarn that is nothing but an end
+        Point tip{};       ///< of the stub
+    };
+
+    /// Where the drawn part of a path ends; nothing where all of it is trimmed off.
+    [[nodiscard]] std::optional<Point> drawn_end(const SlicePath& path, Side side) const {
+        if (!m_trim) return end_of(path, side);
+        const std::size_t last = path.levels.size() - 1;
+        for (std::size_t steps = 0; steps <= last; ++steps) {
+            const std::size_t k = side == Side::right ? last - steps : steps;
+            if (path.loose[k]) continue;
+            if (steps == 0) return end_of(path, side);
+            return halves(step(path, side == Side::right ? k : k - 1)).second[0];
+        }
+        return std::nullopt;
     }
 
-    struct WayOut {
-        Point end;       ///< of the yarn
-        double out = 1;  ///< 1 to the right, -1 to the left
-        std::string words;
-    };
+    /// A turn whose other pick lies in another row: the yarn leaves the slice, with the number of where it
+    /// goes or comes from. Where two feeders do so at one end of a pick, the words say both.
+    void add_way_out(const Turn& turn, const SlicePath& path, bool leaves) {
+        const std::optional<Point> end = drawn_end(path, turn.side);
+        if (!end) return;
+        const std::string words =
+            (leaves ? "to " : "from ") + std::to_string((leaves ? turn.to_pick : turn.from_pick) + 1);
+        const double out = turn.side == Side::right ? 1 : -1;
+        const auto known = std::ranges::find_if(m_ways_out, [&](const WayOut& way) {
+            return way.out == out && way.end.x == end->x && way.end.y == end->y;
+        });
+        if (known == m_ways_out.end()) {
+            const std::string number = std::to_string(path.number + 1);
+            const bool point = path.levels.size() == 1;
+            const double start = point ? Canvas::text_width(number, 11, true) / 2 + 3 : 0;
+            m_ways_out.push_back({*end, out, number, words, path.colour, leaves, start});
+        } else {
+            known->words += ", " + words;
+            known->leaves = known->leaves || leaves;
+        }
+    }
+
     static constexpr double stub_reach = 32, widest_turn = 66;  ///< from the end of the yarn
 
-    /// Where the words of a way out would best stand, the best first: before its tip, beyond the turns of
-    /// other yarns, or in the gaps between the dots above and below.
-    [[nodiscard]] std::vector<Point> wishes(const WayOut& way, double width) const {
+    /// A short dotted line out of the yarn's end: shorter or tilted where it would run into something.
+    void draw_stub(WayOut& way) {
+        constexpr double begin = 14;  // from here on the line is clear of its own yarn and tag
+        constexpr double clear = 8;   // before the tip, which shall point at no other yarn
+        double least = std::numeric_limits<double>::infinity();
+        Point ahead{};
+        for (const double angle : {0.0, 0.5, -0.5, 0.9, -0.9, 1.25, -1.25}) {
+            for (const double reach : {stub_reach, 23.0}) {
+                const Point along{way.out * std::cos(angle), -std::sin(angle)};
+                const Point tip{way.end.x + along.x * reach, way.end.y + along.y * reach};
+                const Point beyond{tip.x + along.x * clear, tip.y + along.y * clear};
+                const double harm =
+                    m_places.harm_along({way.end.x + along.x * begin, way.end.y + along.y * begin}, beyond);
+                if (harm >= least) continue;
+                least = harm, way.tip = tip, ahead = along;
+            }
+        }
+        const double head = way.leaves ? 8 : 0;
+        const Point stub[]{{way.end.x + ahead.x * way.start, way.end.y + ahead.y * way.start},
+                           {way.tip.x - ahead.x * head, way.tip.y - ahead.y * head}};
+        m_canvas.polyline(stub, {.colour = mix(way.colour, {0, 0, 0}, 0.3), .width = 2, .dash = {1, 4}});
+        if (way.leaves) m_canvas.arrow_head(way.tip, ahead, 9, mix(way.colour, {0, 0, 0}, 0.5));
+        m_places.add_curve(straight(way.end, way.tip));
+    }
+
+    /// Where the words of a way out would best stand, the best first: at its tip, beyond the turns of other
+    /// yarns, or in the gaps between the dots above and below.
+    [[nodiscard]] std::vector<Point> wishes(const WayOut& way, double width, double height) const {
         const double level = at(0, 0).y - at(0, 1).y, gap = (at(1, 0).x - at(0, 0).x) / 2;
-        const double before = stub_reach + 4 + width / 2, beyond = widest_turn + 4 + width / 2;
-        std::vector<Point> places;
+        const double beyond = widest_turn + 4 + width / 2;
+        const bool upwards = way.tip.y<way.end.y - 1, downwards = way.tip.y> way.end.y + 1;
+        std::vector<Point> places{{way.tip.x + way.out * (4 + width / 2), way.tip.y}};
+        if (!downwards) places.push_back({way.tip.x, way.tip.y - height / 2 - 6});
+        if (!upwards) places.push_back({way.tip.x, way.tip.y + height / 2 + 6});
         for (const double up : {0.0, 0.5, -0.5, 1.0, -1.0, 1.5, -1.5, 2.5, -2.5}) {
-            if (up != 0) places.push_back({way.end.x + way.out * gap, way.end.y - up * level});
-            for (const double x : {before, beyond})
-                places.push_back({way.end.x + way.out * x, way.end.y - up * level});
+            if (up != 0) {
+                places.push_back({way.end.x + way.out * gap, way.end.y - up * level});
+                places.push_back({way.tip.x + way.out * (4 + width / 2), way.tip.y - up * level});
+            }
+            places.push_back({way.end.x + way.out * beyond, way.end.y - up * level});
         }
         return places;
     }
 
-    /// The words where they hide nothing, with a line to the yarn's end where they stand away from it.
+    /// The words where they hide nothing, with a line to the tip where they stand away from it. They begin
+    /// with the yarn's own number if there is room for it.
     void draw_name(const WayOut& way) {
         constexpr double size = 10;
-        const double width = Canvas::text_width(way.words, size);
-        const Rectangle place = m_places.take(width + 2, size, wishes(way, width));
+        const auto width_of = [&](const std::string& words) { return Canvas::text_width(words, size) + 2; };
+        std::string words = way.number + " " + way.words;
+        if (!m_places.fits(width_of(words), size, wishes(way, width_of(words), size))) words = way.words;
+        const double width = width_of(words);
+        const Rectangle place = m_places.take(width, size, wishes(way, width, size));
         const Point middle{place.x + place.width / 2, place.y + place.height / 2};
-        const Point tip{way.end.x + way.out * stub_reach, way.end.y};
-        const Point near{std::clamp(tip.x, place.x, place.x + place.width),
-                         std::clamp(tip.y, place.y, place.y + place.height)};
-        if (std::hypot(near.x - tip.x, near.y - tip.y) > size) {
-            const Point leader[]{tip, near};
+        const Point near{std::clamp(way.tip.x, place.x, place.x + place.width),
+                         std::clamp(way.tip.y, place.y, place.y + place.height)};
+        if (std::hypot(near.x - way.tip.x, near.y - way.tip.y) > size) {
+            const Point leader[]{way.tip, near};
             m_canvas.polyline(leader, {.colour = faint_ink, .width = 0.8, .dash = {1, 3}});
         }
         m_canvas.rectangle(place, {0xff, 0xff, 0xff}, 0.8);
-        m_canvas.text(middle, way.words,
+        m_canvas.text(middle, words,
                       {.size = size, .colour = faint_ink, .anchor = Anchor::middle, .centred = true});
     }
 
