@@ -36,7 +36,7 @@ struct Worst {
     double movement = 0;  ///< of a sample, mm
     double lines =
         0;  ///< the same as pair, of the straight lines through samples that lie deep in one another
-    bool crushed = false;  ///< such lines come closer that are nearer than a tenth of the reach
+    bool crushed = false;  ///< such lines come closer that are nearer than a fiftieth of the reach
 };
 
 /// What a whole change does to the lines through two samples: how far they come closer, as a share of their
@@ -51,7 +51,7 @@ void look_at_lines(const Vec3& apart, const Vec3& change, const Vec3& along, con
     const double height = apart.dot(across), closer = -change.dot(across) * (height > 0 ? 1 : -1);
     if ((apart - height * across).norm() >= 0.3 * reach || closer <= 0) return;
     worst.lines = std::max(worst.lines, share * closer / std::abs(height));
-    worst.crushed = worst.crushed || std::abs(height) < 0.1 * reach;
+    worst.crushed = worst.crushed || std::abs(height) < 0.02 * reach;
 }
 
 /// What a change does to every pair of samples of two yarns that come within reach, images included.

@@ -202,7 +202,7 @@ double Energy<Real>::safe_share_of(const FabricView<Real>& fabric, std::size_t a
 template <class Real>
 double Energy<Real>::crossing_share(std::size_t a, std::size_t b, const Vec<Real>& apart,
                                     const Vec<Real>& change, Real reach) const {
-    constexpr double none = 1e300, beside = 0.3, least_height = 0.1, least_sine = 0.1, least_segment = 0.1;
+    constexpr double none = 1e300, beside = 0.3, least_height = 0.02, least_sine = 0.1, least_segment = 0.1;
     const Vec<Real> along = load(&m_tangent[3 * a]), other = load(&m_tangent[3 * b]);
     // Segments as short as that have samples so close that nothing passes between them, and tangents that say
     // little.
