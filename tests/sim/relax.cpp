@@ -2,6 +2,7 @@
 
 #include <weave/curve/spline.hpp>
 #include <weave/sim/relax.hpp>
+#include <weave/sim/spread.hpp>
 
 #include <catch2/catch.hpp>
 
@@ -214,4 +215,49 @@ TEST_CASE("frozen points stay where they are, and what is wholly frozen is at re
     Bench still(scene);
     CHECK(relax(still.energy, still.state, {.residual = 1e-8, .watch = {}}).residual == 0);
     CHECK(still.fabric.control(still.state)[1] == scene.yarns[1].control);
+}
+
+namespace {
+
+/// A rod without weight, straight and pressed together along itself, held at both ends.
+SimScene pressed_rod() {
+    SimScene scene;
+    SimYarn yarn = laid(usual_yarn(), {0, 0, 0}, {2, 0, 0}, 17, false);
+    yarn.is_fed = false;
+    yarn.rest_mm = 2.2;
+    yarn.frozen.assign(17, 0);
+    for (const std::size_t point : {0, 1, 15, 16}) yarn.frozen[point] = 1;
+    scene.yarns = {yarn};
+    return scene;
+}
+
+}  // namespace
+
+TEST_CASE("a rest that is none but a saddle is left: a straight rod that is pressed buckles") {
+    Bench straight(pressed_rod()), buckled(pressed_rod());
+    const RelaxResult saddle =
+        relax(straight.energy, straight.state, {.residual = 1e-6, .leaves_saddles = false, .watch = {}});
+    const RelaxResult rest = relax(buckled.energy, buckled.state, {.residual = 1e-6, .watch = {}});
+    CHECK(saddle.ending == Ending::converged);
+    CHECK(saddle.iterations == 0);
+    CHECK(rest.ending == Ending::converged);
+    CHECK_FALSE(rest.curves_down);
+    CHECK(rest.energy < 0.5 * saddle.energy);
+}
+
+TEST_CASE("points that lie on one another are spread along their yarn before it relaxes; held ones stay") {
+    SimScene scene = plain_weave({.count = 2});
+    for (const std::size_t i : {3, 4, 5}) scene.yarns[0].control[i] = scene.yarns[0].control[2];
+    Bench bench(scene), even(plain_weave({.count = 2}));
+    bench.evaluate();
+    even.evaluate();
+    const std::vector<double> before = bench.state, untouched = even.state;
+    CHECK(spread_points(bench.energy, bench.state));
+    CHECK_FALSE(spread_points(even.energy, even.state));
+    CHECK(even.state == untouched);
+    const std::size_t first = 3 * (bench.fabric.yarns()[0].first_slot + 1);
+    for (std::size_t i = 2; i < 5; ++i)
+        CHECK((load(&bench.state[first + 3 * i + 3]) - load(&bench.state[first + 3 * i])).norm() > 0);
+    for (std::size_t slot = bench.fabric.yarns()[1].first_slot; slot < bench.fabric.slots(); ++slot)
+        CHECK(load(&bench.state[3 * slot]) == load(&before[3 * slot]));
 }

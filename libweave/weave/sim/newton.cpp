@@ -101,7 +101,7 @@ void Newton<Real>::make_matrix(const std::vector<Real>& state, Curvature curvatu
 template <class Real>
 bool Newton<Real>::leave_saddle(std::vector<Real>& state, double& value, std::vector<Real>& gradient,
                                 double force) {
-    constexpr double least = 1e-3, far = 0.05;  // of the preconditioner's norm; of the least reach
+    constexpr double least = 1e-3, worth = 0.01, far = 0.05;  // of the preconditioner's norm; of the least reach
     constexpr std::size_t most_cg = 80;
     if (m_hessian.rows() == 0) return false;
     make_matrix(state, Curvature::exact);
@@ -115,7 +115,7 @@ bool Newton<Real>::leave_saddle(std::vector<Real>& state, double& value, std::ve
     const double safe = m_energy.safe_share(state, m_change, 2 * share);
     share = std::min(share, safe / 2);
     m_before = state;
-    double best = 0, lowest = value - force * share * size;
+    double best = 0, lowest = value - worth * force * share * size;
     for (const double way : {share, -share}) {
         const double there = go(state, way);
         if (there < lowest) best = way;
