@@ -18,7 +18,7 @@ constexpr double share_of_radius = 0.02;
 /// Yarns of neighbouring lines are led aside by at most this share of the spacing of lines.
 constexpr double share_of_line = 0.25;
 /// How often turns are laid otherwise before it is given up.
-constexpr std::size_t most_tries = 40;
+constexpr std::size_t most_tries = 400;
 
 double scaled(double radius_mm, const SystemScene& scene) {
     return radius_mm * scene.radius_scale.value_or(1);
