@@ -319,7 +319,7 @@ std::vector<Ranked> even_stacks(const CardImage& card, std::size_t enough, bool 
                                                                    {3, 2},
                                                                    {2, 2}}};
     if (small_first) std::reverse(usual.begin(), usual.end());
-    std::ranges::stable_partition(usual, [&](const auto& counts) { return counts == likely; });
+    std::stable_partition(usual.begin(), usual.end(), [&](const auto& counts) { return counts == likely; });
     const CardImage corner = corner_of(card);
     std::vector<Ranked> found;
     for (const auto& [t, p] : usual) {
