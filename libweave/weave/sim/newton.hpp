@@ -48,7 +48,8 @@ class Newton {
 
     /// Leaves a state of rest that is none but a saddle, where the energy falls to both sides: moves by a
     /// little to the side that is lower. False if no such direction is found, or none that is worth it: the
-    /// energy must fall as it would against `force`, N, which is what counts as none.
+    /// energy must fall as it would against a hundredth of `force`, N, which is what counts as none (a saddle
+    /// is flat, so its fall begins with little).
     bool leave_saddle(std::vector<Real>& state, double& value, std::vector<Real>& gradient, double force);
 
     /// Whether the last matrix had a direction in which it does not curve upwards.
