@@ -1,10 +1,12 @@
 #include <weave/curve/cloth_curves.hpp>
 #include <weave/curve/meeting.hpp>
 #include <weave/curve/passing.hpp>
+#include <weave/curve/settled_levels.hpp>
 #include <weave/curve/turn_shape.hpp>
 #include <weave/curve/weft_parts.hpp>
 
 #include <algorithm>
+#include <cmath>
 #include <memory>
 #include <string>
 #include <utility>
@@ -17,6 +19,8 @@ namespace {
 constexpr double share_of_radius = 0.02;
 /// Yarns of neighbouring lines are led aside by at most this share of the spacing of lines.
 constexpr double share_of_line = 0.25;
+/// Picks this many times as long as straight ones settle before they are laid.
+constexpr double steep = 1.4;
 /// How often turns are laid otherwise before it is given up.
 constexpr std::size_t most_tries = 400;
 
@@ -100,8 +104,9 @@ class Layout {
           m_radii(radii_of(design, block, m_picks)),
           m_wraps(options.weft_mode.value_or(design.scene.weft_mode) == WeftMode::wraparound) {
         measure(options);
-        lay_warps();
         find_parts(options.region.has_value());
+        if (wefts_climb()) settle_levels();
+        lay_warps();
     }
 
     Result<ClothCurves> curves() {
@@ -160,7 +165,7 @@ class Layout {
             for (std::size_t end = m_block.first_end(column); end < m_block.first_end(column + 1); ++end) {
                 LineYarn yarn;
                 for (std::size_t row = region().first_row; row <= region().last_row; ++row) {
-                    yarn.levels.push_back(static_cast<double>(m_places.of_end(end, row, column)));
+                    yarn.levels.push_back(level_of(end, row, column));
                 }
                 yarns.push_back(std::move(yarn));
             }
@@ -218,7 +223,29 @@ class Layout {
     }
 
     double level_of(const WeftPart& part, std::size_t column) const {
-        return static_cast<double>(m_places.of_pick(part.pick, part.row, column)) + part.offset;
+        const double level = m_settled ? m_settled->of_pick(part.pick, column)
+                                       : static_cast<double>(m_places.of_pick(part.pick, part.row, column));
+        return level + part.offset;
+    }
+    double level_of(std::size_t end, std::size_t row, std::size_t column) const {
+        return m_settled ? m_settled->of_end(end, row) : static_cast<double>(m_places.of_end(end, row, column));
+    }
+
+    /// Whether picks, laid in their slots, run so steeply up and down that they would be far longer than what is woven.
+    bool wefts_climb() const {
+        double way = 0, straight = 0;
+        for (const WeftPart& part : m_wefts.parts) {
+            for (std::size_t column = part.first_column; column < part.last_column; ++column) {
+                const double rise = (level_of(part, column + 1) - level_of(part, column)) * m_cloth.dz_mm;
+                way += std::hypot(m_cloth.dy_mm, rise);
+                straight += m_cloth.dy_mm;
+            }
+        }
+        return way > steep * straight;
+    }
+
+    void settle_levels() {
+        m_settled.emplace(m_block, region(), LevelSpacing{m_cloth.dx_mm, m_cloth.dy_mm, m_cloth.is_periodic});
     }
 
     void make_turn_shapes() {
@@ -416,6 +443,7 @@ class Layout {
     const Block& m_block;
     std::vector<Pick> m_picks;
     Places m_places;
+    std::optional<SettledLevels> m_settled;
     Radii m_radii;
     bool m_wraps;
     ClothCurves m_cloth;

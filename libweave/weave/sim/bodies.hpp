@@ -95,6 +95,7 @@ struct FabricView {
     const std::uint32_t* first_neighbour;  ///< per own sample, and one more
     const std::uint32_t* neighbours;       ///< indices of samples
     Real floor;                            ///< least (d/D)² of the contact law; below it goes on linearly
+    Real give;                             ///< strain beyond which yarns of fixed length give way, see StretchLaw
 };
 
 template <class Real>
@@ -258,11 +259,24 @@ WEAVE_HD inline Real guarded(Real speed, const YarnConstants<Real>& yarn) {
     return speed > least ? speed : least;
 }
 
+/// The stretch law φ of a yarn of fixed length: ½e² of the strain e; beyond `give` its slope hardly rises. Only the way to
+/// rest gives way (relax.cpp): at rest `give` is infinite.
+template <class Real>
+struct StretchLaw {
+    Real value, slope, bend;  ///< φ, dφ/de, d²φ/de²
+
+    WEAVE_HD static StretchLaw at(Real strain, Real give) {
+        if (strain <= give) return {strain * strain / 2, strain, 1};
+        const Real bend = Real(0.02), over = strain - give;
+        return {give * (give / 2 + over) + bend * over * over / 2, give + bend * over, bend};
+    }
+};
+
 /// Stretch. Fixed length: ½·EA·L ∫(|y'|/L - 1)² ds. Constant tension: T·l + ½·EA·S ∫(|y'| - l)²/l ds, whose
 /// stationary points are those of the paper's balanced strain L = l/S (section 5.1).
 template <class Real>
 WEAVE_INLINE WEAVE_HD inline void add_stretch(const YarnConstants<Real>& yarn, const Gauss<Real>& gauss,
-                                 const Speeds<Real>& speeds, SegmentSum<Real>& sum) {
+                                 const Speeds<Real>& speeds, Real give, SegmentSum<Real>& sum) {
     const bool fed = yarn.supply == Supply::tension;
     const Real length = guarded(speeds.length, yarn), ratio = speeds.square / (length * length);
     if (fed) {
@@ -270,11 +284,13 @@ WEAVE_INLINE WEAVE_HD inline void add_stretch(const YarnConstants<Real>& yarn, c
                       yarn.evenness_N * (speeds.square / length - length) / 2;
     }
     for (std::size_t g = 0; g < gauss_points; ++g) {
-        const Real speed = speeds.speed[g], over = speed - yarn.rest_mm;
-        const Real pull =
-            fed ? yarn.tension_N + yarn.evenness_N * (speed / length - (ratio + 1) / 2)
-                : yarn.stretch_N * over / yarn.rest_mm;
-        if (!fed) sum.energy += gauss.weight[g] * yarn.stretch_N * over * over / (2 * yarn.rest_mm);
+        const Real speed = speeds.speed[g];
+        Real pull = yarn.tension_N + yarn.evenness_N * (speed / length - (ratio + 1) / 2);
+        if (!fed) {
+            const StretchLaw<Real> law = StretchLaw<Real>::at((speed - yarn.rest_mm) / yarn.rest_mm, give);
+            pull = yarn.stretch_N * law.slope;
+            sum.energy += gauss.weight[g] * yarn.stretch_N * yarn.rest_mm * law.value;
+        }
         sum.add(gauss.basis[g].slope, speeds.tangent[g] * (gauss.weight[g] * pull / guarded(speed, yarn)));
     }
 }
@@ -337,7 +353,7 @@ struct SegmentForces {
         SegmentSum<Real> sum;
         if (terms.elastic) {
             const Speeds<Real> speeds(*fabric.gauss, slots);
-            add_stretch(yarn, *fabric.gauss, speeds, sum);
+            add_stretch(yarn, *fabric.gauss, speeds, fabric.give, sum);
             add_bending(yarn, *fabric.gauss, slots, speeds, sum);
         }
         if (terms.contact) add_contact(fabric, segment, yarn, slots, sum);

@@ -35,7 +35,8 @@ FabricView<Real> Energy<Real>::view(const std::vector<Real>& state) {
             m_neighbours.samples(),
             m_neighbours.first(),
             m_neighbours.others(),
-            static_cast<Real>(contact_floor)};
+            static_cast<Real>(contact_floor),
+            static_cast<Real>(m_give)};
 }
 
 template <class Real>
@@ -196,6 +197,14 @@ double Energy<Real>::safe_share_of(const FabricView<Real>& fabric, std::size_t a
     return share;
 }
 
+/// What of `apart` is across two nearly parallel directions, the same whichever of them comes first.
+template <class Real>
+static Vec<Real> away_from(const Vec<Real>& apart, const Vec<Real>& along, const Vec<Real>& other) {
+    const Real turn = along.dot(other) < 0 ? Real(-1) : Real(1);
+    const Vec<Real> both = along / along.norm() + turn * other / other.norm();
+    return apart - both * (both.dot(apart) / both.squaredNorm());
+}
+
 /// Yarns that lie deep in one another may pass between their samples: there it counts how far apart the
 /// straight lines through two samples are, if these lie about where the lines are nearest. Nearer than the
 /// lines stand for the curves they do not come at all, whatever presses them together.
@@ -210,7 +219,7 @@ double Energy<Real>::crossing_share(std::size_t a, std::size_t b, const Vec<Real
     if (shortest < least_segment * least_segment * static_cast<double>(reach * reach)) return none;
     Vec<Real> across = along.cross(other);
     if (across.squaredNorm() < Real(least_sine * least_sine) * along.squaredNorm() * other.squaredNorm())
-        across = apart - along * (along.dot(apart) / std::max(Real(1e-30), along.squaredNorm()));
+        across = away_from(apart, along, other);
     const auto size = static_cast<double>(across.norm());
     if (!(size > 0)) return none;
     const double height = static_cast<double>(apart.dot(across)) / size,
@@ -233,11 +242,12 @@ double Energy<Real>::safe_share(const std::vector<Real>& state, const std::vecto
 
 template <class Real>
 void Energy<Real>::shorten(const std::vector<Real>& state, std::vector<Real>& change) {
-    constexpr int rounds = 6;
+    constexpr int rounds = 6, most_rounds = 20;
+    constexpr double enough = 0.9;
     const FabricView<Real> fabric = view(state);
     std::vector<double> share(m_fabric.segments());
     const std::vector<YarnPlace>& yarns = m_fabric.yarns();
-    for (int round = 0; round < rounds; ++round) {
+    for (int round = 0; round < most_rounds; ++round) {
         move_samples(state, change);
         m_executor.each(share.size(), [&](std::size_t s) {
             const SegmentPlace& segment = fabric.segments[s];
@@ -245,7 +255,11 @@ void Energy<Real>::shorten(const std::vector<Real>& state, std::vector<Real>& ch
             for (std::uint32_t k = 0; k < fabric.yarns[segment.yarn].samples; ++k)
                 share[s] = std::min(share[s], safe_share_of(fabric, segment.sample + k, 1));
         });
-        if (std::all_of(share.begin(), share.end(), [](double part) { return part >= 1; })) return;
+        if (std::all_of(share.begin(), share.end(), [](double part) { return part >= enough; })) return;
+        // What is still not safe does not move at all: else one place would hold up the whole cloth.
+        if (round >= rounds) {
+            for (double& part : share) part = part < enough ? 0 : 1;
+        }
         m_executor.each(m_fabric.slots(), [&](std::size_t slot) {
             const YarnPlace& yarn = yarns[m_fabric.yarn_of_slot()[slot]];
             const std::size_t within = slot - yarn.first_slot;

@@ -9,6 +9,7 @@
 
 #include <array>
 #include <cstddef>
+#include <limits>
 #include <vector>
 
 namespace weave::sim {
@@ -34,6 +35,8 @@ class Energy {
     /// Holds the friction of the pairs that touch in a state (friction.hpp), where the scene has friction; `stick`: the
     /// transition length over the mean radius of two yarns. Until then there is none.
     void renew_friction(const std::vector<Real>& state, double stick);
+    /// Yarns of fixed length give way where they are strained beyond `strain` (StretchLaw); infinite at first: nowhere.
+    void give_beyond(double strain) { m_give = strain; }
     [[nodiscard]] const Fabric<Real>& fabric() const { return m_fabric; }
     [[nodiscard]] const Executor& executor() const { return m_executor; }
     [[nodiscard]] std::size_t evaluations() const { return m_evaluations; }
@@ -43,7 +46,8 @@ class Energy {
     /// moves by a quarter of the least reach.
     double safe_share(const std::vector<Real>& state, const std::vector<Real>& change, double most);
 
-    /// Shortens a change where it is not safe: each control point goes as far as the samples near it allow.
+    /// Shortens a change where it is not safe: each control point goes as far as the samples near it allow,
+    /// and not at all where they do not come to agree. At least 0.9 of what is left is safe, but for the rarest of cases.
     void shorten(const std::vector<Real>& state, std::vector<Real>& change);
 
   private:
@@ -65,6 +69,7 @@ class Energy {
     std::vector<Sphere<Real>> m_spheres;
     std::vector<Real> m_segment_energy, m_segment_gradient;
     std::vector<Real> m_moved, m_tangent;  ///< of each sample, scratch of safe_share
+    double m_give = std::numeric_limits<double>::infinity();
     std::size_t m_evaluations = 0;
 };
 

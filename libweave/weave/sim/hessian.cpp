@@ -300,7 +300,7 @@ inline void Hessian<Real>::add_segment(Energy<Real>& energy, const FabricView<Re
     const Speeds<double> speeds(m_gauss, scratch.slots);
     GaussBlocks elastic;
     elastic.clear();
-    add_stretch_curvature(yarn, m_gauss, speeds, convex, elastic);
+    add_stretch_curvature(yarn, m_gauss, speeds, static_cast<double>(fabric.give), convex, elastic);
     add_bending_curvature(yarn, m_gauss, scratch.slots, speeds, convex, elastic);
     elastic.add_to(scratch.own, m_gauss);
     if (!m_spheres.empty()) add_field_curvature(yarn, m_gauss, scratch.slots, m_spheres, convex, scratch.own);

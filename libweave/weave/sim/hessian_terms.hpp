@@ -115,19 +115,20 @@ struct GaussBlocks {
 };
 
 [[gnu::always_inline]] inline void add_stretch_curvature(const YarnConstants<double>& yarn, const Gauss<double>& gauss,
-                                                         const Speeds<double>& speeds, bool convex, GaussBlocks& sum) {
+                                                         const Speeds<double>& speeds, double give, bool convex,
+                                                         GaussBlocks& sum) {
     const bool fed = yarn.supply == Supply::tension;
     const double length = guarded(speeds.length, yarn), square = speeds.square, ratio = square / (length * length);
     Vec<double> units[gauss_points];
     for (std::size_t g = 0; g < gauss_points; ++g) units[g] = speeds.tangent[g] / guarded(speeds.speed[g], yarn);
     for (std::size_t g = 0; g < gauss_points; ++g) {
         const double speed = guarded(speeds.speed[g], yarn), weight = gauss.weight[g];
-        double pull = fed ? yarn.tension_N + yarn.evenness_N * (speed / length - (ratio + 1) / 2)
-                          : yarn.stretch_N * (speed / yarn.rest_mm - 1);
+        const StretchLaw<double> law = StretchLaw<double>::at(fed ? 0 : speed / yarn.rest_mm - 1, give);
+        double pull = fed ? yarn.tension_N + yarn.evenness_N * (speed / length - (ratio + 1) / 2) : yarn.stretch_N * law.slope;
         if (convex) pull = std::max(pull, 0.0);
         const double side = weight * pull / speed;
         if (!fed) {
-            sum.slope[g].add(gauss.basis[g].slope, Nine::along(side, yarn.stretch_N * weight / yarn.rest_mm - side, units[g]));
+            sum.slope[g].add(gauss.basis[g].slope, Nine::along(side, yarn.stretch_N * law.bend * weight / yarn.rest_mm - side, units[g]));
             continue;
         }
         sum.slope[g].add(gauss.basis[g].slope, Nine::along(side, -side, units[g]));

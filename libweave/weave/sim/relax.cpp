@@ -7,6 +7,7 @@
 #include <algorithm>
 #include <chrono>
 #include <cmath>
+#include <limits>
 
 namespace weave::sim {
 
@@ -58,6 +59,21 @@ double reference_force(Energy<Real>& energy, const std::vector<Real>& state) {
 
 namespace {
 
+/// Greatest strain of yarns of fixed length, each taken as a whole.
+template <class Real>
+double greatest_strain(const Fabric<Real>& fabric, const std::vector<Real>& state) {
+    double greatest = 0;
+    for (std::size_t y = 0; y < fabric.yarns().size(); ++y) {
+        if (fabric.scene().yarns[y].is_fed) continue;
+        const YarnPlace& place = fabric.yarns()[y];
+        double length = 0;
+        for (std::size_t s = 0; s < place.segments; ++s)
+            length += static_cast<double>(Speeds<Real>(fabric.gauss(), &state[3 * (place.first_slot + s)]).length);
+        greatest = std::max(greatest, length / fabric.scene().yarns[y].rest_mm - 1);
+    }
+    return greatest;
+}
+
 /// One relaxation under way: steps that learn while yarns have far to go, Newton's where the exact matrix
 /// leads home.
 template <class Real>
@@ -76,9 +92,12 @@ class Relaxing {
         m_value = m_energy.evaluate(m_state, m_gradient);
         if (spread_points(m_energy, m_state)) m_energy.evaluate(m_state, m_gradient);
         m_result.reference_N = reference_force(m_energy, m_state);
+        m_gives = greatest_strain(m_energy.fabric(), m_state) > strain_of_a_long_start;
+        if (m_gives) m_energy.give_beyond(give);
         m_value = m_energy.evaluate(m_state, m_gradient);
         while (true) {
             m_result.residual = residual_of(m_gradient);
+            if (m_gives && (m_result.residual <= residual_that_tightens || m_result.iterations == m_options.most_iterations)) tighten();
             // Rest is judged by the forces of this state: those of a crushed start would hide what is left.
             if (m_result.residual <= m_options.residual) measure_anew();
             const Progress progress{m_result.iterations, m_result.residual, m_value, seconds_since(m_start)};
@@ -113,7 +132,17 @@ class Relaxing {
         m_energy.evaluate(m_state, gradient);
     }
 
+    /// Yarns give way no longer.
+    void tighten() {
+        m_gives = false;
+        m_energy.give_beyond(std::numeric_limits<double>::infinity());
+        m_value = m_energy.evaluate(m_state, m_gradient);
+        m_descent.forget();
+        measure_anew();
+    }
+
     RelaxResult ended(Ending ending) {
+        if (m_gives) tighten();
         measure_anew();
         m_result.ending = ending;
         m_result.energy = m_value;
@@ -170,6 +199,9 @@ class Relaxing {
         m_best_before = m_best;
     }
 
+    /// A start that lays yarns of fixed length this much too long would be crushed by what draws them in: at first
+    /// they draw no harder than a little strain does, until the cloth has given way to that.
+    static constexpr double strain_of_a_long_start = 0.25, give = 0.05, residual_that_tightens = 0.1;
     static constexpr double newton_below = 1e-4;
     static constexpr int patience = 50, newtons_at_once = 6, most_runs = 8;
 
@@ -183,7 +215,7 @@ class Relaxing {
     Newton<Real> m_newton;
     std::vector<Real> m_gradient;
     double m_value = 0;
-    bool m_by_matrix = false;
+    bool m_gives = false, m_by_matrix = false;
     int m_left = patience, m_saddles = 0;  ///< steps until the next choice
     /// Least residual, energy at the last choice, and how far it fell by the latest steps of either kind.
     double m_best = 1e300, m_best_before = 1e300, m_value_before = 1e300, m_gain = 0, m_matrix_gain = 1e300;

@@ -27,6 +27,7 @@ SafeStep make_safe(Energy<Real>& energy, const std::vector<Real>& state, const s
                 cut[i] = cut[i + 1] = cut[i + 2] = 0;
         }
         energy.fabric().follow_change(cut);
+        energy.shorten(state, cut);
     }
     const double still = energy.safe_share(state, cut, 1);  // rounds of shortening come close, not always all the way
     for (Real& part : cut) part *= static_cast<Real>(still);
