@@ -48,6 +48,27 @@ TEST_CASE("stretch and bending pull as their energies say, and curve as their pu
         60);
 }
 
+TEST_CASE("yarns that give way pull as their energy says, and curve as their pulls say") {
+    std::size_t given = 0;
+    weave::testing::for_all(
+        [&](Random& random) {
+            SimYarn kind = only(usual_yarn(0.01), true, random.coin());
+            kind.is_fed = false;
+            SimScene scene = crooked(random, kind, random.coin());
+            scene.yarns[0].rest_mm = uniform(random, 0.8, 2.5);
+            if (scene.yarns[0].control.size() < 2) return;
+            Bench firm(scene), bench(scene);
+            bench.energy.give_beyond(0.05);
+            const double lower = bench.evaluate(), value = firm.evaluate();
+            CHECK(lower <= value);
+            given += lower < value ? 1 : 0;
+            CHECK(gradient_error(bench, {.elastic = true, .contact = false}) < 1e-6);
+            check_matrices(bench);
+        },
+        60);
+    CHECK(given > 10);
+}
+
 TEST_CASE("contact pulls as its energy says, equal and mixed radii, open ends, frozen points") {
     std::size_t touching = 0;
     weave::testing::for_all(

@@ -241,7 +241,7 @@ TEST_CASE("a rest that is none but a saddle is left: a straight rod that is pres
     CHECK(saddle.ending == Ending::converged);
     CHECK(saddle.iterations == 0);
     CHECK(rest.ending == Ending::converged);
-    CHECK_FALSE(rest.curves_down);
+    CHECK(rest.curves_down == false);
     CHECK(rest.energy < 0.5 * saddle.energy);
 }
 

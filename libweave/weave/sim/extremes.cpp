@@ -181,7 +181,7 @@ std::string report_of(const ExtremeEnd& end, Ending ending, const std::string& w
     report += words(": residual %.1e", end.residual);
     if (!end.converged && !where.empty()) report += ", " + where;
     if (end.overlap > 0.5) report += words(", yarns overlap by %.0f %%", 100 * end.overlap);
-    if (end.converged && end.curves_down) report += ", though its last matrix curves down in some direction";
+    if (end.converged && end.curves_down) report += ", though the energy curves down in some direction there";
     if (!end.finite) report += ", NOT ALL NUMBERS ARE FINITE";
     return report + passed;
 }
@@ -221,7 +221,7 @@ ExtremeEnd relaxed(const SimScene& scene, const ExtremeLimits& limits, const Way
         all_finite(state) && all_finite(gradient) && std::isfinite(value) && std::isfinite(result.residual);
     end.residual = result.residual;
     end.overlap = overlap_of(energy, state);
-    end.curves_down = result.curves_down;
+    end.curves_down = result.curves_down.value_or(false);
     end.points = fabric.points();
     end.iterations = result.iterations;
     end.seconds = result.seconds;
@@ -246,7 +246,8 @@ std::function<ExtremeEnd(const ExtremeLimits&)> jump_case(const Plain& plain,
     return [plain, jump = std::move(jump)](const ExtremeLimits& limits) {
         SimScene scene = plain.scene();
         std::vector<std::vector<Vec3>> control;
-        relaxed<double>(scene, limits, {}, &control);
+        const ExtremeEnd first = relaxed<double>(scene, limits, {}, &control);
+        if (!first.converged) return first;
         for (std::size_t y = 0; y < control.size(); ++y) {
             scene.yarns[y].control = control[y];
             jump(scene.yarns[y]);

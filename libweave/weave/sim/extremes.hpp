@@ -23,7 +23,7 @@ struct ExtremeEnd {
     bool passed_through = false;  ///< yarns passed through one another (linking.hpp, order.hpp)
     double residual = 0;
     double overlap = 0;        ///< greatest 1 - d/D of two yarns
-    bool curves_down = false;  ///< see RelaxResult
+    bool curves_down = false;  ///< at rest; see RelaxResult
     std::size_t points = 0, iterations = 0;
     double seconds = 0;
     std::string report;  ///< what it ended as, and where; never empty

@@ -14,6 +14,11 @@ namespace {
 /// better.
 constexpr double exact_below = 1;
 
+/// A direction curves down that does so by this share of what the preconditioner holds it for; one is looked for by so
+/// many steps.
+constexpr double least_curvature = 1e-3;
+constexpr std::size_t most_search = 80;
+
 /// How far along `direction` from a step of which (size², step·M·direction) is known the radius is reached.
 double to_border(double size2, double along, double direction2, double radius) {
     const double root = std::sqrt(std::max(0.0, along * along + direction2 * (radius * radius - size2)));
@@ -101,12 +106,11 @@ void Newton<Real>::make_matrix(const std::vector<Real>& state, Curvature curvatu
 template <class Real>
 bool Newton<Real>::leave_saddle(std::vector<Real>& state, double& value, std::vector<Real>& gradient,
                                 double force) {
-    constexpr double least = 1e-3, worth = 0.01, far = 0.05;  // of the preconditioner's norm; of the least reach
-    constexpr std::size_t most_cg = 80;
+    constexpr double worth = 0.01, far = 0.05;  // far: of the least reach
     if (m_hessian.rows() == 0) return false;
     make_matrix(state, Curvature::exact);
     const std::vector<double> down =
-        downward_direction(m_energy.executor(), m_matrix, m_preconditioner, least, most_cg);
+        downward_direction(m_energy.executor(), m_matrix, m_preconditioner, least_curvature, most_search);
     m_curves_down = !down.empty();
     if (down.empty()) return false;
     m_hessian.to_slots(down, m_change);
@@ -124,6 +128,18 @@ bool Newton<Real>::leave_saddle(std::vector<Real>& state, double& value, std::ve
     value = go(state, best);
     gradient.swap(m_trial);
     return best != 0;
+}
+
+template <class Real>
+bool curves_down(Energy<Real>& energy, const std::vector<Real>& state) {
+    Hessian<Real> hessian(energy.fabric());
+    if (hessian.rows() == 0) return false;
+    BlockMatrix matrix;
+    Multigrid preconditioner(energy.executor(), strands_of(energy.fabric()), places_of(energy.fabric()));
+    hessian.assemble(energy, state, Curvature::exact, matrix);
+    matrix.add_to_pivots(1e-7F);
+    preconditioner.factor(matrix);
+    return !downward_direction(energy.executor(), matrix, preconditioner, least_curvature, most_search).empty();
 }
 
 template <class Real>
@@ -159,13 +175,11 @@ bool Newton<Real>::step(std::vector<Real>& state, double& value, std::vector<Rea
         m_radius = std::sqrt(dot(m_energy.executor(), m_force, m_work));
     }
     m_before = state;
-    m_curves_down = false;
     const double tolerance = std::clamp(std::sqrt(residual), 1e-3, 0.1);
     for (int attempt = 0; attempt < most_attempts; ++attempt) {
         const RadiusStep found = step_within(m_energy.executor(), m_matrix, m_preconditioner, m_force,
                                              exact ? m_radius : 1e150, tolerance, most_cg);
         m_cg_iterations += found.iterations;
-        m_curves_down = m_curves_down || found.curves_down;
         m_hessian.to_slots(found.step, m_change);
         const SafeStep safe = make_safe(m_energy, state, gradient, m_change, 1);
         const double fall = safe.kept < 1 ? fall_of(safe) : found.fall, there = go(state, 1),
@@ -196,6 +210,8 @@ bool Newton<Real>::step(std::vector<Real>& state, double& value, std::vector<Rea
     return false;
 }
 
+template bool curves_down(Energy<float>&, const std::vector<float>&);
+template bool curves_down(Energy<double>&, const std::vector<double>&);
 template class Newton<float>;
 template class Newton<double>;
 

@@ -34,6 +34,11 @@ std::vector<double> downward_direction(const Executor& executor, const BlockMatr
                                        Preconditioner& preconditioner, double least,
                                        std::size_t most_iterations);
 
+/// Whether the energy curves downwards in some direction at a state: the sign of the least eigenvalue of its exact second
+/// derivatives, as a search of 80 conjugate gradient steps finds it. The latest evaluation must have been at that state.
+template <class Real>
+bool curves_down(Energy<Real>& energy, const std::vector<Real>& state);
+
 /// Newton steps by the exact second derivatives, or far from rest their convex part, no farther than these
 /// have proved to hold.
 template <class Real>
@@ -52,7 +57,7 @@ class Newton {
     /// is flat, so its fall begins with little).
     bool leave_saddle(std::vector<Real>& state, double& value, std::vector<Real>& gradient, double force);
 
-    /// Whether the last matrix had a direction in which it does not curve upwards.
+    /// Whether the latest leave_saddle() found a direction in which the energy curves downwards.
     [[nodiscard]] bool curves_down() const { return m_curves_down; }
     [[nodiscard]] std::size_t cg_iterations() const { return m_cg_iterations; }
 

@@ -6,6 +6,8 @@
 #include <weave/sim/fabric.hpp>
 #include <weave/sim/plan.hpp>
 
+#include <Eigen/Geometry>
+
 #include <algorithm>
 #include <cmath>
 #include <cstdio>
@@ -18,6 +20,7 @@ namespace {
 /// Wefts are inserted a little longer than the cloth is wide.
 constexpr double weft_excess = 0.01;
 constexpr double usual_strain = 1.01;  ///< the paper's target strain
+constexpr double most_neighbours = 1e4;  ///< of one contact sample, as a rough bound from above tells
 constexpr std::size_t rim_points = 2;  ///< control points held at a frozen end
 
 struct Resolution {
@@ -134,6 +137,8 @@ class Planner {
         for (std::size_t c = 0; c < m_plan.curves.yarns.size(); ++c) add_yarn(c);
         if (m_plan.scene.yarns.empty()) return invalid("no yarn touches another, so there is nothing to simulate");
         WEAVE_CHECK_OK(check_balance());
+        WEAVE_CHECK_OK(check_freedom());
+        WEAVE_CHECK_OK(check_thickness());
         set_terms();
         return std::move(m_plan);
     }
@@ -343,6 +348,44 @@ class Planner {
             }
         }
         return {};
+    }
+
+    /// Something must be able to move.
+    [[nodiscard]] Status check_freedom() const {
+        const bool moves = std::ranges::any_of(m_plan.scene.yarns, [](const SimYarn& yarn) {
+            return yarn.frozen.empty() || std::ranges::count(yarn.frozen, std::uint8_t{0}) > 0;
+        });
+        if (moves) return {};
+        if (m_request.region)
+            return invalid("nothing of this part can move: its rims are held, and so are the rows and columns along them; take "
+                           "at least three rows and three columns",
+                           "region");
+        return invalid("nothing can move: frozen rims and pins hold every yarn", "scene");
+    }
+
+    /// Yarns that are thick against their piece touch ever more of one another, and of their own images.
+    [[nodiscard]] Status check_thickness() const {
+        const SimScene& scene = m_plan.scene;
+        Eigen::AlignedBox3d box;
+        double samples = 0, thickest = 0;
+        for (const SimYarn& yarn : scene.yarns) {
+            for (const Vec3& point : yarn.control) box.extend(point);
+            thickest = std::max(thickest, yarn.radius_mm);
+            samples += std::max(static_cast<double>(yarn.control.size()), yarn.planned_mm / (scene.sample_spacing * 2 * yarn.radius_mm));
+        }
+        const double reach = 2 * thickest;
+        double within = samples;  // of one sample
+        for (std::size_t axis = 0; axis < 3; ++axis) {
+            const double size = axis < 2 && scene.is_periodic[axis] ? scene.period_mm[axis] : std::max(box.sizes()[Eigen::Index(axis)], 1e-9),
+                         share = 2 * reach / size;
+            within *= axis < 2 && scene.is_periodic[axis] ? share : std::min(1.0, share);
+        }
+        if (within <= most_neighbours) return {};
+        char text[200];
+        std::snprintf(text, sizeof text, "yarns of %g mm radius are too thick for this piece: each place would touch some %.0e others, "
+                                         "more than the %.0e that can be followed",
+                      thickest, within, most_neighbours);
+        return invalid(text, "scene");
     }
 
     void set_terms() {

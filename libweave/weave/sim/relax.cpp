@@ -146,7 +146,6 @@ class Relaxing {
         measure_anew();
         m_result.ending = ending;
         m_result.energy = m_value;
-        m_result.curves_down = m_newton.curves_down();
         m_result.cg_iterations = m_newton.cg_iterations();
         m_result.evaluations = m_energy.evaluations();
         m_result.builds = m_energy.neighbours().builds();
@@ -157,8 +156,11 @@ class Relaxing {
     bool leaves_saddle() {
         constexpr int most_saddles = 5;
         if (!m_options.leaves_saddles || m_saddles == most_saddles) return false;
-        if (!m_newton.leave_saddle(m_state, m_value, m_gradient, m_options.residual * m_result.reference_N))
+        const bool leaves = m_newton.leave_saddle(m_state, m_value, m_gradient, m_options.residual * m_result.reference_N);
+        if (!leaves) {
+            m_result.curves_down = m_newton.curves_down();
             return false;
+        }
         ++m_saddles;
         m_descent.forget();
         return true;

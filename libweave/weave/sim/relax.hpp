@@ -5,6 +5,7 @@
 
 #include <cstddef>
 #include <functional>
+#include <optional>
 #include <string_view>
 #include <vector>
 
@@ -37,8 +38,9 @@ struct RelaxResult {
     double residual = 0, energy = 0, reference_N = 0;
     std::size_t iterations = 0, evaluations = 0, cg_iterations = 0, builds = 0;
     double seconds = 0;
-    bool curves_down =
-        false;  ///< the last matrix had a direction of negative curvature: a saddle, not a minimum
+    /// At rest: whether the energy curves downwards in some direction there, so that the rest is a saddle; nothing where
+    /// that was not looked at (see curves_down()).
+    std::optional<bool> curves_down;
     std::vector<Progress> history;
 };
 

@@ -4,6 +4,7 @@
 #include <weave/loom/pick_table.hpp>
 #include <weave/sim/flips.hpp>
 #include <weave/sim/friction_rounds.hpp>
+#include <weave/sim/newton.hpp>
 #include <weave/sim/order.hpp>
 #include <weave/sim/paper.hpp>
 #include <weave/sim/periods.hpp>
@@ -372,7 +373,9 @@ class Simulation {
         const RelaxedRepeat result(m_design, m_plan, *m_energy, m_state);
         const Contacts contacts = contacts_of(*m_energy, m_state);
         const CrossingOrder order = crossing_order(m_plan.curves, splines());
-        Yarns yarns = copied_back(result.yarns(), m_plan, m_design);
+        Yarns repeat = result.yarns();
+        const Json deviation = strain_deviation(repeat);
+        Yarns yarns = copied_back(std::move(repeat), m_plan, m_design);
         const bool balanced = !m_periods || m_periods->balanced;
         yarns.report = {{"design_sha256", yarns.design_sha256},
                         {"scene_sha256", yarns.scene_sha256},
@@ -382,7 +385,7 @@ class Simulation {
                         {"fidelity", std::string(sim::name_of(m_plan.fidelity))},
                         {"points_per_key", m_plan.points_per_key},
                         {"converged", m_last.ending == Ending::converged && balanced},
-                        {"ending", std::string(sim::name_of(m_last.ending))},
+                        {"ending", m_last.ending == Ending::converged && !balanced ? "periods" : std::string(sim::name_of(m_last.ending))},
                         {"goal", m_options.residual.value_or(m_plan.goal)},
                         {"residual", m_last.residual},
                         {"reference_N", m_last.reference_N},
@@ -392,7 +395,8 @@ class Simulation {
                         {"iterations", m_iterations},
                         {"evaluations", m_evaluations},
                         {"seconds", m_seconds},
-                        {"curves_down", m_last.curves_down},
+                        {"smallest_curvature", smallest_curvature()},
+                        {"strain_deviation", deviation},
                         {"order_kept", order.lost.empty()},
                         {"crossings", m_plan.curves.crossings.size()},
                         {"lost_crossings", order.lost.size()},
@@ -412,6 +416,27 @@ class Simulation {
                                        {"rounds", m_periods->rounds}, {"balanced", m_periods->balanced}};
         }
         return yarns;
+    }
+
+    /// Sign of the least second derivative of the energy at rest. What is not at rest is not looked at.
+    std::string smallest_curvature() {
+        if (m_last.ending != Ending::converged) return "not looked";
+        std::vector<double> gradient;
+        m_energy->evaluate(m_state, gradient);
+        const bool down = m_last.curves_down ? *m_last.curves_down : curves_down(*m_energy, m_state);
+        return down ? "negative" : "positive";
+    }
+
+    /// How far the strain of the yarns of each system is from what was asked for: S - 1 where they are fed, else 0.
+    Json strain_deviation(const Yarns& repeat) const {
+        std::array<double, 2> greatest{};
+        for (std::size_t y = 0; y < repeat.yarns.size(); ++y) {
+            const SimYarn& planned = m_plan.scene.yarns[y];
+            double& most = greatest[repeat.yarns[y].system == System::warp ? 0 : 1];
+            for (const double strain : repeat.yarns[y].strain)
+                most = std::max(most, std::abs(strain - (planned.is_fed ? planned.strain - 1 : 0)));
+        }
+        return {{"warp", greatest[0]}, {"weft", greatest[1]}};
     }
 
     /// How near the force on a rim must come to what was asked for, as a share of the reference force of each yarn.
