@@ -29,10 +29,10 @@ struct ExtremeEnd {
     std::string report;  ///< what it ended as, and where; never empty
 };
 
-/// What must become of it. Whatever is expected: numbers stay numbers, time is kept, and a yarn that passed
-/// through another is told.
+/// What must become of it. Whatever is expected: numbers stay numbers, time is kept, and no yarn passes
+/// through another.
 enum class Expected : std::uint8_t {
-    rest,     ///< comes to rest, no yarn through another
+    rest,     ///< comes to rest
     told,     ///< may end otherwise; the report says what and where
     no_rest,  ///< must not claim to be at rest
     refused,
