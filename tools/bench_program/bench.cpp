@@ -7,6 +7,7 @@
 #include <weave/design/edit.hpp>
 #include <weave/design/evaluate.hpp>
 #include <weave/samples/samples.hpp>
+#include <weave/sim/simulate.hpp>
 
 #include <sys/resource.h>
 #include <unistd.h>
@@ -98,11 +99,134 @@ Json stencil_20000() {
             {"card_and_hash_s", now_s() - stencilled}, {"card_sha256", hash}, {"peak_MB", peak_mb()}};
 }
 
+/// A satin of so many repeats each way, its wefts `ratio` times as thick as its ends and laid that much farther apart.
+Design satin_design(double ratio) {
+    Design design;
+    design.root = "satin";
+    design.blocks["satin"] = std::make_shared<const Node>(Node{PresetLeaf{{"satin", {}}}, {}});
+    const double warp_mm = design.warp.yarns[0].radius_mm, weft_mm = design.weft.yarns[0].radius_mm * ratio;
+    design.scene.weft.radius_scale = ratio;
+    design.scene.dx_mm = 2.8 * weft_mm;
+    design.scene.dy_mm = 2.8 * warp_mm;
+    return design;
+}
+
+struct PairCost {
+    double seconds = 0;
+    std::size_t pairs = 0, samples = 0;
+    [[nodiscard]] double nanoseconds() const { return 1e9 * seconds / static_cast<double>(pairs); }
+};
+
+/// Energy and gradient of relaxed satin, one thread: time of one evaluation (median of 100), and how many pairs of contact
+/// samples touch in it.
+PairCost evaluation_cost(double ratio) {
+    const Design design = satin_design(ratio);
+    const Block cloth = tile(*evaluate(design)->block, 6, 6, 1).value();
+    sim::SimulationRequest request;
+    request.reduce = false;
+    const sim::Plan plan = sim::make_plan(design, cloth, request).value();
+    const sim::Executor executor(1);
+    const sim::Fabric<double> fabric(plan.scene);
+    sim::Energy<double> energy(fabric, executor);
+    std::vector<double> state = fabric.state(), gradient;
+    sim::RelaxOptions options;
+    options.residual = 1e-2;
+    sim::relax(energy, state, options);
+    std::vector<double> seconds;
+    for (int k = 0; k < 100; ++k) {
+        const double start = now_s();
+        energy.evaluate(state, gradient);
+        seconds.push_back(now_s() - start);
+    }
+    PairCost cost{median(seconds), 0, fabric.samples()};
+    const sim::FabricView<double> view = energy.view(state);
+    for (std::uint32_t a = 0; a < fabric.samples(); ++a) {
+        for (std::uint32_t e = view.first_neighbour[a]; e < view.first_neighbour[a + 1]; ++e) {
+            const std::uint32_t b = view.neighbours[e];
+            const double reach = view.samples.radius[a] + view.samples.radius[b];
+            const Vec3 apart(view.samples.x[a] - view.samples.x[b], view.samples.y[a] - view.samples.y[b],
+                             view.samples.z[a] - view.samples.z[b]);
+            cost.pairs += apart.squaredNorm() < reach * reach ? 1 : 0;
+        }
+    }
+    return cost;
+}
+
+/// What mixed radii cost: wefts as thick as ends, and three times as thick.
+Json mixed_radii() {
+    const PairCost equal = evaluation_cost(1), mixed = evaluation_cost(3);
+    return {{"equal_ns_a_pair", equal.nanoseconds()}, {"mixed_ns_a_pair", mixed.nanoseconds()},
+            {"ratio", mixed.nanoseconds() / equal.nanoseconds()},
+            {"equal_pairs", equal.pairs}, {"mixed_pairs", mixed.pairs}, {"equal_samples", equal.samples}, {"mixed_samples", mixed.samples}};
+}
+
+/// Plans and simulates a cloth on one thread; seconds, median of 7.
+double simulation_s(const Design& design, const Block& cloth) {
+    std::vector<double> seconds;
+    for (int k = 0; k < 7; ++k) {
+        const double start = now_s();
+        sim::SimulationOptions options;
+        options.threads = 1;
+        const sim::Plan plan = sim::make_plan(design, cloth, {}).value();
+        if (!sim::simulate(design, plan, options).report.at("converged").get<bool>()) return 0;
+        seconds.push_back(now_s() - start);
+    }
+    return median(seconds);
+}
+
+/// A sample tiled 4 × 4 against the single cell: planning, relaxing and copying back.
+Json tiled() {
+    Json answer;
+    for (const char* name : {"satin-e", "twill-g"}) {
+        const Design design = find_sample(name)->make();
+        const Block cell = *evaluate(design)->block, cloth = tile(cell, 4, 4, 1).value();
+        const double one = simulation_s(design, cell), all = simulation_s(design, cloth);
+        answer[name] = {{"cell_s", one}, {"tiled_s", all}, {"ratio", all / one}};
+    }
+    return answer;
+}
+
+/// A crossing that may flip, near the middle of a cloth.
+Flip some_flip(const Block& cloth) {
+    Flip wish{cloth.picks() / 2, cloth.ends() / 2, false};
+    while (!flip(stack_at(cloth, wish.pick, wish.end), wish.pick, wish.end)) ++wish.pick;
+    wish.weft_over = !cloth.weft_over(wish.pick, wish.end);
+    return wish;
+}
+
+/// One flip in relaxed cloth, one thread: leading the two yarns past one another and coming to rest again, against relaxing
+/// the flipped cloth from its planned curves.
+Json flip_settles() {
+    Json answer = Json::array();
+    for (const std::uint32_t repeats : {1, 3}) {
+        Design design = find_sample("satin-e")->make();
+        design.blocks["cloth"] = std::make_shared<const Node>(Node{TileOperation{design.root, repeats, repeats, 1}, {}});
+        design.root = "cloth";
+        const Flip wish = some_flip(*evaluate(design)->block);
+        sim::SimulationRequest request;
+        request.reduce = false;
+        sim::SimulationOptions options;
+        options.threads = 1;
+        options.flips = {wish};
+        const Json flipped = sim::simulate(design, sim::make_plan(design, *evaluate(design)->block, request).value(), options).report;
+        if (!apply_edit(design, PutFlip{design.root, wish})) return nullptr;
+        options.flips.clear();
+        const Json over = sim::simulate(design, sim::make_plan(design, *evaluate(design)->block, request).value(), options).report;
+        const Json& flip = flipped.at("flips").at(0);
+        const double settled = flip.at("flip_seconds").get<double>() + flip.at("settle_seconds").get<double>(),
+                     started_over = over.at("seconds").get<double>();
+        answer.push_back({{"points", over.at("points")}, {"done", flip.at("done")}, {"flip_s", flip.at("flip_seconds")},
+                          {"settle_s", flip.at("settle_seconds")}, {"start_over_s", started_over}, {"ratio", started_over / settled}});
+    }
+    return answer;
+}
+
 struct Case {
     const char* name;
     Json (*run)();
 };
-constexpr Case cases[] = {{"shoe", shoe}, {"shoe-edit", shoe_edit}, {"stencil-20000", stencil_20000}};
+constexpr Case cases[] = {{"shoe", shoe}, {"shoe-edit", shoe_edit}, {"stencil-20000", stencil_20000},
+                            {"mixed-radii", mixed_radii}, {"tiled", tiled}, {"flip", flip_settles}};
 
 }  // namespace
 
