@@ -1,4 +1,5 @@
 #include <weave/sim/flips.hpp>
+#include <weave/sim/neighbourhood.hpp>
 #include <weave/sim/order.hpp>
 #include <weave/sim/relax.hpp>
 
@@ -22,7 +23,6 @@ constexpr std::size_t spring_iterations = 200, contact_iterations = 20, last_ite
 /// there comes to rest, so that the rest of it has little left to do.
 constexpr double near_spacings = 1.5, wide_spacings = 5;
 
-
 std::vector<Spline> splines_of(const SimScene& scene, const std::vector<std::size_t>& curve_of, std::size_t curves) {
     std::vector<Spline> splines(curves);
     for (std::size_t y = 0; y < scene.yarns.size(); ++y)
@@ -36,7 +36,7 @@ class Flipping {
     Flipping(const SimScene& scene, const ClothCurves& curves, const std::vector<std::size_t>& curve_of,
              const Crossing& crossing, bool weft_over, double residual, const Executor& executor,
              const std::function<bool()>& go_on)
-        : m_before(scene), m_scene(scene), m_curves(curves), m_curve_of(curve_of), m_crossing(crossing), m_over(weft_over),
+        : m_scene(scene), m_curves(curves), m_curve_of(curve_of), m_crossing(crossing), m_over(weft_over),
           m_residual(residual), m_executor(executor), m_go_on(go_on) {}
 
     /// Whether the crossing lies as asked for in the end; fills in what is known.
@@ -46,9 +46,8 @@ class Flipping {
         prepare(*found);
         stage(0, spring_iterations, result);
         for (const double share : contact_shares) stage(share, contact_iterations, result);
-        m_scene.transition.reset();
         settle(last_iterations, stage_residual, result);
-        freeze_far(wide_spacings);
+        m_moving_mm = wide_spacings * spacing();
         settle(wide_iterations, m_residual, result);
         if (m_stopped) return give_up(result, "it was stopped");
         const auto ended = find();
@@ -92,51 +91,30 @@ class Flipping {
         m_pair.spring_N_per_mm = 10 * stiffness;
         const Spline of{weft.control, weft.is_periodic, weft.shift};
         m_place = of.place(found.weft_at);
-        freeze_far(near_spacings);
+        m_moving_mm = near_spacings * spacing();
     }
 
-    /// What lies within some spacings of the crossing moves, so that there is room; all else stays where it is. Yarns that
-    /// come nowhere near are left out.
-    void freeze_far(double spacings) {
-        const double near = spacings * std::max({m_curves.dx_mm, m_curves.dy_mm, m_stretch_mm}), touching = near + 3 * m_stretch_mm;
-        m_taking_part.clear();
-        for (std::size_t y = 0; y < m_scene.yarns.size(); ++y) {
-            SimYarn& yarn = m_scene.yarns[y];
-            yarn.frozen = m_before.yarns[y].frozen;
-            yarn.frozen.resize(yarn.control.size(), 0);
-            bool takes_part = false;
-            for (std::size_t i = 0; i < yarn.control.size(); ++i) {
-                const double far = distance(yarn.control[i]);
-                if (far > near) yarn.frozen[i] = 1;
-                // A yarn may come near between two points.
-                const Vec3& next = yarn.control[std::min(i + 1, yarn.control.size() - 1)];
-                takes_part = takes_part || far < touching + (next - yarn.control[i]).norm();
+    [[nodiscard]] double spacing() const { return std::max({m_curves.dx_mm, m_curves.dy_mm, m_stretch_mm}); }
+
+    /// The transition as the neighbourhood has it, whose yarns are pieces; nothing where a piece does not hold its crossing.
+    [[nodiscard]] std::optional<TransitionPair> pair_in(const Neighbourhood& part) const {
+        TransitionPair pair = m_pair;
+        for (std::size_t side = 0; side < 2; ++side) {
+            bool is_found = false;
+            for (std::size_t k = 0; k < part.pieces.size() && !is_found; ++k) {
+                if (part.pieces[k].yarn != m_pair.yarn[side]) continue;
+                const SimYarn &whole = m_scene.yarns[m_pair.yarn[side]], &piece = part.scene.yarns[k];
+                const auto points = static_cast<double>(piece.control.size()), all = static_cast<double>(whole.control.size());
+                double at = m_pair.at[side] - static_cast<double>(part.pieces[k].first);
+                if (whole.is_periodic && !piece.is_periodic) at -= all * std::floor(at / all);
+                is_found = piece.is_periodic || (at > 0 && at < points - 1);
+                pair.at[side] = at;
+                pair.yarn[side] = k;
+                pair.reach[side] = std::min(m_pair.reach[side], 0.45 * (points - 1));
             }
-            if (takes_part) m_taking_part.push_back(y);
+            if (!is_found) return {};
         }
-    }
-
-    /// From the crossing, or the nearest of its images.
-    [[nodiscard]] double distance(const Vec3& point) const {
-        Vec3 apart = point - m_place;
-        for (std::size_t k = 0; k < 2; ++k) {
-            const auto axis = static_cast<Eigen::Index>(k);
-            if (m_scene.is_periodic[k]) apart[axis] = std::remainder(apart[axis], m_scene.period_mm[k]);
-        }
-        return apart.norm();
-    }
-
-    /// The yarns that take part, as a scene of their own.
-    [[nodiscard]] SimScene part() const {
-        SimScene part = m_scene;
-        part.yarns.clear();
-        for (std::size_t k = 0; k < m_taking_part.size(); ++k) {
-            part.yarns.push_back(m_scene.yarns[m_taking_part[k]]);
-            for (std::size_t side = 0; side < 2 && part.transition; ++side) {
-                if (m_scene.transition->yarn[side] == m_taking_part[k]) part.transition->yarn[side] = k;
-            }
-        }
-        return part;
+        return pair;
     }
 
     /// Relaxes what may move with the spring and a share of the pair's contact.
@@ -149,10 +127,10 @@ class Flipping {
             const SimYarn& yarn = m_scene.yarns[m_pair.yarn[side]];
             const Spline of{yarn.control, yarn.is_periodic, yarn.shift};
             m_pair.reach[side] = std::max(0.5, m_stretch_mm / std::max(1e-9, of.tangent(m_pair.at[side]).norm()));
-            m_pair.reach[side] = std::min(m_pair.reach[side], 0.45 * static_cast<double>(of.segments()));
         }
-        m_scene.transition = m_pair;
+        m_leads = true;
         settle(most_iterations, stage_residual, result);
+        m_leads = false;
     }
 
     /// Whether the spring has led the two to their heights, all contact being off.
@@ -172,7 +150,10 @@ class Flipping {
 
     void settle(std::size_t most_iterations, double residual, FlipResult& result) {
         if (m_stopped) return;
-        const Fabric<double> fabric(part());
+        Neighbourhood part = neighbourhood(m_scene, m_place, m_moving_mm);
+        if (m_leads) part.scene.transition = pair_in(part);
+        if (m_leads && !part.scene.transition) return;
+        const Fabric<double> fabric(part.scene);
         Energy<double> energy(fabric, m_executor);
         std::vector<double> state = fabric.state();
         RelaxOptions options;
@@ -185,21 +166,21 @@ class Flipping {
         };
         result.iterations += relax(energy, state, options).iterations;
         std::vector<std::vector<Vec3>> control = fabric.control(state);
-        for (std::size_t k = 0; k < control.size(); ++k) m_scene.yarns[m_taking_part[k]].control = std::move(control[k]);
+        for (std::size_t k = 0; k < control.size(); ++k) part.scene.yarns[k].control = std::move(control[k]);
+        put_back(part, m_scene);
     }
 
-    const SimScene& m_before;
     SimScene m_scene;
-    std::vector<std::size_t> m_taking_part;  ///< yarns that come near
     const ClothCurves& m_curves;
     const std::vector<std::size_t>& m_curve_of;
     Crossing m_crossing;
-    bool m_over, m_stopped = false;
+    bool m_over, m_leads = false, m_stopped = false;  ///< the spring leads the two
     double m_residual;
     const Executor& m_executor;
     const std::function<bool()>& m_go_on;
     TransitionPair m_pair;
     Vec3 m_place{0, 0, 0};
+    double m_moving_mm = 0;   ///< around that place
     double m_stretch_mm = 0;  ///< half the stretches without contact
 };
 
