@@ -2,6 +2,9 @@
 
 #include "run.hpp"
 
+#include <cmath>
+#include <csignal>
+
 using program_tests::Ended;
 using program_tests::Workshop;
 using weave::Json;
@@ -41,17 +44,104 @@ TEST_CASE("bench tradeoff measures a structure, keeps it, and goes on from what 
 
 TEST_CASE("bench scale measures sizes from the least to the most and fits exponents") {
     const Workshop shop;
-    const Json said = shop.json({"bench", "scale", "--most", "6000", "--residual", "10", "-o", "kept"});
+    const Json said = shop.json({"bench", "scale", "--most", "6000", "--residual", "1e-2", "--threads", "1", "-o", "kept"});
     REQUIRE(said.at("sizes").size() == 3);
+    CHECK(said.at("asked_points") == Json({500, 1581, 5000}));
+    CHECK_FALSE(said.contains("interrupted"));
     double points = 0;
     for (const Json& size : said.at("sizes")) {
         CHECK(size.at("points").get<double>() > points);
         points = size.at("points");
+        CHECK(size.at("converged") == true);
+        CHECK(size.at("residual").get<double>() <= 1e-2);
+        CHECK(size.at("lost_crossings") == 0);
+        CHECK(size.at("steps").get<int>() > 0);
+        CHECK(size.at("seconds").get<double>() > 0);
+        CHECK(size.at("us_a_point").get<double>() == Approx(1e6 * size.at("seconds").get<double>() / points));
         CHECK(size.at("peak_bytes").get<double>() > 0);
     }
-    CHECK(said.contains("exponent_time"));
-    CHECK(shop.get("kept/scale.md").find("Bytes a point") != std::string::npos);
+    CHECK(std::abs(said.at("sizes").back().at("points").get<double>() - 5000) <= 0.5 * said.at("cell_points").get<double>());
+    for (const char* exponent : {"exponent_time", "exponent_memory", "exponent_steps"}) {
+        INFO(exponent);
+        CHECK(std::isfinite(said.at(exponent).get<double>()));
+    }
+    CHECK(said.at("exponent_time").get<double>() > 0);
+    const std::string table = shop.get("kept/scale.md");
+    CHECK(table.find("Bytes a point") != std::string::npos);
+    CHECK(table.find("one cell, has 800 points: it stands for the 500 asked for") != std::string::npos);
     CHECK(Json::parse(shop.get("kept/scale.json")) == said);
+}
+
+TEST_CASE("bench scale says that its last size did not come to rest, and fits nothing to it") {
+    const Workshop shop;
+    const Json said = shop.json({"bench", "scale", "--most", "6000", "--residual", "1e-12", "--seconds", "1e-3", "-o", "kept"});
+    REQUIRE(said.at("sizes").size() == 1);
+    CHECK(said.at("sizes").at(0).at("converged") == false);
+    CHECK(said.at("exponent_time").is_null());
+    CHECK(shop.get("kept/scale.md").find("The last did not come to rest in its time") != std::string::npos);
+}
+
+TEST_CASE("an interrupted benchmark says how much of what was asked for is done, and spoils no whole table") {
+    const Workshop shop;
+    const auto interrupted = [&](std::vector<std::string> words, const std::string& when) {
+        words.insert(words.end(), {"--threads", "1", "--json"});
+        Workshop::Running running = shop.start(words);
+        REQUIRE(running.says(when));
+        ::kill(running.child, SIGINT);
+        const Ended ended = running.finish();
+        INFO(ended.err);
+        CHECK(ended.exit == 1);
+        CHECK(ended.err.find("weave: interrupted: ") != std::string::npos);
+        Json said = Json::parse(ended.out);
+        CHECK(said.at("interrupted") == true);
+        CHECK(said.at("done").get<int>() < said.at("asked").get<int>());
+        return said;
+    };
+    const Json cases = interrupted({"bench", "stability"}, "stability: ");
+    CHECK(cases.at("done") == cases.at("cases").size());
+    CHECK(cases.at("asked").get<int>() >= 30);
+
+    shop.must({"samples", "plain", "-o", "d.weave"});  // and a folder with tables of whole runs
+    std::filesystem::create_directory(shop.path("kept"));
+    shop.put("kept/scale.json", "whole");
+    shop.put("kept/scale.md", "whole");
+    const Json sizes = interrupted({"bench", "scale", "-o", "kept"}, "some 1581 points");
+    CHECK(sizes.at("asked") == 8);
+    CHECK(sizes.at("done") == sizes.at("sizes").size());
+    CHECK(sizes.at("done").get<int>() >= 1);
+    CHECK(shop.get("kept/scale.json") == "whole");
+    CHECK(shop.get("kept/scale.md") == "whole");
+
+    shop.json({"bench", "tradeoff", "--only", "plain-pinned", "--seconds", "0.2", "--threads", "1", "-o", "kept"});
+    Json other = Json::parse(shop.get("kept/tradeoff-plain-pinned.json"));
+    other["name"] = "satin-e";
+    shop.put("kept/tradeoff-satin-e.json", other.dump());
+    shop.json({"bench", "tradeoff", "--only", "plain-pinned", "--missing", "-o", "kept"});
+    const std::string table = shop.get("kept/tradeoff.md");
+    REQUIRE(table.find("satin-e") != std::string::npos);
+    REQUIRE(table.find("plain-pinned") != std::string::npos);
+    const Json structures = interrupted({"bench", "tradeoff", "--only", "satin-e", "-o", "kept"}, "draft, relax");
+    CHECK(structures.at("done") == 0);
+    CHECK(structures.at("asked") == 1);
+    CHECK(shop.get("kept/tradeoff.md") == table);
+    CHECK(Json::parse(shop.get("kept/tradeoff-satin-e.json")) == other);
+}
+
+TEST_CASE("a second signal ends a benchmark at once, unless it comes right after the first") {
+    const Workshop shop;
+    // Planning a million points goes on for seconds without looking whether it is to stop.
+    Workshop::Running running = shop.start({"bench", "scale", "--least", "1000000", "--threads", "1", "-o", "kept"});
+    REQUIRE(running.says("some 1000000 points"));
+    ::kill(running.child, SIGINT);
+    REQUIRE(running.says("weave: interrupted: "));
+    ::usleep(20'000);
+    ::kill(running.child, SIGINT);
+    ::usleep(200'000);
+    CHECK_FALSE(running.is_over());
+    ::usleep(400'000);
+    ::kill(running.child, SIGINT);
+    CHECK(running.finish().exit == 1000 + SIGINT);
+    CHECK(shop.names().empty());
 }
 
 TEST_CASE("bench tells what it does not know") {
@@ -65,6 +155,14 @@ TEST_CASE("bench tells what it does not know") {
     refused({"bench"}, "--help");
     refused({"bench", "tradeoff", "--only", "jersey"}, "there is no structure 'jersey'");
     refused({"bench", "scale", "--seconds", "-1"}, "--seconds");
+    refused({"bench", "scale", "--least", "5", "--most", "1"}, "--most 1: is less than --least 5");
+    refused({"bench", "scale", "--most", "0"}, "--most 0");
+    refused({"bench", "scale", "--least", "0"}, "--least 0");
+    refused({"bench", "scale", "--most", "600"}, "--most 600: the smallest cloth, one cell, has 800 points");
+    refused({"bench", "tradeoff", "--missing"}, "--missing");
+    for (const char* part : {"tradeoff", "scale", "stability"}) refused({"bench", part, "--threads", "1025"}, "--threads");
+    CHECK(shop.must({"bench", "tradeoff", "--help"}).out.find("plain-pinned") != std::string::npos);
+    CHECK(shop.must({"bench", "scale", "--help"}).out.find("Ctrl-C") != std::string::npos);
 }
 
 TEST_CASE("simulate takes the paper's solver, and knows no other") {

@@ -67,12 +67,42 @@ TEST_CASE("options that make no sense are refused in a line that names them") {
     refused({"--resume", "none.yarns"}, 3, {"none.yarns"});
     refused({"--starts", "0"}, 2, {"--starts"});
     refused({"--starts", "2", "--flip", "1,1"}, 2, {"--starts", "flips"});
+    refused({"--seed", "3"}, 2, {"--seed", "--starts"});
+    refused({"--threads", "99999"}, 2, {"--threads", "1024"});
     refused({"--symmetry"}, 2, {"--symmetry", "one repeat"});
     refused({"--symmetry", "--flip", "1,1"}, 2, {"--symmetry", "flips"});
     refused({"--symmetry", "--resume", "x.yarns"}, 2, {"--symmetry", "--resume"});
     shop.must({"samples", "orthogonal", "-o", "d.weave"});
     const Ended illegal = shop.run({"flip", "d.weave", "--pick", "1", "--end", "1", "-o", "g.weave"});
     if (illegal.exit == 1) refused({"--flip", "1,1", "--save-design", "g.weave"}, 1, {"--flip 1,1", "in the way"});
+}
+
+TEST_CASE("--explain takes no option that makes no difference to the plan") {
+    const Workshop shop;
+    shop.must({"samples", "plain", "-o", "d.weave"});
+    using Words = std::vector<std::string>;
+    for (const Words& words : {Words{"-o", "x.yarns"}, {"--residual", "1e-5"}, {"--starts", "2"}, {"--seed", "3"}, {"--symmetry"},
+                               {"--flip", "1,1"}, {"--resume", "x.yarns"}, {"--steps", "3"}, {"--seconds", "3"}, {"--threads", "1"},
+                               {"--solver", "paper"}, {"--backend", "cpu"}, {"--save-design", "g.weave"}}) {
+        Words all{"simulate", "d.weave", "--explain"};
+        all.insert(all.end(), words.begin(), words.end());
+        shop.refused(all, 2, {words[0] == "-o" ? "--out" : words[0], "--explain"});
+    }
+    shop.must({"simulate", "d.weave", "--explain", "--fidelity", "draft", "--points", "3", "--whole"});
+}
+
+TEST_CASE("planning and relaxing that take their time are told, the latter with the order of the crossings") {
+    const Workshop shop;
+    shop.must({"samples", "plain", "-o", "p.weave"});
+    shop.must({"tile", "p.weave", "--x", "150", "--y", "150", "-o", "d.weave"});
+    // Whatever the machine's speed: the plan of 90,000 crossings has no more time than it needs to be told of.
+    Workshop::Running running = shop.start({"simulate", "d.weave", "--threads", "1", "--whole", "-o", "d.yarns"});
+    REQUIRE(running.says("relaxing ... residual"));
+    CHECK(running.says("order kept, "));
+    ::kill(running.child, SIGINT);
+    const Ended ended = running.finish();
+    INFO(ended.err);
+    CHECK(ended.exit == 1);
 }
 
 TEST_CASE("a relaxation goes on from a file, in more points too, and not from one of another design or scene") {
@@ -133,6 +163,61 @@ TEST_CASE("a run that is stopped leaves a whole file that says so, and another g
                                  "--steps", "1"}, 1);
     CHECK(more.at("points") == before.report.at("points"));
     CHECK(more.at("energy_N_mm").get<double>() <= before.report.at("energy_N_mm").get<double>() * 1.001);
+}
+
+namespace {
+
+/// Sends SIGINT once it says this, and what came of it.
+Ended interrupted(const Workshop& shop, const std::vector<std::string>& words, const std::string& when) {
+    Workshop::Running running = shop.start(words);
+    REQUIRE(running.says(when));
+    ::kill(running.child, SIGINT);
+    Ended ended = running.finish();
+    INFO(ended.err);
+    CHECK(ended.exit == 1);
+    CHECK(ended.err.find("again to end at once, without the state") != std::string::npos);
+    CHECK(ended.out.find("INTERRUPTED") != std::string::npos);
+    return ended;
+}
+
+}  // namespace
+
+TEST_CASE("what an interrupted run has not done is said, though what it did is at rest") {
+    const Workshop shop;
+    shop.must({"samples", "plain", "-o", "p.weave"});
+    shop.must({"tile", "p.weave", "--x", "60", "--y", "60", "-o", "d.weave"});
+    const Ended whole = interrupted(shop, {"simulate", "d.weave", "--threads", "1", "--symmetry", "--residual", "1e-6", "-o", "d.yarns"},
+                                    "relaxing the whole cloth");
+    CHECK(whole.out.find("left undone: the whole cloth beside its smallest repeat") != std::string::npos);
+    const Json report = yarns_in(shop, "d.yarns").report;
+    CHECK(report.at("converged") == true);
+    CHECK(report.at("interrupted") == true);
+    CHECK(report.at("left_undone").size() == 1);
+    CHECK_FALSE(report.contains("symmetry"));
+
+    shop.must({"samples", "satin-5", "-o", "s.weave"});
+    const Ended starts = interrupted(shop, {"simulate", "s.weave", "--threads", "1", "--starts", "1000", "--residual", "1e-6", "-o", "s.yarns"},
+                                     "relaxing from other starts");
+    const Json of = yarns_in(shop, "s.yarns").report.at("starts");
+    CHECK(of.at("asked") == 1000);
+    CHECK(of.at("runs").get<int>() < 1000);
+    CHECK(starts.out.find(std::to_string(1000 - of.at("runs").get<int>()) + " of 1000 more relaxations") != std::string::npos);
+    if (of.at("runs").get<int>() > 0) CHECK(starts.out.find("(of 1000 asked for)") != std::string::npos);
+}
+
+TEST_CASE("two signals in a breath are one: the yarns are written all the same") {
+    const Workshop shop;
+    shop.must({"samples", "tl013-wrong", "-o", "d.weave"});
+    Workshop::Running running = shop.start({"simulate", "d.weave", "--threads", "1", "-o", "d.yarns", "--fidelity", "reference"});
+    REQUIRE(running.says("residual"));
+    ::kill(running.child, SIGINT);
+    ::usleep(20'000);
+    ::kill(running.child, SIGINT);
+    CHECK(running.finish().exit == 1);
+    CHECK(yarns_in(shop, "d.yarns").report.at("interrupted") == true);
+    const std::string help = shop.must({"simulate", "--help"}).out;
+    CHECK(help.find("half a second") != std::string::npos);
+    CHECK(help.find("Exit status") != std::string::npos);
 }
 
 TEST_CASE("a flip in the relaxed cloth saves the design that its yarns are of") {

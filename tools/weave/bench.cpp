@@ -6,10 +6,12 @@
 #include "interrupt.hpp"
 
 #include <weave/core/file.hpp>
+#include <weave/core/text.hpp>
 #include <weave/sim/extremes.hpp>
 
 #include <algorithm>
 #include <filesystem>
+#include <map>
 
 namespace weave::program {
 
@@ -39,12 +41,49 @@ Result<Json> earlier(const std::string& folder, const std::string& name) {
     return json;
 }
 
+constexpr const char* what_follows_an_interrupt =
+    "what is under way is not kept; again to end at once, without a word on what was done";
+
+/// What an interrupted benchmark has done of what was asked for: into the answer, and the line for people.
+std::string tell_interrupted(Program& program, Json& answer, std::size_t done, std::size_t asked, const std::string& what) {
+    program.exit_code = findings;
+    answer.update({{"interrupted", true}, {"done", done}, {"asked", asked}});
+    return "\nINTERRUPTED: " + std::to_string(done) + " of " + counted(asked, what) + " done.\n";
+}
+
 /// Table and plot are written anew after every structure, so that what was measured is there whatever comes.
 Status write_report(const std::string& folder, const Json& structures) {
     if (folder.empty() || structures.empty()) return {};
     WEAVE_CHECK_OK(write_file(fs::path(folder) / "tradeoff.md", tradeoff_table(structures)));
     WEAVE_TRY(const std::string plot, tradeoff_plot(structures));
     return write_file(fs::path(folder) / "tradeoff.svg", plot);
+}
+
+/// Results as the table lists them.
+Json in_order(const std::map<std::string, Json>& known) {
+    Json structures = Json::array();
+    for (const std::string& name : structure_names()) {
+        if (const auto found = known.find(name); found != known.end()) structures.push_back(found->second);
+    }
+    return structures;
+}
+
+/// Measures one after the other and puts each among what is known, until interrupted: how many were done.
+Result<std::size_t> measure_all(const std::vector<std::string>& asked, const BenchOptions& options,
+                                std::map<std::string, Json>& known) {
+    std::size_t done = 0;
+    for (const std::string& name : asked) {
+        WEAVE_TRY(const Structure structure, make_structure(name));
+        Result<Json> measured = measure_tradeoff(structure, options);
+        if (interrupted()) break;
+        if (!measured) return std::move(measured).error();
+        known[name] = std::move(measured).value();
+        ++done;
+        if (options.folder.empty()) continue;
+        WEAVE_CHECK_OK(write_file(file_of(options.folder, name), known[name].dump(1) + "\n"));
+        WEAVE_CHECK_OK(write_report(options.folder, in_order(known)));
+    }
+    return done;
 }
 
 struct TradeoffWish {
@@ -57,24 +96,24 @@ Status run_tradeoff(Program& program, const TradeoffWish& wish) {
     for (const std::string& name : options.only) {
         if (const Result<Structure> known = make_structure(name); !known) return known.error();
     }
+    if (wish.missing && options.folder.empty())
+        return Error{ErrorCode::usage, "of what? Name the folder: -o FOLDER", "--missing"};
     if (!options.folder.empty()) WEAVE_CHECK_OK(make_folder(options.folder));
-    Json structures = Json::array();
+    std::map<std::string, Json> known;
+    std::vector<std::string> asked;
     for (const std::string& name : structure_names()) {
         WEAVE_TRY(Json json, earlier(options.folder, name));
-        const bool asked =
-            options.only.empty() || std::ranges::find(options.only, name) != options.only.end();
-        if (asked && !(wish.missing && !json.is_null())) {
-            WEAVE_TRY(const Structure structure, make_structure(name));
-            WEAVE_TRY(json, measure_tradeoff(structure, options));
-            if (!options.folder.empty())
-                WEAVE_CHECK_OK(write_file(file_of(options.folder, name), json.dump(1) + "\n"));
-        }
-        if (json.is_null()) continue;
-        structures.push_back(std::move(json));
-        WEAVE_CHECK_OK(write_report(options.folder, structures));
+        const bool named = options.only.empty() || std::ranges::find(options.only, name) != options.only.end();
+        if (named && !(wish.missing && !json.is_null())) asked.push_back(name);
+        if (!json.is_null()) known[name] = std::move(json);
     }
-    program.answer({{"machine", machine_json(options.threads)}, {"structures", structures}},
-                   tradeoff_table(structures));
+    const HeldInterrupt held(what_follows_an_interrupt);
+    WEAVE_TRY(const std::size_t done, measure_all(asked, options, known));
+    WEAVE_CHECK_OK(write_report(options.folder, in_order(known)));
+    Json answer{{"machine", machine_json(options.threads)}, {"structures", in_order(known)}};
+    std::string words = tradeoff_table(in_order(known));
+    if (done < asked.size()) words += tell_interrupted(program, answer, done, asked.size(), "structure");
+    program.answer(answer, words);
     return {};
 }
 
@@ -83,14 +122,29 @@ struct ScaleWish {
     ScaleOptions scale;
 };
 
+Status check_sizes(const ScaleOptions& scale) {
+    if (scale.least == 0 || scale.most == 0)
+        return Error{ErrorCode::usage, "a cloth has points", scale.least == 0 ? "--least 0" : "--most 0"};
+    if (scale.least > scale.most)
+        return Error{ErrorCode::usage, "is less than --least " + std::to_string(scale.least), "--most " + std::to_string(scale.most)};
+    return {};
+}
+
 Status run_scale(Program& program, const ScaleWish& wish) {
-    WEAVE_TRY(const Json result, measure_scale(wish.options, wish.scale));
-    if (!wish.options.folder.empty()) {
+    WEAVE_CHECK_OK(check_sizes(wish.scale));
+    const HeldInterrupt held(what_follows_an_interrupt);
+    WEAVE_TRY(Json result, measure_scale(wish.options, wish.scale));
+    std::string words = scale_table(result);
+    const bool whole = !interrupted();
+    if (!whole)
+        words += tell_interrupted(program, result, result.at("sizes").size(), result.at("asked_points").size(), "size");
+    if (whole && !wish.options.folder.empty()) {
         WEAVE_CHECK_OK(make_folder(wish.options.folder));
         WEAVE_CHECK_OK(write_file(fs::path(wish.options.folder) / "scale.json", result.dump(1) + "\n"));
-        WEAVE_CHECK_OK(write_file(fs::path(wish.options.folder) / "scale.md", scale_table(result)));
+        WEAVE_CHECK_OK(write_file(fs::path(wish.options.folder) / "scale.md", words));
     }
-    program.answer(result, scale_table(result));
+    if (!whole && !wish.options.folder.empty()) words += "Nothing is written to " + on_one_line(wish.options.folder) + ".\n";
+    program.answer(result, words);
     return {};
 }
 
@@ -121,9 +175,10 @@ Status run_stability(Program& program, const StabilityWish& wish) {
     Json cases = Json::array();
     std::string table = "| Case | Must | Points | Steps | s | Ended |\n|---|---|---|---|---|---|\n";
     std::size_t bad = 0;
-    const HeldInterrupt held;
-    for (const sim::Extreme& extreme : sim::extremes()) {
-        if (extreme.is_long && !wish.with_long) continue;
+    const HeldInterrupt held("the case under way is the last; again to end at once, without a word on what was done");
+    std::vector<sim::Extreme> asked = sim::extremes();
+    if (!wish.with_long) std::erase_if(asked, [](const sim::Extreme& extreme) { return extreme.is_long; });
+    for (const sim::Extreme& extreme : asked) {
         if (interrupted()) break;
         tell("stability: " + extreme.name);
         const sim::ExtremeEnd end =
@@ -136,7 +191,9 @@ Status run_stability(Program& program, const StabilityWish& wish) {
                  in_words("%.2f", end.seconds) + " | " + end.report +
                  (why.empty() ? "" : " **BAD: " + why + "**") + " |\n";
     }
-    program.answer({{"machine", machine_json(wish.options.threads)}, {"cases", cases}, {"bad", bad}}, table);
+    Json answer{{"machine", machine_json(wish.options.threads)}, {"cases", cases}, {"bad", bad}};
+    if (cases.size() < asked.size()) table += tell_interrupted(program, answer, cases.size(), asked.size(), "case");
+    program.answer(answer, table);
     if (bad > 0) program.exit_code = findings;
     return {};
 }
@@ -146,20 +203,23 @@ void add_shared_options(CLI::App* command, BenchOptions& options, const std::str
         ->check(positive_number())
         ->capture_default_str()
         ->type_name("N");
-    command->add_option("--threads", options.threads, "processor cores to use; 0: all")->transform(whole_number())->type_name("N");
+    add_threads(command, options.threads);
+    command->footer("Ctrl-C ends it (exit 1), says how much was done, and writes no table of less than that over a whole one; "
+                    "again, half a second later or more, ends it at once.\n" + command->get_footer());
 }
 
 void add_tradeoff(CLI::App& bench, Program& program) {
     CLI::App* command = add_command(
         bench, program, "tradeoff",
-        "Speed against accuracy: the eight structures of the paper's Table 1, every solver and fidelity");
+        "Speed against accuracy, every solver and fidelity: the eight structures of the paper's Table 1, and "
+        "plain-pinned, a plain weave of 8 by 8 pinned yarns on which other simulators were measured");
     const auto wish = std::make_shared<TradeoffWish>();
     command
         ->add_option("-o,--out", wish->options.folder,
                      "a folder for tradeoff-NAME.json, tradeoff.md and tradeoff.svg; what it holds already "
                      "of other structures goes into the table too")
         ->type_name("FOLDER");
-    command->add_option("--only", wish->options.only, "only this structure (again for more)")
+    command->add_option("--only", wish->options.only, "only this structure (again for more), such as satin-e or plain-pinned")
         ->type_name("NAME");
     command->add_flag("--missing", wish->missing, "only structures of which the folder holds nothing");
     add_shared_options(command, wish->options, "cap of each run");
@@ -172,7 +232,8 @@ void add_scale(CLI::App& bench, Program& program) {
     const auto wish = std::make_shared<ScaleWish>();
     command->add_option("-o,--out", wish->options.folder, "a folder for scale.json and scale.md")
         ->type_name("FOLDER");
-    command->add_option("--least", wish->scale.least, "the smallest size in points")
+    command->add_option("--least", wish->scale.least, "the smallest size in points; cloth is made of whole cells, the next smaller or larger number "
+                     "of them, and has one at least")
         ->transform(whole_number())
         ->capture_default_str()
         ->type_name("N");

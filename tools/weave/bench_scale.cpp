@@ -63,17 +63,14 @@ double now() {
     return std::chrono::duration<double>(std::chrono::steady_clock::now().time_since_epoch()).count();
 }
 
-}  // namespace
+/// A cloth of so many cells, as near to the points wanted as whole cells come.
+struct Cells {
+    std::size_t wanted_points, x, y;
+};
 
-Result<Json> measure_scale(const BenchOptions& options, const ScaleOptions& scale) {
-    const HeldInterrupt held;
-    const Design design = find_sample("satin-e")->make();
-    WEAVE_TRY(const Evaluation evaluation, evaluate(design));
-    WEAVE_TRY(const sim::Plan cell, plan_of(design, *evaluation.block, 1, 1));
-    const std::size_t cell_points = points_of(cell.scene);
-    const double radius = cell.scene.yarns.front().radius_mm;
-    Json sizes = Json::array();
-    std::size_t tried = 0;
+/// From the least to the most, each √10 times the one before; none twice.
+std::vector<Cells> cells_of(const ScaleOptions& scale, std::size_t cell_points) {
+    std::vector<Cells> all;
     for (double wanted = static_cast<double>(scale.least); wanted <= 1.01 * static_cast<double>(scale.most);
          wanted *= std::sqrt(10.0)) {
         const auto cells =
@@ -81,19 +78,44 @@ Result<Json> measure_scale(const BenchOptions& options, const ScaleOptions& scal
         const auto x =
             static_cast<std::size_t>(std::max(1.0, std::round(std::sqrt(static_cast<double>(cells)))));
         const std::size_t y = std::max<std::size_t>(1, cells / x);
-        if (x * y == tried) continue;
-        tried = x * y;
-        const double began = now();
-        WEAVE_TRY(sim::Plan plan, plan_of(design, *evaluation.block, x, y));
-        add_noise(plan.scene, 0.05 * radius);
-        const double planned = now() - began;
-        const Measured run =
-            measure(plan, sim::Solver::relax, {}, {scale.residual, options.seconds, options.threads});
+        if (all.empty() || x * y != all.back().x * all.back().y)
+            all.push_back({static_cast<std::size_t>(std::round(wanted)), x, y});
+    }
+    return all;
+}
+
+Result<Json> measure_size(const Design& design, const Block& cell, const Cells& cells, const BenchOptions& options,
+                          double residual) {
+    tell("scale: some " + std::to_string(cells.wanted_points) + " points");
+    const double began = now();
+    WEAVE_TRY(sim::Plan plan, plan_of(design, cell, cells.x, cells.y));
+    add_noise(plan.scene, 0.05 * plan.scene.yarns.front().radius_mm);
+    const double planned = now() - began;
+    const Measured run = measure(plan, sim::Solver::relax, {}, {residual, options.seconds, options.threads});
+    Json size = size_json(run, residual, planned);
+    size["wanted_points"] = cells.wanted_points;
+    size["lost_crossings"] = shape_of(plan, run.control).lost;
+    tell("scale: " + in_words("%.0f points: ", static_cast<double>(run.points)) +
+         in_words("%.2f s, ", run.result.seconds) + in_words("residual %.1e", run.result.residual));
+    return size;
+}
+
+}  // namespace
+
+Result<Json> measure_scale(const BenchOptions& options, const ScaleOptions& scale) {
+    const Design design = find_sample("satin-e")->make();
+    WEAVE_TRY(const Evaluation evaluation, evaluate(design));
+    WEAVE_TRY(const sim::Plan cell, plan_of(design, *evaluation.block, 1, 1));
+    const std::size_t cell_points = points_of(cell.scene);
+    if (scale.most < cell_points)
+        return Error{ErrorCode::usage, "the smallest cloth, one cell, has " + std::to_string(cell_points) + " points",
+                     "--most " + std::to_string(scale.most)};
+    const std::vector<Cells> all = cells_of(scale, cell_points);
+    Json sizes = Json::array(), asked = Json::array();
+    for (const Cells& cells : all) asked.push_back(cells.wanted_points);
+    for (const Cells& cells : all) {
+        WEAVE_TRY(Json size, measure_size(design, *evaluation.block, cells, options, scale.residual));
         if (interrupted()) break;
-        Json size = size_json(run, scale.residual, planned);
-        size["lost_crossings"] = shape_of(plan, run.control).lost;
-        tell("scale: " + in_words("%.0f points: ", static_cast<double>(run.points)) +
-             in_words("%.2f s, ", run.result.seconds) + in_words("residual %.1e", run.result.residual));
         const bool converged = size.at("converged").get<bool>();
         sizes.push_back(std::move(size));
         if (!converged) break;
@@ -105,6 +127,8 @@ Result<Json> measure_scale(const BenchOptions& options, const ScaleOptions& scal
     return Json{{"machine", machine_json(options.threads)},
                 {"structure", "satin-e, two layers, tiled, unreduced, noise 0.05 radius"},
                 {"goal", scale.residual},
+                {"cell_points", cell_points},
+                {"asked_points", asked},
                 {"sizes", sizes},
                 {"exponent_time", exponent(rested, "seconds")},
                 {"exponent_memory", exponent(rested, "peak_bytes")},
@@ -131,6 +155,12 @@ std::string scale_table(const Json& result) {
                 in_words("%.0f", size.at("peak_bytes").get<double>() / 1e6) + " | " +
                 in_words("%.0f", size.at("bytes_a_point")) + " | " +
                 in_words("%.0f", size.at("lost_crossings")) + " |\n";
+    const Json &asked = result.at("asked_points"), &sizes = result.at("sizes");
+    if (asked.front() < result.at("cell_points"))
+        text += "\nThe smallest cloth, one cell, has " + in_words("%.0f", result.at("cell_points")) + " points: it stands for the " +
+                in_words("%.0f", asked.front()) + " asked for.\n";
+    if (!sizes.empty() && !sizes.back().at("converged").get<bool>())
+        text += "\nThe last did not come to rest in its time, so larger ones were not tried and it is left out of what follows.\n";
     if (result.at("exponent_time").is_number())
         text += "\nTime grows as n^" + in_words("%.2f", result.at("exponent_time")) + ", memory as n^" +
                 in_words("%.2f", result.at("exponent_memory")) + ", steps as n^" +

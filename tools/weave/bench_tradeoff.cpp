@@ -46,7 +46,6 @@ class Tradeoff {
         : m_structure(structure), m_options(options) {}
 
     Result<Json> run() {
-        const HeldInterrupt held;
         for (const Grade& grade : grades) {
             WEAVE_TRY(sim::Plan plan, plan_of(m_structure, grade));
             m_plans.push_back(std::move(plan));

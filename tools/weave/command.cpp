@@ -6,6 +6,7 @@
 #include <weave/design/document.hpp>
 #include <weave/design/outline.hpp>
 #include <weave/design/pins.hpp>
+#include <weave/sim/execute.hpp>
 
 #include <charconv>
 #include <cmath>
@@ -46,6 +47,21 @@ const char* kind_of(ErrorCode code) {
             return "system";
     }
     return "";
+}
+
+namespace fs = std::filesystem;
+
+/// The place that a file of this name is written to: links are followed, to a file that is still missing too.
+fs::path written_place(fs::path name) {
+    std::error_code trouble;
+    constexpr int most_links = 40;
+    for (int links = 0; links < most_links && fs::is_symlink(name, trouble); ++links) {
+        const fs::path target = fs::read_symlink(name, trouble);
+        if (trouble) break;
+        name = target.is_absolute() ? target : name.parent_path() / target;
+    }
+    const fs::path whole = fs::weakly_canonical(fs::absolute(name, trouble), trouble);
+    return whole.empty() ? name : whole;
 }
 
 constexpr const char* reading_options[] = {"--pick-1", "--end-1", "--lifted"};
@@ -119,6 +135,28 @@ CLI::Validator positive_number() {
 
 CLI::Validator output_name() {
     return {[](std::string& name) { return name.empty() ? std::string("name what is to be written") : ""; }, ""};
+}
+
+CLI::Option* add_threads(CLI::App* command, std::size_t& threads) {
+    return command->add_option("--threads", threads, "processor cores to use; 0: all")
+        ->transform(between(std::size_t{0}, sim::most_threads))
+        ->type_name("N");
+}
+
+std::string given_of(const CLI::App* command, std::initializer_list<const char*> options) {
+    for (const char* option : options) {
+        if (command->count(option) > 0) return option;
+    }
+    return "";
+}
+
+Status keep_apart(const std::string& out, const std::string& other, const std::string& other_is) {
+    if (out.empty() || other.empty()) return {};
+    std::error_code unknown;
+    const fs::path place = written_place(out);
+    if (fs::exists(place, unknown) && !fs::is_regular_file(place, unknown)) return {};
+    if (place != written_place(other)) return {};
+    return Error{ErrorCode::usage, "is " + other_is + ", which would be lost; write to another file", out};
 }
 
 void note_lost_flips(const Program& program, const std::vector<LostFlip>& lost_flips,

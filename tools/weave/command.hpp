@@ -9,9 +9,11 @@
 
 #include <CLI/CLI.hpp>
 
+#include <cstddef>
 #include <cstdint>
 #include <filesystem>
 #include <functional>
+#include <initializer_list>
 #include <memory>
 #include <string>
 #include <vector>
@@ -67,6 +69,16 @@ CLI::Validator positive_number();
 
 /// The name of what is to be written, which must not be empty.
 CLI::Validator output_name();
+
+/// Adds `--threads`, of which 0 means one a core.
+CLI::Option* add_threads(CLI::App* command, std::size_t& threads);
+
+/// The first of these options that was given, such as `--lifted`; empty if none was.
+std::string given_of(const CLI::App* command, std::initializer_list<const char*> options);
+
+/// Refuses to write `out` over `other`, by whatever names and links both go. `other_is` says in words what would be lost,
+/// such as `the design that is read`. Devices and pipes are not overwritten; an empty name is no file.
+Status keep_apart(const std::string& out, const std::string& other, const std::string& other_is);
 
 /// An option that is a list such as 1,0,2: whole numbers within limits, none of them left out. `list` must outlive
 /// the command.

@@ -80,6 +80,7 @@ std::string in_words(const ImportRequest& request, const Block& block, const Jso
 }
 
 Status import_design(Program& program, const ImportRequest& request) {
+    WEAVE_CHECK_OK(keep_apart(request.out, request.in, "the file that is read"));
     const Progress progress("reading " + request.in);
     WEAVE_TRY(const std::string bytes, read_file(request.in));
     const bool wif = lower_extension(request.in) == ".wif" || is_wif(bytes);

@@ -3,14 +3,36 @@
 #include <weave/core/file.hpp>
 
 #include <atomic>
+#include <chrono>
 #include <csignal>
+#include <cstdio>
 #include <thread>
+#include <unistd.h>
 
 namespace weave::program {
 
 namespace {
 
 std::atomic<bool> held{false}, came{false};
+std::atomic<const char*> what_follows{""};
+
+/// Decides signal by signal whether the program ends at once. A key that bounces, or a caller that signals twice, is not
+/// a second wish.
+class Judge {
+  public:
+    bool ends_at_once() {
+        if (!held) return true;
+        const auto now = std::chrono::steady_clock::now();
+        if (came.exchange(true)) return now - m_first > std::chrono::milliseconds(500);
+        m_first = now;
+        const char* after_progress = ::isatty(STDERR_FILENO) == 1 ? "\n" : "";
+        std::fprintf(stderr, "%sweave: interrupted: %s\n", after_progress, what_follows.load());
+        return false;
+    }
+
+  private:
+    std::chrono::steady_clock::time_point m_first;
+};
 
 }  // namespace
 
@@ -25,9 +47,10 @@ void tidy_up_when_ended() {
     pthread_sigmask(SIG_BLOCK, &ending, nullptr);  // here, and in every thread from now on
     std::thread([ending] {
         int signal = 0;
+        Judge judge;
         do {
             if (sigwait(&ending, &signal) != 0) return;
-        } while (held && !came.exchange(true));
+        } while (!judge.ends_at_once());
         drop_unfinished_writes();
         std::signal(signal, SIG_DFL);
         pthread_sigmask(SIG_UNBLOCK, &ending, nullptr);
@@ -35,7 +58,8 @@ void tidy_up_when_ended() {
     }).detach();
 }
 
-HeldInterrupt::HeldInterrupt() {
+HeldInterrupt::HeldInterrupt(const char* follows) {
+    what_follows = follows;
     came = false;
     held = true;
 }

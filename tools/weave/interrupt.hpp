@@ -7,10 +7,11 @@ namespace weave::program {
 void tidy_up_when_ended();
 
 /// While one lives, the first signal does not end the program but makes interrupted() true, so that what was computed
-/// can be kept; the second ends it.
+/// can be kept; another one, half a second later or more, ends it at once.
 class HeldInterrupt {
   public:
-    HeldInterrupt();
+    /// `follows` tells people what a first signal leads to, and what a second; it must last as long as the program.
+    explicit HeldInterrupt(const char* follows);
     ~HeldInterrupt();
     HeldInterrupt(const HeldInterrupt&) = delete;
     HeldInterrupt& operator=(const HeldInterrupt&) = delete;

@@ -134,6 +134,7 @@ Status write_card(Program& program, const std::string& file, const std::string& 
     if (wif && !given_option.empty())
         return Error{ErrorCode::usage,
                      given_option + " is for pictures; WIF says itself how it is to be read", out};
+    WEAVE_CHECK_OK(keep_apart(out, file, "the design that is read"));
     WEAVE_TRY(const Cloth cloth, load_cloth(program, file));
     const Progress progress("writing " + out);
     const CardImage card = cloth.evaluation.block->card_image();
@@ -180,9 +181,12 @@ struct Rendering {
     std::optional<std::size_t> from_pick, from_end;
     ClothWords cloth;  ///< how relaxed cloth is looked at
     std::string given_3d_option;  ///< the first of the options for `cloth` that was given
+    std::string given_flat_option;  ///< the first of those for pictures of designs
 };
 
 Status render_cloth(Program& program, const Rendering& wish) {
+    if (!wish.given_flat_option.empty())
+        return Error{ErrorCode::usage, wish.given_flat_option + " is for pictures of designs", "--view 3d"};
     WEAVE_TRY(ClothView view, parse_cloth_view(wish.cloth));
     WEAVE_TRY(view.format, picture_format_of(wish.out));
     WEAVE_TRY(const Yarns yarns, load_yarns(wish.file));
@@ -200,9 +204,10 @@ Status refuse_3d_options(const Rendering& wish) {
 }
 
 Status render(Program& program, const Rendering& wish) {
+    WEAVE_CHECK_OK(keep_apart(wish.out, wish.file, "the file that is read"));
     if (wish.view == "3d") return render_cloth(program, wish);
     WEAVE_CHECK_OK(refuse_3d_options(wish));
-    const auto& [file, view, out, trim, from_pick, from_end, cloth_words, given_3d_option] = wish;
+    const auto& [file, view, out, trim, from_pick, from_end, cloth_words, given_3d_option, given_flat_option] = wish;
     WEAVE_TRY(const PictureFormat format, picture_format_of(out));
     WEAVE_TRY(const Cloth cloth, load_cloth(program, file));
     const Progress progress("drawing " + out);
@@ -247,9 +252,8 @@ void add_render(CLI::App& app, Program& program) {
         ->type_name("FILE")
         ->required();
     on_run(command, program, [=, &program] {
-        for (const char* option : {"--side", "--cut", "--colour", "--repeat", "--size", "--perspective"}) {
-            if (command->count(option) > 0 && wish->given_3d_option.empty()) wish->given_3d_option = option;
-        }
+        wish->given_3d_option = given_of(command, {"--side", "--cut", "--colour", "--repeat", "--size", "--perspective"});
+        wish->given_flat_option = given_of(command, {"--trim", "--from-pick", "--from-end"});
         return render(program, *wish);
     });
 }

@@ -246,6 +246,7 @@ Result<StencilMap> read_map(const std::string& picture, const std::map<Colour, s
 
 Status make_stencil(Program& program, const std::string& picture, const std::vector<std::string>& mappings,
                     const std::string& out) {
+    WEAVE_CHECK_OK(keep_apart(out, picture, "the picture that is read"));
     Design design;
     StencilOperation stencil;
     std::map<Colour, std::uint16_t> numbers;

@@ -2,6 +2,7 @@
 
 #include "command.hpp"
 #include "interrupt.hpp"
+#include "progress.hpp"
 #include "simulate_words.hpp"
 
 #include <weave/core/file.hpp>
@@ -34,7 +35,8 @@ struct Wish {
     std::optional<double> residual, points, seconds;
     std::optional<std::size_t> steps;
     std::size_t threads = 0, starts = 0;
-    std::uint64_t seed = 1;
+    std::optional<std::uint64_t> seed;
+    std::string no_plan_option;  ///< the first given that makes no difference to the plan
 };
 
 Error usage_error(std::string message, std::string where) {
@@ -56,8 +58,22 @@ Status check_backend(const std::string& backend) {
     return usage_error("backend is cpu or cuda", "--backend " + backend);
 }
 
+/// What is read or written besides is not written over. Two files may change in place: yarns that are gone on from, and
+/// the design that gets its flips.
+Status check_files(const Wish& wish) {
+    WEAVE_CHECK_OK(keep_apart(wish.out, wish.file, "the design that is read"));
+    WEAVE_CHECK_OK(keep_apart(wish.save_design, wish.out, "the file for the yarns (-o)"));
+    return keep_apart(wish.save_design, wish.resume, "the file of yarns that are gone on from");
+}
+
 Status check_wish(const Wish& wish) {
     WEAVE_CHECK_OK(check_backend(wish.backend));
+    WEAVE_CHECK_OK(check_files(wish));
+    if (!wish.explain && wish.out.empty()) return usage_error("say where the yarns go: -o OUT.yarns", "");
+    if (wish.explain && !wish.no_plan_option.empty())
+        return usage_error("nothing is simulated with --explain, and the plan owes nothing to it", wish.no_plan_option);
+    if (wish.seed && wish.starts == 0 && !wish.symmetry)
+        return usage_error("is of the noise of --starts and --symmetry; without them there is none", "--seed");
     if (!wish.save_design.empty() && wish.flips.empty())
         return usage_error("without --flip the design stays as it is", "--save-design " + wish.save_design);
     if (!wish.flips.empty() && (wish.starts > 0 || wish.symmetry))
@@ -68,7 +84,6 @@ Status check_wish(const Wish& wish) {
 }
 
 Result<Task> understand(Cloth cloth, const Wish& wish) {
-    WEAVE_CHECK_OK(check_wish(wish));
     const Block& block = *cloth.evaluation.block;
     Task task;
     task.file_scene_sha256 = scene_sha256(cloth.design);
@@ -108,18 +123,20 @@ class Teller {
   public:
     explicit Teller(double goal) : m_goal(goal) {}
 
+    /// What relaxes from now on, such as ` the whole cloth`.
+    void turn_to(std::string what) {
+        m_what = std::move(what);
+        m_next = std::min(m_next, seconds() + first_after);
+    }
+
     bool operator()(const sim::Progress& progress) {
-        const double now = std::chrono::duration<double>(std::chrono::steady_clock::now() - m_start).count();
+        const double now = seconds();
+        if (progress.iteration < m_iteration) m_past.clear();  // another run
+        m_iteration = progress.iteration;
         if (progress.residual > 0) m_past.push_back({now, std::log(progress.residual)});
-        if (progress.residual > 0 && now - m_told >= (m_terminal ? 0.2 : m_told == 0 ? 1 : 10)) {
-            const std::optional<double> left = seconds_left();
-            char to_go[40] = "";
-            if (left) std::snprintf(to_go, sizeof to_go, "to go some %.*f s, ", *left < 10 ? 1 : 0, *left);
-            std::fprintf(stderr, "%srelaxing ... residual %.2e (goal %.0e) after %zu steps, %sso far %.1f s%s",
-                         m_terminal ? "\r" : "", progress.residual, m_goal, progress.iteration, to_go, now,
-                         m_terminal ? "\033[K" : "\n");
-            m_told = now;
-            m_open = m_terminal;
+        if (progress.residual > 0 && now >= m_next) {
+            tell(progress, now);
+            m_next = now + (m_terminal ? 0.2 : 10);
         }
         return !interrupted();
     }
@@ -128,6 +145,26 @@ class Teller {
     }
 
   private:
+    [[nodiscard]] double seconds() const {
+        return std::chrono::duration<double>(std::chrono::steady_clock::now() - m_start).count();
+    }
+
+    void tell(const sim::Progress& progress, double now) {
+        const std::optional<double> left = seconds_left();
+        char to_go[40] = "";
+        if (left) std::snprintf(to_go, sizeof to_go, "to go some %.*f s, ", *left < 10 ? 1 : 0, *left);
+        std::fprintf(stderr, "%srelaxing%s ... residual %.2e (goal %.0e) after %zu steps, %s%sso far %.1f s%s", m_terminal ? "\r" : "",
+                     m_what.c_str(), progress.residual, m_goal, progress.iteration, order_of(progress).c_str(), to_go, now,
+                     m_terminal ? "\033[K" : "\n");
+        m_open = m_terminal;
+    }
+
+    /// Nothing before crossings were looked up first.
+    static std::string order_of(const sim::Progress& progress) {
+        if (!progress.lost_crossings) return "";
+        return *progress.lost_crossings == 0 ? "order kept, " : counted(*progress.lost_crossings, "crossing") + " out of order, ";
+    }
+
     struct Past {
         double seconds, log_residual;
     };
@@ -142,9 +179,13 @@ class Teller {
         return std::max(0.0, (now.log_residual - std::log(m_goal)) / fell * (now.seconds - then->seconds));
     }
 
+    static constexpr double first_after = 1;
+
     double m_goal;
+    std::string m_what;
     bool m_terminal = ::isatty(STDERR_FILENO) == 1, m_open = false;
-    double m_told = 0;
+    double m_next = first_after;
+    std::size_t m_iteration = 0;
     std::vector<Past> m_past;
     std::chrono::steady_clock::time_point m_start = std::chrono::steady_clock::now();
 };
@@ -184,6 +225,13 @@ std::string friction_in_words(const Json& report) {
     return line;
 }
 
+std::string interruption_in_words(const Json& report) {
+    if (!report.contains("interrupted")) return "";
+    std::string text = "INTERRUPTED, left undone: ";
+    for (const Json& what : report.at("left_undone")) text += (text.back() == ' ' ? "" : ", ") + what.get<std::string>();
+    return text + "\n";
+}
+
 std::string ending_in_words(const Json& report) {
     char line[200];
     std::snprintf(line, sizeof line, "%s: residual %.1e (goal %.0e) after %zu steps and %.2f s, %zu points, greatest overlap %.0f %%\n",
@@ -196,7 +244,22 @@ std::string ending_in_words(const Json& report) {
                         : slid > 0 ? "" : "every crossing lies as the card says\n";
     if (slid > 0) order += counted(slid, "crossing") + " no longer where planned, open or not held; no yarn passed through another there\n";
     return line + order + coverage_in_words(report) + friction_in_words(report) + flips_in_words(report) +
-           sim::starts_text(report) + sim::symmetry_text(report);
+           sim::starts_text(report) + sim::symmetry_text(report) + interruption_in_words(report);
+}
+
+/// What an interrupted run was asked for and has not done, in words.
+std::vector<std::string> left_undone(const Json& report, const Task& task, const Wish& wish) {
+    std::vector<std::string> undone;
+    const auto add = [&](std::size_t done, std::size_t asked, const char* what) {
+        if (done < asked) undone.push_back(std::to_string(asked - done) + " of " + counted(asked, what));
+    };
+    const Json flips = report.value("flips", Json::array());
+    if (report.at("ending") == "stopped") undone.emplace_back("coming to rest");
+    add(static_cast<std::size_t>(std::ranges::count_if(flips, [](const Json& flip) { return flip.at("done").get<bool>(); })),
+        task.flips.size(), "flip");
+    add(report.value("starts", Json::object()).value("runs", std::size_t{0}), wish.starts, "more relaxation");
+    if (wish.symmetry && !report.contains("symmetry")) undone.emplace_back("the whole cloth beside its smallest repeat");
+    return undone;
 }
 
 /// The state to go on from, out of a .yarns file.
@@ -205,6 +268,14 @@ Result<sim::StartState> taken_up(const std::string& file, const sim::Plan& plan,
     auto start = sim::start_from(plan, yarns, design_sha256(task.design), {scene_sha256(task.design), task.file_scene_sha256});
     if (!start) return std::move(start).error().in(file);
     return start;
+}
+
+/// What is simulated; planning a large cloth takes its time, which is told.
+Result<sim::Plan> plan_of(const Design& design, const Block& block, const sim::SimulationRequest& request, const std::string& file) {
+    const Progress progress("planning " + file);
+    Result<sim::Plan> plan = sim::make_plan(design, block, request);
+    if (!plan) return std::move(plan).error().in(file);
+    return plan;
 }
 
 /// Relaxes; with flips first the smallest repeat, then from there the whole cloth, one of whose crossings is to change.
@@ -222,7 +293,7 @@ Result<Yarns> relaxed(const Block& block, Task& task, const sim::Plan& plan, con
     if (interrupted()) return repeat;
     sim::SimulationRequest request = task.request;
     request.reduce = false;
-    WEAVE_TRY(const sim::Plan whole, sim::make_plan(task.design, block, request));
+    WEAVE_TRY(const sim::Plan whole, plan_of(task.design, block, request, wish.file));
     WEAVE_TRY(options.start, sim::start_from(whole, repeat, repeat.design_sha256, {repeat.scene_sha256}));
     options.flips = task.flips;
     return sim::simulate(task.design, whole, options);
@@ -230,27 +301,42 @@ Result<Yarns> relaxed(const Block& block, Task& task, const sim::Plan& plan, con
 
 /// The smallest repeat, then the whole from a start with noise: the first of them, or with --whole the second, with what
 /// both together tell.
-Result<Yarns> compared_with_whole(const Block& block, const Task& task, const Wish& wish) {
+Result<Yarns> compared_with_whole(const Block& block, const Task& task, const Wish& wish, Teller& teller) {
     sim::SimulationRequest request = task.request;
     request.reduce = true;
-    WEAVE_TRY(const sim::Plan reduced, sim::make_plan(task.design, block, request));
+    WEAVE_TRY(const sim::Plan reduced, plan_of(task.design, block, request, wish.file));
     if (reduced.repeats[0] * reduced.repeats[1] == 1)
         return usage_error("this cloth is simulated as one repeat: there are no others to compare it with", "--symmetry");
     request.reduce = false;
-    WEAVE_TRY(const sim::Plan whole, sim::make_plan(task.design, block, request));
+    WEAVE_TRY(const sim::Plan whole, plan_of(task.design, block, request, wish.file));
     Yarns repeat = sim::simulate(task.design, reduced, task.options);
     if (interrupted()) return repeat;
-    sim::WholeRun run = sim::relaxed_whole(task.design, reduced, whole, task.options, repeat, wish.seed);
+    teller.turn_to(" the whole cloth");
+    sim::WholeRun run = sim::relaxed_whole(task.design, reduced, whole, task.options, repeat, wish.seed.value_or(1));
+    const bool stopped = run.yarns.report.at("ending") == "stopped";
     Yarns yarns = wish.whole ? std::move(run.yarns) : std::move(repeat);
-    if (!interrupted()) yarns.report["symmetry"] = std::move(run.symmetry);
+    if (!stopped) yarns.report["symmetry"] = std::move(run.symmetry);
     return yarns;
 }
 
 /// The yarns of one run, with what further runs tell.
-Result<Yarns> simulated(const Block& block, Task& task, const sim::Plan& plan, const Wish& wish) {
-    WEAVE_TRY(Yarns yarns, wish.symmetry ? compared_with_whole(block, task, wish) : relaxed(block, task, plan, wish));
+Result<Yarns> simulated(const Block& block, Task& task, const sim::Plan& plan, const Wish& wish, Teller& teller) {
+    WEAVE_TRY(Yarns yarns, wish.symmetry ? compared_with_whole(block, task, wish, teller) : relaxed(block, task, plan, wish));
+    teller.turn_to(" from other starts");
     if (wish.starts > 0 && !interrupted())
-        yarns.report["starts"] = sim::relaxed_again(task.design, plan, task.options, yarns, wish.starts, wish.seed);
+        yarns.report["starts"] = sim::relaxed_again(task.design, plan, task.options, yarns, wish.starts, wish.seed.value_or(1));
+    return yarns;
+}
+
+/// The same while a person is told how far it has come, and may end it.
+Result<Yarns> watched(const Block& block, Task& task, const sim::Plan& plan, const Wish& wish) {
+    Teller teller(wish.residual.value_or(plan.goal));
+    task.options.watch = [&](const sim::Progress& progress) { return teller(progress); };
+    WEAVE_TRY(Yarns yarns, simulated(block, task, plan, wish, teller));
+    teller.end();
+    std::vector<std::string> undone;
+    if (interrupted()) undone = left_undone(yarns.report, task, wish);
+    if (!undone.empty()) yarns.report.update({{"interrupted", true}, {"left_undone", undone}});
     return yarns;
 }
 
@@ -266,27 +352,24 @@ Status save_flipped(Design design, const Task& task, const Yarns& yarns, const s
 bool is_good(const Json& report) {
     const auto is_done = [](const Json& flip) { return flip.at("done").get<bool>(); };
     const Json flips = report.value("flips", Json::array());
-    return report.at("converged").get<bool>() && report.at("order_kept").get<bool>() && std::all_of(flips.begin(), flips.end(), is_done);
+    return !report.contains("interrupted") && report.at("converged").get<bool>() && report.at("order_kept").get<bool>() &&
+           std::all_of(flips.begin(), flips.end(), is_done);
 }
 
 Status run_simulation(Program& program, const Wish& wish) {
+    WEAVE_CHECK_OK(check_wish(wish));
     WEAVE_TRY(const Cloth cloth, load_cloth(program, wish.file));
     const Block& block = *cloth.evaluation.block;
     auto understood = understand(cloth, wish);
     if (!understood) return std::move(understood).error().in(wish.file);
     Task& task = *understood;
-    auto planned = sim::make_plan(task.design, block, task.request);
-    if (!planned) return std::move(planned).error().in(wish.file);
+    WEAVE_TRY(const sim::Plan plan, plan_of(task.design, block, task.request, wish.file));
     if (wish.explain) {
-        program.answer({{"plan", sim::lines_json(*planned)}, {"yarns", planned->scene.yarns.size()}}, in_words(*planned));
+        program.answer({{"plan", sim::lines_json(plan)}, {"yarns", plan.scene.yarns.size()}}, in_words(plan));
         return {};
     }
-    if (wish.out.empty()) return usage_error("say where the yarns go: -o OUT.yarns", "");
-    Teller teller(wish.residual.value_or(planned->goal));
-    task.options.watch = [&](const sim::Progress& progress) { return teller(progress); };
-    const HeldInterrupt held;
-    WEAVE_TRY(const Yarns yarns, simulated(block, task, *planned, wish));
-    teller.end();
+    const HeldInterrupt held("the yarns are written as they lie; again to end at once, without the state");
+    WEAVE_TRY(const Yarns yarns, watched(block, task, plan, wish));
     WEAVE_TRY(const std::string bytes, write_yarns(yarns));
     WEAVE_CHECK_OK(write_file(wish.out, bytes));
     if (!wish.save_design.empty() && yarns.report.contains("flips"))
@@ -338,8 +421,14 @@ void add_simulate(CLI::App& app, Program& program) {
     command->add_flag("--explain", wish->explain, "tell what would be simulated and why, and end");
     command->add_option("--steps", wish->steps, "stop after so many steps")->transform(whole_number())->type_name("N");
     command->add_option("--seconds", wish->seconds, "stop after so long")->check(positive_number())->type_name("N");
-    command->add_option("--threads", wish->threads, "processor cores to use; 0: all")->transform(whole_number())->type_name("N");
-    on_run(command, program, [=, &program] { return run_simulation(program, *wish); });
+    add_threads(command, wish->threads);
+    command->footer("Ctrl-C writes the yarns as they lie (exit 1), for --resume to go on from; again, half a second later or more, ends at "
+                    "once without them.\n" + command->get_footer());
+    on_run(command, program, [=, &program] {
+        wish->no_plan_option = given_of(command, {"--out", "--solver", "--residual", "--backend", "--flip", "--save-design", "--resume", "--starts",
+                                                  "--symmetry", "--seed", "--steps", "--seconds", "--threads"});
+        return run_simulation(program, *wish);
+    });
 }
 
 struct YarnsExport {
@@ -349,6 +438,7 @@ struct YarnsExport {
 Status export_yarns(Program& program, const YarnsExport& wish) {
     const std::string extension = lower_extension(wish.out);
     if (extension != ".vtp" && extension != ".obj") return usage_error("yarns are exported as .vtp or .obj", wish.out);
+    WEAVE_CHECK_OK(keep_apart(wish.out, wish.file, "the file of yarns that is read"));
     WEAVE_TRY(const Yarns yarns, load_yarns(wish.file));
     WEAVE_TRY(const std::string bytes, extension == ".vtp" ? write_vtp(yarns) : write_obj(yarns));
     WEAVE_CHECK_OK(write_file(wish.out, bytes));

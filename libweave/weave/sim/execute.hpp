@@ -3,6 +3,7 @@
 #include <algorithm>
 #include <atomic>
 #include <cstddef>
+#include <exception>
 #include <functional>
 #include <memory>
 #include <thread>
@@ -31,8 +32,13 @@ static WEAVE_WIDE void run_wide(const Body& body, std::size_t first, std::size_t
 /// helper, never a stop. They sleep between tasks.
 class ThreadTeam {
   public:
+    /// As many helpers as the machine gives, `helpers` at most.
     explicit ThreadTeam(std::size_t helpers) {
-        for (std::size_t t = 0; t < helpers; ++t) m_threads.emplace_back([this] { serve(); });
+        m_threads.reserve(helpers);
+        try {
+            for (std::size_t t = 0; t < helpers; ++t) m_threads.emplace_back([this] { serve(); });
+        } catch (const std::exception&) {  // no more threads or no memory for them: the work is done all the same
+        }
     }
     ThreadTeam(const ThreadTeam&) = delete;
     ThreadTeam& operator=(const ThreadTeam&) = delete;
@@ -42,6 +48,8 @@ class ThreadTeam {
         m_round.notify_all();
         for (std::thread& thread : m_threads) thread.join();
     }
+
+    [[nodiscard]] std::size_t helpers() const { return m_threads.size(); }
 
     /// task(piece) for every piece below `pieces`, each once; returns when all are done.
     void run(std::size_t pieces, const std::function<void(std::size_t)>& task) {
@@ -84,15 +92,21 @@ class ThreadTeam {
     std::vector<std::thread> m_threads;
 };
 
+/// More threads than this help nobody.
+inline constexpr std::size_t most_threads = 1024;
+
 /// Runs bodies on the processor's cores. What it computes does not depend on the number of threads: bodies write to
 /// places of their own, and sums are formed in blocks of fixed size.
 class Executor {
   public:
-    /// 0: as many threads as there are cores.
+    /// 0: as many threads as there are cores. `most_threads` at most, and no more than the machine gives.
     explicit Executor(std::size_t threads = 0)
-        : m_threads(threads > 0 ? threads : std::max(1U, std::thread::hardware_concurrency())),
-          m_team(m_threads > 1 ? std::make_unique<ThreadTeam>(m_threads - 1) : nullptr) {}
+        : m_threads(std::min(most_threads, threads > 0 ? threads : std::max(1U, std::thread::hardware_concurrency()))),
+          m_team(m_threads > 1 ? std::make_unique<ThreadTeam>(m_threads - 1) : nullptr) {
+        if (m_team) m_threads = m_team->helpers() + 1;
+    }
 
+    /// Those there are, the caller's among them.
     [[nodiscard]] std::size_t threads() const { return m_threads; }
 
     /// body(i) for every i below `count`, in any order. Bodies must not call the executor themselves.

@@ -17,6 +17,9 @@ struct Progress {
     double residual = 0;  ///< max |P∇E| / F_ref
     double energy = 0;    ///< N·mm
     double seconds = 0;
+    /// Crossings that do not lie as the card says, as simulate() saw them when it looked last (order_watch.hpp); nothing
+    /// before its first look, and from solvers alone.
+    std::optional<std::size_t> lost_crossings = {};
 };
 
 struct RelaxOptions {

@@ -6,11 +6,13 @@
 #include <weave/sim/friction_rounds.hpp>
 #include <weave/sim/newton.hpp>
 #include <weave/sim/order.hpp>
+#include <weave/sim/order_watch.hpp>
 #include <weave/sim/paper.hpp>
 #include <weave/sim/periods.hpp>
 #include <weave/sim/simulate.hpp>
 
 #include <algorithm>
+#include <chrono>
 #include <cmath>
 #include <fstream>
 #include <memory>
@@ -280,6 +282,24 @@ class Simulation {
         return options;
     }
 
+    /// The same, while `m_state` is what relaxes: whoever watches is told now and then whether crossings lie in order.
+    [[nodiscard]] RelaxOptions looking_on(OrderWatch& looks) const {
+        RelaxOptions options = relax_options();
+        if (!m_options.watch) return options;
+        const auto now = [began = std::chrono::steady_clock::now()] {
+            return std::chrono::duration<double>(std::chrono::steady_clock::now() - began).count();
+        };
+        options.watch = [this, &looks, now, lost = std::optional<std::size_t>()](Progress progress) mutable {
+            if (const double began = now(); looks.is_due(began)) {
+                lost = lost_crossings(m_plan.curves, splines_of(m_fabric->control(m_state))).size();
+                looks.looked(began, now());
+            }
+            progress.lost_crossings = lost;
+            return m_options.watch(progress);
+        };
+        return options;
+    }
+
     /// Brings the scene to rest, its periods too where they relax.
     void relax_scene() {
         const bool periods = m_plan.rim_force_N[0].has_value() || m_plan.rim_force_N[1].has_value();
@@ -292,10 +312,12 @@ class Simulation {
         m_energy = std::make_unique<Energy<double>>(*m_fabric, m_executor);
         m_state = m_fabric->state();
         if (!periods) {
-            m_friction = relax_with_friction(*m_energy, m_state, relax_options(), [&](auto& energy, auto& state, const auto& options) {
+            OrderWatch looks(m_plan.curves.crossings.size());
+            m_friction = relax_with_friction(*m_energy, m_state, looking_on(looks), [&](auto& energy, auto& state, const auto& options) {
                 return m_options.solver == Solver::relax ? relax(energy, state, options) : relax_in_time(energy, state, options);
             });
             m_last = m_friction.last;
+            m_last.seconds -= looks.spent_s();  // which relaxed nothing
         }
         std::vector<std::vector<Vec3>> control = m_fabric->control(m_state);
         for (std::size_t y = 0; y < control.size(); ++y) m_scene.yarns[y].control = std::move(control[y]);
@@ -307,9 +329,16 @@ class Simulation {
     [[nodiscard]] std::size_t lost() const { return lost_crossings(m_plan.curves, splines()).size(); }
 
     [[nodiscard]] std::vector<Spline> splines() const {
+        std::vector<std::vector<Vec3>> control;
+        for (const SimYarn& yarn : m_scene.yarns) control.push_back(yarn.control);
+        return splines_of(std::move(control));
+    }
+
+    /// Of control points of every yarn of the scene: one for each planned curve.
+    [[nodiscard]] std::vector<Spline> splines_of(std::vector<std::vector<Vec3>> control) const {
         std::vector<Spline> splines(m_plan.curves.yarns.size());
         for (std::size_t y = 0; y < m_scene.yarns.size(); ++y)
-            splines[m_plan.curve_of[y]] = {m_scene.yarns[y].control, m_scene.yarns[y].is_periodic, m_scene.yarns[y].shift};
+            splines[m_plan.curve_of[y]] = {std::move(control[y]), m_scene.yarns[y].is_periodic, m_scene.yarns[y].shift};
         return splines;
     }
 

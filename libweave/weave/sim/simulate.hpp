@@ -28,7 +28,8 @@ struct SimulationOptions {
     std::optional<double> residual;     ///< instead of the fidelity's
     std::size_t most_iterations = 20000;
     double most_seconds = 1e30;
-    std::function<bool(const Progress&)> watch;  ///< see RelaxOptions
+    /// See RelaxOptions; is told of lost crossings as well, unless a period relaxes.
+    std::function<bool(const Progress&)> watch;
     std::optional<StartState> start;             ///< instead of the planned curves
     /// Made one after the other once the cloth is at rest, each followed by a relaxation. They must be legal (block/flip.hpp),
     /// and the plan one of the whole cloth where it has several repeats.

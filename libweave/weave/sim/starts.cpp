@@ -131,6 +131,7 @@ Json relaxed_again(const Design& design, const Plan& plan, const SimulationOptio
         furthest.update(yarn_json(first.yarns[deviation.yarn]));
     }
     Json json{{"runs", all.size() - 1},
+              {"asked", runs},
               {"noise_radii", start_noise_radii},
               {"seed", seed},
               {"elsewhere", elsewhere},
@@ -145,11 +146,12 @@ Json relaxed_again(const Design& design, const Plan& plan, const SimulationOptio
 
 std::string starts_text(const Json& report) {
     const Json starts = part_of(report, "starts");
-    const double runs = number_in(starts, "runs");
+    const double runs = number_in(starts, "runs"), asked = number_in(starts, "asked");
     if (!(runs >= 1)) return "";
     const Json furthest = part_of(starts, "furthest");
     const double elsewhere = number_in(starts, "elsewhere"), radii = number_in(furthest, "max_radii");
     std::string text = counted(static_cast<std::size_t>(std::min(runs, 1e6)), "more relaxation") +
+                       (asked > runs ? short_format(" (of %.0f asked for)", asked) : "") +
                        short_format(" from starts up to %g radii off", number_in(starts, "noise_radii"));
     if (elsewhere == 0) {
         text = "Not sensitive to its start: " + text +

@@ -25,7 +25,8 @@ StartState perturbed_start(const Plan& plan, const std::optional<StartState>& st
 /// Relaxes `runs` times more, each from a perturbed start (seeds from `seed` on), without flips, and compares
 /// with `first`, the yarns of the same plan and options. The JSON is what the report holds as `starts`
 /// (YARNS.md): spread of crimp and thickness over all runs and the first, and how far the run furthest away
-/// lies from the first. A watch that stops a run ends it all; runs that were stopped are left out.
+/// lies from the first. A watch that stops a run ends it all; runs that were stopped are left out, and `asked`
+/// tells how many there should have been.
 Json relaxed_again(const Design& design, const Plan& plan, const SimulationOptions& options,
                    const Yarns& first, std::size_t runs, std::uint64_t seed = 1);
 
