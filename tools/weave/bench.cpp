@@ -45,7 +45,8 @@ constexpr const char* what_follows_an_interrupt =
     "what is under way is not kept; again to end at once, without a word on what was done";
 
 /// What an interrupted benchmark has done of what was asked for: into the answer, and the line for people.
-std::string tell_interrupted(Program& program, Json& answer, std::size_t done, std::size_t asked, const std::string& what) {
+std::string tell_interrupted(Program& program, Json& answer, std::size_t done, std::size_t asked,
+                             const std::string& what) {
     program.exit_code = findings;
     answer.update({{"interrupted", true}, {"done", done}, {"asked", asked}});
     return "\nINTERRUPTED: " + std::to_string(done) + " of " + counted(asked, what) + " done.\n";
@@ -103,7 +104,8 @@ Status run_tradeoff(Program& program, const TradeoffWish& wish) {
     std::vector<std::string> asked;
     for (const std::string& name : structure_names()) {
         WEAVE_TRY(Json json, earlier(options.folder, name));
-        const bool named = options.only.empty() || std::ranges::find(options.only, name) != options.only.end();
+        const bool named =
+            options.only.empty() || std::ranges::find(options.only, name) != options.only.end();
         if (named && !(wish.missing && !json.is_null())) asked.push_back(name);
         if (!json.is_null()) known[name] = std::move(json);
     }
@@ -126,7 +128,8 @@ Status check_sizes(const ScaleOptions& scale) {
     if (scale.least == 0 || scale.most == 0)
         return Error{ErrorCode::usage, "a cloth has points", scale.least == 0 ? "--least 0" : "--most 0"};
     if (scale.least > scale.most)
-        return Error{ErrorCode::usage, "is less than --least " + std::to_string(scale.least), "--most " + std::to_string(scale.most)};
+        return Error{ErrorCode::usage, "is less than --least " + std::to_string(scale.least),
+                     "--most " + std::to_string(scale.most)};
     return {};
 }
 
@@ -137,13 +140,15 @@ Status run_scale(Program& program, const ScaleWish& wish) {
     std::string words = scale_table(result);
     const bool whole = !interrupted();
     if (!whole)
-        words += tell_interrupted(program, result, result.at("sizes").size(), result.at("asked_points").size(), "size");
+        words += tell_interrupted(program, result, result.at("sizes").size(),
+                                  result.at("asked_points").size(), "size");
     if (whole && !wish.options.folder.empty()) {
         WEAVE_CHECK_OK(make_folder(wish.options.folder));
         WEAVE_CHECK_OK(write_file(fs::path(wish.options.folder) / "scale.json", result.dump(1) + "\n"));
         WEAVE_CHECK_OK(write_file(fs::path(wish.options.folder) / "scale.md", words));
     }
-    if (!whole && !wish.options.folder.empty()) words += "Nothing is written to " + on_one_line(wish.options.folder) + ".\n";
+    if (!whole && !wish.options.folder.empty())
+        words += "Nothing is written to " + on_one_line(wish.options.folder) + ".\n";
     program.answer(result, words);
     return {};
 }
@@ -175,7 +180,8 @@ Status run_stability(Program& program, const StabilityWish& wish) {
     Json cases = Json::array();
     std::string table = "| Case | Must | Points | Steps | s | Ended |\n|---|---|---|---|---|---|\n";
     std::size_t bad = 0;
-    const HeldInterrupt held("the case under way is the last; again to end at once, without a word on what was done");
+    const HeldInterrupt held(
+        "the case under way is the last; again to end at once, without a word on what was done");
     std::vector<sim::Extreme> asked = sim::extremes();
     if (!wish.with_long) std::erase_if(asked, [](const sim::Extreme& extreme) { return extreme.is_long; });
     for (const sim::Extreme& extreme : asked) {
@@ -192,7 +198,8 @@ Status run_stability(Program& program, const StabilityWish& wish) {
                  (why.empty() ? "" : " **BAD: " + why + "**") + " |\n";
     }
     Json answer{{"machine", machine_json(wish.options.threads)}, {"cases", cases}, {"bad", bad}};
-    if (cases.size() < asked.size()) table += tell_interrupted(program, answer, cases.size(), asked.size(), "case");
+    if (cases.size() < asked.size())
+        table += tell_interrupted(program, answer, cases.size(), asked.size(), "case");
     program.answer(answer, table);
     if (bad > 0) program.exit_code = findings;
     return {};
@@ -204,8 +211,11 @@ void add_shared_options(CLI::App* command, BenchOptions& options, const std::str
         ->capture_default_str()
         ->type_name("N");
     add_threads(command, options.threads);
-    command->footer("Ctrl-C ends it (exit 1), says how much was done, and writes no table of less than that over a whole one; "
-                    "again, half a second later or more, ends it at once.\n" + command->get_footer());
+    command->footer(
+        "Ctrl-C ends it (exit 1), says how much was done, and writes no table of less than that over a whole "
+        "one; "
+        "again, half a second later or more, ends it at once.\n" +
+        command->get_footer());
 }
 
 void add_tradeoff(CLI::App& bench, Program& program) {
@@ -219,7 +229,9 @@ void add_tradeoff(CLI::App& bench, Program& program) {
                      "a folder for tradeoff-NAME.json, tradeoff.md and tradeoff.svg; what it holds already "
                      "of other structures goes into the table too")
         ->type_name("FOLDER");
-    command->add_option("--only", wish->options.only, "only this structure (again for more), such as satin-e or plain-pinned")
+    command
+        ->add_option("--only", wish->options.only,
+                     "only this structure (again for more), such as satin-e or plain-pinned")
         ->type_name("NAME");
     command->add_flag("--missing", wish->missing, "only structures of which the folder holds nothing");
     add_shared_options(command, wish->options, "cap of each run");
@@ -232,8 +244,11 @@ void add_scale(CLI::App& bench, Program& program) {
     const auto wish = std::make_shared<ScaleWish>();
     command->add_option("-o,--out", wish->options.folder, "a folder for scale.json and scale.md")
         ->type_name("FOLDER");
-    command->add_option("--least", wish->scale.least, "the smallest size in points; cloth is made of whole cells, the next smaller or larger number "
-                     "of them, and has one at least")
+    command
+        ->add_option(
+            "--least", wish->scale.least,
+            "the smallest size in points; cloth is made of whole cells, the next smaller or larger number "
+            "of them, and has one at least")
         ->transform(whole_number())
         ->capture_default_str()
         ->type_name("N");

@@ -84,8 +84,8 @@ std::vector<Cells> cells_of(const ScaleOptions& scale, std::size_t cell_points) 
     return all;
 }
 
-Result<Json> measure_size(const Design& design, const Block& cell, const Cells& cells, const BenchOptions& options,
-                          double residual) {
+Result<Json> measure_size(const Design& design, const Block& cell, const Cells& cells,
+                          const BenchOptions& options, double residual) {
     tell("scale: some " + std::to_string(cells.wanted_points) + " points");
     const double began = now();
     WEAVE_TRY(sim::Plan plan, plan_of(design, cell, cells.x, cells.y));
@@ -108,7 +108,8 @@ Result<Json> measure_scale(const BenchOptions& options, const ScaleOptions& scal
     WEAVE_TRY(const sim::Plan cell, plan_of(design, *evaluation.block, 1, 1));
     const std::size_t cell_points = points_of(cell.scene);
     if (scale.most < cell_points)
-        return Error{ErrorCode::usage, "the smallest cloth, one cell, has " + std::to_string(cell_points) + " points",
+        return Error{ErrorCode::usage,
+                     "the smallest cloth, one cell, has " + std::to_string(cell_points) + " points",
                      "--most " + std::to_string(scale.most)};
     const std::vector<Cells> all = cells_of(scale, cell_points);
     Json sizes = Json::array(), asked = Json::array();
@@ -157,10 +158,12 @@ std::string scale_table(const Json& result) {
                 in_words("%.0f", size.at("lost_crossings")) + " |\n";
     const Json &asked = result.at("asked_points"), &sizes = result.at("sizes");
     if (asked.front() < result.at("cell_points"))
-        text += "\nThe smallest cloth, one cell, has " + in_words("%.0f", result.at("cell_points")) + " points: it stands for the " +
-                in_words("%.0f", asked.front()) + " asked for.\n";
+        text += "\nThe smallest cloth, one cell, has " + in_words("%.0f", result.at("cell_points")) +
+                " points: it stands for the " + in_words("%.0f", asked.front()) + " asked for.\n";
     if (!sizes.empty() && !sizes.back().at("converged").get<bool>())
-        text += "\nThe last did not come to rest in its time, so larger ones were not tried and it is left out of what follows.\n";
+        text +=
+            "\nThe last did not come to rest in its time, so larger ones were not tried and it is left out "
+            "of what follows.\n";
     if (result.at("exponent_time").is_number())
         text += "\nTime grows as n^" + in_words("%.2f", result.at("exponent_time")) + ", memory as n^" +
                 in_words("%.2f", result.at("exponent_memory")) + ", steps as n^" +

@@ -16,8 +16,8 @@ namespace {
 std::atomic<bool> held{false}, came{false};
 std::atomic<const char*> what_follows{""};
 
-/// Decides signal by signal whether the program ends at once. A key that bounces, or a caller that signals twice, is not
-/// a second wish.
+/// Decides signal by signal whether the program ends at once. A key that bounces, or a caller that signals
+/// twice, is not a second wish.
 class Judge {
   public:
     bool ends_at_once() {
@@ -36,7 +36,8 @@ class Judge {
 
 }  // namespace
 
-/// Whoever ends the program by a signal finds no half-written file. A signal that was to be ignored (nohup) still is.
+/// Whoever ends the program by a signal finds no half-written file. A signal that was to be ignored (nohup)
+/// still is.
 void tidy_up_when_ended() {
     sigset_t ending;
     sigemptyset(&ending);
