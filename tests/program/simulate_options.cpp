@@ -78,7 +78,7 @@ TEST_CASE("options that make no sense are refused in a line that names them") {
     if (illegal.exit == 1) refused({"--flip", "1,1", "--save-design", "g.weave"}, 1, {"--flip 1,1", "in the way"});
 }
 
-TEST_CASE("--explain takes no option that makes no difference to the plan") {
+TEST_CASE("a plan that is only explained takes no option that makes no difference to it") {
     const Workshop shop;
     shop.must({"samples", "plain", "-o", "d.weave"});
     using Words = std::vector<std::string>;
