@@ -131,8 +131,10 @@ TEST_CASE("a relaxation goes on from a file, in more points too, and not from on
     shop.refused({"simulate", "d.weave", "--threads", "1", "--resume", "tight.yarns", "-o", "x.yarns"}, 3, {"tight.yarns", "another scene"});
     shop.must({"samples", "plain", "-o", "p.weave"});
     shop.refused({"simulate", "p.weave", "--threads", "1", "--resume", "a.yarns", "-o", "x.yarns"}, 3, {"a.yarns", "another design"});
-    shop.refused({"simulate", "d.weave", "--threads", "1", "--region", "picks:1-8,ends:1-5", "--resume", "a.yarns", "-o", "x.yarns"}, 3,
-                 {"a.yarns", "another part"});
+    shop.must({"tile", "p.weave", "--x", "4", "--y", "4", "-o", "t.weave"});
+    shop.must({"simulate", "t.weave", "--threads", "1", "-o", "t.yarns"});
+    shop.refused({"simulate", "t.weave", "--threads", "1", "--region", "picks:1-7,ends:1-6", "--resume", "t.yarns", "-o", "x.yarns"}, 3,
+                 {"t.yarns", "another part"});
 }
 
 TEST_CASE("a tiled cloth resumes as its smallest repeat") {

@@ -95,6 +95,7 @@ TEST_CASE("relaxing again from other starts tells how far the results lie apart"
     const Json told = relaxed_again(of.design, of.plan, options, yarns, 3);
     INFO(told.dump());
     CHECK(told.at("runs") == 3);
+    CHECK(told.at("asked") == 3);
     CHECK(told.at("each").size() == 4);
     CHECK(told.at("not_at_rest") == 0);
     CHECK(told.at("order_lost") == 0);
@@ -105,6 +106,8 @@ TEST_CASE("relaxing again from other starts tells how far the results lie apart"
     CHECK(told == relaxed_again(of.design, of.plan, options, yarns, 3));
     yarns.report["starts"] = told;
     CHECK(starts_text(yarns.report).rfind("Not sensitive to its start: 3 more relaxations", 0) == 0);
+    yarns.report["starts"]["asked"] = 1000;
+    CHECK(starts_text(yarns.report).find("3 more relaxations (of 1000 asked for)") != std::string::npos);
     yarns.report["starts"]["elsewhere"] = 2;
     CHECK(starts_text(yarns.report).rfind("SENSITIVE to its start: of 3 more relaxations", 0) == 0);
 }
