@@ -73,7 +73,7 @@ Return come_back(const SimScene& scene, Random& random, double goal, double seco
     Bench bench(scene, 2);
     Return result;
     result.relaxed = relax(bench.energy, bench.state,
-                           {.residual = 1e-6, .most_iterations = 100'000, .most_seconds = seconds, .watch = {}});
+                           {.residual = 1e-9, .most_iterations = 100'000, .most_seconds = seconds, .watch = {}});
     if (result.relaxed.ending != Ending::converged) return result;
     const std::vector<Spline> rest = splines_of(bench);
     const bool drifts = scene.is_periodic[0] && scene.is_periodic[1];
@@ -158,7 +158,7 @@ TEST_CASE(
     "[.][long]") {
     Random random(weave::testing::run_seed());
     INFO("WEAVE_SEED=" << weave::testing::run_seed());
-    std::size_t arrived = 0, not_at_rest = 0;
+    std::size_t arrived = 0, elsewhere = 0, not_at_rest = 0;
     for (const Sample& sample : samples()) {
         const SimScene scene = scene_of(sample, 4, 100'000);
         std::size_t points = 0;
@@ -175,11 +175,18 @@ TEST_CASE(
                     result.back.iterations, result.back.seconds, result.back.residual);
         std::fflush(stdout);
         INFO(sample.name);
-        // What is slow to arrive is on its way back.
-        CHECK(result.after < (result.back.ending == Ending::converged ? 0.2 : 0.9) * result.before);
-        arrived += result.back.ending == Ending::converged ? 1 : 0;
+        // What is slow to arrive is on its way back. A rest near by that lies lower is told: soft cloth has such beside the first.
+        const bool arrives = result.back.ending == Ending::converged,
+                   is_lower = arrives && result.after < 0.1 && result.back.energy < result.relaxed.energy;
+        CHECK((is_lower || result.after < (arrives ? 0.2 : 0.9) * result.before));
+        if (is_lower && result.after >= 0.2 * result.before) {
+            std::printf("  in another rest, lower by %.1e of its energy\n", 1 - result.back.energy / result.relaxed.energy);
+            ++elsewhere;
+        }
+        arrived += arrives ? 1 : 0;
     }
-    std::printf("%zu samples came back, %zu were not at rest\n", arrived, not_at_rest);
+    std::printf("%zu samples arrived, %zu of them in another rest near by; %zu had not been at rest\n", arrived, elsewhere, not_at_rest);
+    CHECK(elsewhere <= 3);
     CHECK(arrived >= 12);
     CHECK(not_at_rest <= 4);  // on a slow machine: the large stencil, the pocket, the I-beam, the baby shoe
 }
