@@ -316,7 +316,7 @@ TEST_CASE("a flip of one crossing among 400 million is made without laying the c
                  {"big.weave", "no crossing of pick 1 and end 20001", "20000 picks and 20000 ends"});
 }
 
-TEST_CASE("a flip tells of the flips that the design lost before") {
+TEST_CASE("a flip tells of the flips that the design lost before, once") {
     const Workshop shop;
     shop.must({"preset", "twill", "-o", "t.weave"});
     Json document = *weave::parse_json(shop.get("t.weave"));
@@ -326,9 +326,20 @@ TEST_CASE("a flip tells of the flips that the design lost before") {
     CHECK(flipped.exit == 0);
     const std::string lost = "a flip of block 'twill' no longer applies: there is no crossing of pick 99 and end 1: "
                              "the block has 4 picks and 4 ends";
-    CHECK(flipped.complaints() == std::vector<std::string>{"weave: t.weave: " + lost, "weave: " + lost});
+    CHECK(flipped.complaints() == std::vector<std::string>{"weave: f.weave: " + lost});
     const Json kept = weave::parse_json(shop.get("f.weave"))->at("blocks").at("twill").at("flips");
     CHECK(kept.size() == 2);
+}
+
+TEST_CASE("a flip that was refused once is lost no longer once its crossing lies as asked") {
+    const Workshop shop;
+    shop.put("z.weave", R"({"format": "weave", "version": 1, "root": "a", "blocks": {"a": {"kind": "stacks",
+        "stacks": [["T0 P0 T1 P1"]], "flips": [{"pick": 0, "end": 1, "weft": "over"},
+        {"pick": 1, "end": 1, "weft": "over"}]}}})");
+    CHECK(shop.must({"info", "z.weave"}).complaints().size() == 1);
+    CHECK(shop.must({"flip", "z.weave", "--pick", "1", "--end", "2", "-o", "z3.weave"}).complaints().empty());
+    CHECK(shop.must({"info", "z3.weave"}).complaints().empty());
+    CHECK(shop.json({"info", "z3.weave"}).at("lost_flips") == 0);
 }
 
 TEST_CASE("a flip with other yarns in the way is refused with 1, names them, and writes nothing") {

@@ -330,7 +330,6 @@ Result<Flip> flip_wished(Program& program, const Design& design, std::size_t pic
     const Progress progress("looking at " + file);
     Result<Outline> cloth = outline(design, CardPlace{pick, end});
     if (!cloth) return std::move(cloth).error().in(file);
-    note_lost_flips(program, cloth->lost_flips, file);
     if (!cloth->at) return no_crossing(cloth->grid, pick, end).in(file);
     const PlacedStack& at = *cloth->at;
     if (Result<Stack> flipped = flip(at, pick, end); !flipped) {

@@ -28,12 +28,18 @@ std::string not_alone(const Flip& wish, const FlippedStack& flipped, std::size_t
            named(flipped.in_the_way, first_pick, first_end);
 }
 
+bool is_met(const BlockGrid& grid, const Stack& stack, const Flip& wish) {
+    const std::size_t weft = wish.pick - grid.first_pick(grid.row_of_pick(wish.pick)),
+                      warp = wish.end - grid.first_end(grid.column_of_end(wish.end));
+    return stack.weft_over(weft, warp) == wish.weft_over;
+}
+
 /// Makes one flip in the stack of its cell, or says why not.
 std::optional<std::string> refusal(const BlockGrid& grid, Stack& stack, const Flip& wish) {
+    if (is_met(grid, stack, wish)) return {};
     const std::size_t first_pick = grid.first_pick(grid.row_of_pick(wish.pick));
     const std::size_t first_end = grid.first_end(grid.column_of_end(wish.end));
     const std::size_t weft = wish.pick - first_pick, warp = wish.end - first_end;
-    if (stack.weft_over(weft, warp) == wish.weft_over) return {};
     FlippedStack flipped = flip(stack, weft, warp);
     if (!flipped.valid) return not_alone(wish, flipped, first_pick, first_end);
     stack = std::move(flipped.stack);
@@ -82,15 +88,30 @@ Error no_crossing(const BlockGrid& grid, std::size_t pick, std::size_t end) {
 std::vector<RefusedFlip> flip_stacks(const BlockGrid& grid, std::span<const Flip> flips,
                                      std::map<std::size_t, Stack>& stacks) {
     std::vector<RefusedFlip> refused;
+    // Of crossings with a flip that was made: how many refusals there were before the last such one.
+    std::map<std::pair<std::size_t, std::size_t>, std::size_t> settled;
     for (const Flip& wish : flips) {
         if (!grid.holds(wish.pick, wish.end)) {
             refused.push_back({wish, no_crossing(grid, wish.pick, wish.end).message});
             continue;
         }
         Stack& stack = stacks.at(grid.cell_of(wish.pick, wish.end));
-        if (auto reason = refusal(grid, stack, wish)) refused.push_back({wish, std::move(*reason)});
+        if (auto reason = refusal(grid, stack, wish)) {
+            refused.push_back({wish, std::move(*reason)});
+        } else if (!refused.empty()) {
+            settled[{wish.pick, wish.end}] = refused.size();
+        }
     }
-    return refused;
+    std::vector<RefusedFlip> lost;
+    for (std::size_t k = 0; k < refused.size(); ++k) {
+        const Flip& wish = refused[k].flip;
+        const auto later = settled.find({wish.pick, wish.end});
+        if (later != settled.end() && k < later->second) continue;
+        const bool is_there = grid.holds(wish.pick, wish.end);
+        if (is_there && is_met(grid, stacks.at(grid.cell_of(wish.pick, wish.end)), wish)) continue;
+        lost.push_back(std::move(refused[k]));
+    }
+    return lost;
 }
 
 FlippedBlock apply_flips(Block block, std::span<const Flip> flips) {

@@ -39,7 +39,7 @@ struct RefusedFlip {
 /// A block after flips, made one after the other; each is made, needed no change, or is listed as refused.
 struct FlippedBlock {
     Block block;
-    std::vector<RefusedFlip> refused;
+    std::vector<RefusedFlip> refused;  ///< none whose crossing ends as it asked, or as a later one did
 };
 FlippedBlock apply_flips(Block block, std::span<const Flip> flips);
 

@@ -9,7 +9,7 @@
 
 namespace weave {
 
-/// A flip that no longer applies, with the reason.
+/// A flip that no longer applies, with the reason; see FlippedBlock for what counts.
 struct LostFlip {
     std::string block;
     Flip flip;
