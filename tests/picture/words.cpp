@@ -162,6 +162,35 @@ TEST_CASE("a turn that nothing catches is a black dotted one, and said") {
     CHECK(dotted == 1);
 }
 
+TEST_CASE("a slice tells of turns that nothing catches only where it shows one or the way out to it") {
+    const Block block = block_of({2, 2, 1}, {1}, {"T0 P0 T1", "P0 T0 T1", "T0 P0"});
+    Design design = shuttle(WeftMode::wraparound);
+    const auto slice = [&](std::size_t row) {
+        return slice_of(design, block, {.view = View::weft_slice, .line = row});
+    };
+    const auto black_ways = [](const SlicePicture& picture) {
+        return std::ranges::count_if(picture.marks, [](const Mark& mark) {
+            return mark.kind == Mark::Kind::text && mark.text.ends_with("(not caught)");
+        });
+    };
+    const std::string note = "Black dotted turns are not caught.";
+    const WeftWay way = weft_way(block.card_image(), pick_table(design, block));
+    std::size_t caught = 0;
+    for (std::size_t row = 0; row < block.rows(); ++row) {
+        INFO("row " << row + 1);
+        std::size_t turns = 0, outside = 0;
+        for (const Turn& turn : way.turns) {
+            const bool from = block.row_of_pick(turn.from_pick) == row,
+                       to = block.row_of_pick(turn.to_pick) == row;
+            if (turn.caught_by == CaughtBy::none) turns += from || to, outside += from != to;
+        }
+        caught += turns == 0;
+        CHECK(says(slice(row).marks, note) == (turns > 0));
+        CHECK(black_ways(slice(row)) == static_cast<std::ptrdiff_t>(outside));
+    }
+    CHECK(caught == 1);
+}
+
 TEST_CASE("dots and yarns of a slice bear the numbers of the card") {
     const Block block = layered();
     for (const PictureRequest request : {PictureRequest{.view = View::warp_slice, .line = 2},
@@ -346,7 +375,7 @@ TEST_CASE("a pick of two feeders that leave together says where each goes, once"
     CHECK(std::ranges::count_if(slice.marks, is_stub) == 1);
 }
 
-TEST_CASE("in a cloth of one column the arrow of the way out stands for that of the shuttle") {
+TEST_CASE("in a cloth of one column no arrow of the shuttle hides its short yarn") {
     const Block block = block_of({1, 1}, {2}, {"P0 T0 P1", "P1 T0 P0"});
     const SlicePicture leaving = slice_of(shuttle(WeftMode::wraparound), block, {.view = View::weft_slice});
     const auto shuttles = [](const SlicePicture& slice) {
@@ -355,7 +384,16 @@ TEST_CASE("in a cloth of one column the arrow of the way out stands for that of 
     };
     CHECK(places_of(leaving.marks, "1 to 2").size() == 1);
     CHECK(shuttles(leaving) == 0);
-    CHECK(shuttles(slice_of(shuttle(WeftMode::periodic), block, {.view = View::weft_slice})) == 1);
+    CHECK(says(leaving.marks, "arrows show the way"));
+    const SlicePicture periodic = slice_of(shuttle(WeftMode::periodic), block, {.view = View::weft_slice});
+    CHECK(shuttles(periodic) == 0);
+    CHECK_FALSE(says(periodic.marks, "arrows show the way"));
+    const SlicePicture entering =
+        slice_of(shuttle(WeftMode::wraparound), block, {.view = View::weft_slice, .line = 1});
+    CHECK(shuttles(entering) == 0);
+
+    const Block wider = block_of({1}, {2, 2}, {"P0 T0 P1", "P1 T0 P0"});
+    CHECK(shuttles(slice_of(shuttle(WeftMode::periodic), wider, {.view = View::weft_slice})) == 1);
 
     // A pick that comes in and leaves at the same end: both ways run clear of its number and of the dots.
     const Block tall =

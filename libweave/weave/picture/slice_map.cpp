@@ -65,6 +65,36 @@ void cut(SlicePath& path, const WeftRuns::Run& run, std::size_t begin) {
     path.loose = {path.loose.begin() + from, path.loose.begin() + to};
 }
 
+/// The turns of which a pick is shown and whose side lies within the shown part.
+std::vector<SliceTurn> turns_of(const SliceMap& map, const WeftRuns& runs) {
+    const auto path_of = [&](std::size_t pick) -> std::optional<std::size_t> {
+        const auto found = std::ranges::find(map.paths, pick, &SlicePath::number);
+        if (found == map.paths.end()) return {};
+        return static_cast<std::size_t>(found - map.paths.begin());
+    };
+    std::vector<SliceTurn> turns;
+    for (const Turn& turn : runs.turns()) {
+        const std::size_t column = runs.column_of(turn);
+        if (column < map.begin || column >= map.begin + map.positions) continue;
+        const SliceTurn shown{turn, path_of(turn.from_pick), path_of(turn.to_pick)};
+        if (shown.from || shown.to) turns.push_back(shown);
+    }
+    return turns;
+}
+
+/// Positions that the line through level k of a path spans in one piece.
+double drawn_length(const SliceMap& map, const SlicePath& path, std::size_t k, bool trim) {
+    const auto is_drawn = [&](std::size_t level) { return !trim || !path.loose[level]; };
+    std::size_t first = k, last = k;
+    while (first > 0 && is_drawn(first - 1)) --first;
+    while (last + 1 < path.levels.size() && is_drawn(last + 1)) ++last;
+    const auto beyond = [&](bool cut, Side side) {  // a trimmed yarn is cut midway between two levels
+        return cut ? 0.5 : reaches(map, path, side) ? overhang : 0;
+    };
+    return static_cast<double>(last - first) + beyond(first > 0, Side::left) +
+           beyond(last + 1 < path.levels.size(), Side::right);
+}
+
 }  // namespace
 
 SliceMap slice_map(const Subject& subject, const YarnColours& colours, const WeftRuns& runs) {
@@ -97,7 +127,28 @@ SliceMap slice_map(const Subject& subject, const YarnColours& colours, const Wef
         return path.levels.empty() ||
                std::ranges::all_of(path.levels, [&](std::size_t level) { return level >= map.levels; });
     });
+    if (!warps_run) map.turns = turns_of(map, runs);
     return map;
+}
+
+bool reaches(const SliceMap& map, const SlicePath& path, Side side) {
+    return std::ranges::none_of(map.turns, [&](const SliceTurn& shown) {
+        return shown.turn.side == side &&
+               (shown.turn.from_pick == path.number || shown.turn.to_pick == path.number);
+    });
+}
+
+std::vector<std::size_t> arrow_places(const SliceMap& map, const SlicePath& path, bool trim) {
+    constexpr double shortest = 63 / across;  // three heads with their rims
+    const std::size_t steps = path.levels.size() - 1;
+    std::vector<std::size_t> places;
+    if (steps == 0) return places;
+    // Neighbours carry their arrows at different places, so that none hides another.
+    for (std::size_t k = (steps / 2 + 2 * path.number) % std::min<std::size_t>(steps, 6); k < steps; k += 6) {
+        if (trim && (path.loose[k] || path.loose[k + 1])) continue;
+        if (drawn_length(map, path, k, trim) >= shortest) places.push_back(k);
+    }
+    return places;
 }
 
 bool swaps(const SliceMap& map, const SlicePath& path, std::size_t k) {

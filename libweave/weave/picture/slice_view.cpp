@@ -11,20 +11,15 @@ namespace weave {
 
 namespace {
 
-constexpr double dot_radius = 10, path_width = 5, overhang = 0.62;
+constexpr double dot_radius = 10, path_width = 5;
 constexpr Colour grid_ink{0xd4, 0xd8, 0xdc}, uncaught_ink{0x11, 0x11, 0x11};
 
 /// The drawer of one slice.
 class SliceDrawer {
   public:
     /// `first_yarn` is the pick or end with which the shown part begins.
-    SliceDrawer(Canvas& canvas, const SliceMap& map, const WeftRuns& runs, std::size_t first_yarn, bool trim)
-        : m_canvas(canvas),
-          m_map(map),
-          m_runs(runs),
-          m_places(around(map)),
-          m_first_yarn(first_yarn),
-          m_trim(trim) {}
+    SliceDrawer(Canvas& canvas, const SliceMap& map, std::size_t first_yarn, bool trim)
+        : m_canvas(canvas), m_map(map), m_places(around(map)), m_first_yarn(first_yarn), m_trim(trim) {}
 
     void draw() {
         draw_grid();
@@ -33,7 +28,7 @@ class SliceDrawer {
                                                     static_cast<double>(m_map.levels) - 0.5);
         m_canvas.clip({low.x, high.y - rim, high.x - low.x, low.y - high.y + 2 * rim});
         for (const SlicePath& path : m_map.paths) draw_path(path, true);
-        if (turning()) draw_turns();
+        draw_turns();
         for (const SlicePath& path : m_map.paths) draw_path(path, false);
         for (const SliceDot& dot : m_map.dot_list) draw_dot(dot);
         for (const SlicePath& path : m_map.paths) draw_names(path);
@@ -55,7 +50,6 @@ class SliceDrawer {
         return {4, high.y - 4, high.x + 56, low.y - high.y + 28};
     }
 
-    [[nodiscard]] bool turning() const { return m_map.dots == System::warp && m_runs.wraparound(); }
     [[nodiscard]] Point at(double position, double level) const {
         return slice_point(m_map, position, level);
     }
@@ -110,16 +104,6 @@ class SliceDrawer {
         return {{c[0], ab, abc, all}, {all, bcd, cd, c[3]}};
     }
 
-    /// Whether the path runs on to the edge of the picture at its beginning or end.
-    [[nodiscard]] bool reaches(const SlicePath& path, bool at_end) const {
-        if (!turning()) return true;
-        const Side side = at_end ? Side::right : Side::left;
-        return std::ranges::none_of(m_runs.turns(), [&](const Turn& turn) {
-            return turn.side == side && is_shown(turn) &&
-                   (turn.from_pick == path.number || turn.to_pick == path.number);
-        });
-    }
-
     void append(std::vector<Piece>& pieces, const std::array<Point, 4>& bezier, bool loose) const {
         if (pieces.empty() || pieces.back().loose != loose) pieces.push_back({{bezier[0]}, loose});
         pieces.back().bezier.insert(pieces.back().bezier.end(), bezier.begin() + 1, bezier.end());
@@ -134,14 +118,14 @@ class SliceDrawer {
         const auto first = static_cast<double>(path.first), last = static_cast<double>(path.last());
         const auto low = static_cast<double>(path.levels.front()),
                    high = static_cast<double>(path.levels.back());
-        if (reaches(path, false))
+        if (reaches(m_map, path, Side::left))
             append(pieces, straight(at(-overhang, low), at(first, low)), path.loose.front());
         for (std::size_t k = 0; k + 1 < path.levels.size(); ++k) {
             const auto [here, next] = halves(step(path, k));
             append(pieces, here, path.loose[k]);
             append(pieces, next, path.loose[k + 1]);
         }
-        if (reaches(path, true)) {
+        if (reaches(m_map, path, Side::right)) {
             const double edge = static_cast<double>(m_map.positions) - 1 + overhang;
             append(pieces, straight(at(last, high), at(edge, high)), path.loose.back());
         }
@@ -166,10 +150,8 @@ class SliceDrawer {
         if (!casing && m_map.dots == System::warp) draw_directions(path);
     }
 
-    /// Arrow heads on the weft, about every sixth position, in the direction of the shuttle. Neighbours carry
-    /// them at different places, so that none hides another.
+    /// Arrow heads on the weft, in the direction of the shuttle.
     void draw_directions(const SlicePath& path) {
-        const std::size_t steps = path.levels.size() - 1;
         const double way = path.leftwards ? -1 : 1;
         const auto mark = [&](Point point, double slope) {
             const double norm = std::hypot(1.0, slope);
@@ -180,15 +162,7 @@ class SliceDrawer {
                                 mix(path.colour, {0, 0, 0}, 0.62));
             m_places.add_disc(point, dot_radius);
         };
-        if (steps == 0) {
-            // Where so short a yarn turns or leaves, the arrow there says the way; two would overlap.
-            if (!reaches(path, !path.leftwards) || (m_trim && path.loose[0])) return;
-            return mark(at(static_cast<double>(path.first) + way * 0.42, static_cast<double>(path.levels[0])),
-                        0);
-        }
-        for (std::size_t k = (steps / 2 + 2 * path.number) % std::min<std::size_t>(steps, 6); k < steps;
-             k += 6) {
-            if (m_trim && (path.loose[k] || path.loose[k + 1])) continue;
+        for (const std::size_t k : arrow_places(m_map, path, m_trim)) {
             const auto curve = halves(step(path, k));
             const Point tip = curve.second[0], before = curve.first[2];
             mark(tip, tip.x == before.x ? 0 : (tip.y - before.y) / (tip.x - before.x));
@@ -247,12 +221,12 @@ class SliceDrawer {
         };
         const double edge = static_cast<double>(m_map.positions) - 1;
         const std::size_t last = path.levels.size() - 1;
-        if (!reaches(path, false)) {
+        if (!reaches(m_map, path, Side::left)) {
             draw_tag(path, static_cast<double>(path.first) + (last == 0 ? 0 : 0.2), 0);
         } else if (!(m_trim && path.loose.front())) {
             name(-overhang - 0.14, path.levels.front(), Anchor::end);
         }
-        if (!reaches(path, true)) {
+        if (!reaches(m_map, path, Side::right)) {
             if (last > 1) draw_tag(path, static_cast<double>(path.last()) - 0.2, last);
         } else if (!(m_trim && path.loose.back())) {
             name(edge + overhang + 0.14, path.levels.back(), Anchor::start);
@@ -261,39 +235,32 @@ class SliceDrawer {
             draw_tag(path, static_cast<double>(path.first + k), k);
     }
 
-    [[nodiscard]] const SlicePath* path_of(std::size_t pick) const {
-        const auto found = std::ranges::find(m_map.paths, pick, &SlicePath::number);
-        return found == m_map.paths.end() ? nullptr : &*found;
-    }
-
     /// Wide turns go round narrow ones.
     void draw_turns() {
         struct Arc {
-            const Turn* turn;
-            const SlicePath *from, *to;
+            const SliceTurn* shown;
             double low, high;
             std::size_t inside = 0;  ///< turns that it goes round
         };
         std::vector<Arc> arcs;
-        for (const Turn& turn : m_runs.turns()) {
-            const SlicePath* from = path_of(turn.from_pick);
-            const SlicePath* to = path_of(turn.to_pick);
-            if (!is_shown(turn) || (from == nullptr && to == nullptr)) continue;
-            if (from == nullptr || to == nullptr) {
-                add_way_out(turn, from != nullptr ? *from : *to, from != nullptr);
+        for (const SliceTurn& shown : m_map.turns) {
+            if (!shown.stays()) {
+                add_way_out(shown);
                 continue;
             }
-            const double a = end_of(*from, turn.side).y, b = end_of(*to, turn.side).y;
-            arcs.push_back({&turn, from, to, std::min(a, b), std::max(a, b)});
+            const Side side = shown.turn.side;
+            const double a = end_of(m_map.paths[*shown.from], side).y,
+                         b = end_of(m_map.paths[*shown.to], side).y;
+            arcs.push_back({&shown, std::min(a, b), std::max(a, b)});
         }
         std::ranges::stable_sort(arcs, {}, [](const Arc& arc) { return arc.high - arc.low; });
         for (std::size_t k = 0; k < arcs.size(); ++k) {
             for (std::size_t j = 0; j < k; ++j) {
-                const bool meet = arcs[j].turn->side == arcs[k].turn->side && arcs[j].low < arcs[k].high &&
-                                  arcs[k].low < arcs[j].high;
+                const bool meet = arcs[j].shown->turn.side == arcs[k].shown->turn.side &&
+                                  arcs[j].low < arcs[k].high && arcs[k].low < arcs[j].high;
                 if (meet) arcs[k].inside = std::max(arcs[k].inside, arcs[j].inside + 1);
             }
-            draw_turn(*arcs[k].turn, *arcs[k].from, *arcs[k].to, arcs[k].inside);
+            draw_turn(*arcs[k].shown, arcs[k].inside);
         }
     }
 
@@ -303,21 +270,17 @@ class SliceDrawer {
                    : at(static_cast<double>(path.first), static_cast<double>(path.levels.front()));
     }
 
-    /// Whether the side on which a path ends lies within the shown part.
-    [[nodiscard]] bool is_shown(const Turn& turn) const {
-        const std::size_t column = m_runs.column_of(turn);
-        return column >= m_map.begin && column < m_map.begin + m_map.positions;
-    }
-
-    void draw_turn(const Turn& turn, const SlicePath& from, const SlicePath& to, std::size_t inside) {
-        const Point a = end_of(from, turn.side), b = end_of(to, turn.side);
-        const double out = turn.side == Side::right ? 1 : -1;
+    void draw_turn(const SliceTurn& shown, std::size_t inside) {
+        const SlicePath &from = m_map.paths[*shown.from], &to = m_map.paths[*shown.to];
+        const Side side = shown.turn.side;
+        const Point a = end_of(from, side), b = end_of(to, side);
+        const double out = side == Side::right ? 1 : -1;
         const double outermost = out > 0 ? std::max(a.x, b.x) : std::min(a.x, b.x);
         const double reach =
             outermost +
             out * std::min(34 + 18.0 * static_cast<double>(inside) + std::abs(a.y - b.y) * 0.12, 86.0);
         const Point arc[]{a, {reach, a.y}, {reach, b.y}, b};
-        const bool caught = turn.caught_by != CaughtBy::none;
+        const bool caught = shown.caught();
         const Colour colour = caught ? from.colour : uncaught_ink;
         m_canvas.curve(arc, {.colour = mix(colour, {0, 0, 0}, 0.45),
                              .width = path_width + 1.6,
@@ -335,6 +298,7 @@ class SliceDrawer {
         std::string number, words;  ///< of the yarn; where it goes or comes from
         Colour colour;
         bool leaves = false;  ///< the shuttle, rather than comes in
+        bool caught = true;   ///< every turn beyond
         double start = 0;  ///< of its line from the end: beyond the tag of a yarn that is nothing but an end
         Point tip{};       ///< of the stub
     };
@@ -354,11 +318,15 @@ class SliceDrawer {
 
     /// A turn whose other pick lies in another row: the yarn leaves the slice, with the number of where it
     /// goes or comes from. Where two feeders do so at one end of a pick, the words say both.
-    void add_way_out(const Turn& turn, const SlicePath& path, bool leaves) {
+    void add_way_out(const SliceTurn& shown) {
+        const Turn& turn = shown.turn;
+        const bool leaves = shown.from.has_value();
+        const SlicePath& path = m_map.paths[leaves ? *shown.from : *shown.to];
         const std::optional<Point> end = drawn_end(path, turn.side);
         if (!end) return;
-        const std::string words =
-            (leaves ? "to " : "from ") + std::to_string((leaves ? turn.to_pick : turn.from_pick) + 1);
+        const std::string words = (leaves ? "to " : "from ") +
+                                  std::to_string((leaves ? turn.to_pick : turn.from_pick) + 1) +
+                                  (shown.caught() ? "" : " (not caught)");
         const double out = turn.side == Side::right ? 1 : -1;
         const auto known = std::ranges::find_if(m_ways_out, [&](const WayOut& way) {
             return way.out == out && way.end.x == end->x && way.end.y == end->y;
@@ -367,10 +335,11 @@ class SliceDrawer {
             const std::string number = std::to_string(path.number + 1);
             const bool point = path.levels.size() == 1;
             const double start = point ? Canvas::text_width(number, 11, true) / 2 + 3 : 0;
-            m_ways_out.push_back({*end, out, number, words, path.colour, leaves, start});
+            m_ways_out.push_back({*end, out, number, words, path.colour, leaves, shown.caught(), start});
         } else {
             known->words += ", " + words;
             known->leaves = known->leaves || leaves;
+            known->caught = known->caught && shown.caught();
         }
     }
 
@@ -396,7 +365,8 @@ class SliceDrawer {
         const double head = way.leaves ? 8 : 0;
         const Point stub[]{{way.end.x + ahead.x * way.start, way.end.y + ahead.y * way.start},
                            {way.tip.x - ahead.x * head, way.tip.y - ahead.y * head}};
-        m_canvas.polyline(stub, {.colour = mix(way.colour, {0, 0, 0}, 0.3), .width = 2, .dash = {1, 4}});
+        const Colour line = way.caught ? mix(way.colour, {0, 0, 0}, 0.3) : uncaught_ink;
+        m_canvas.polyline(stub, {.colour = line, .width = 2, .dash = {1, 4}});
         if (way.leaves) m_canvas.arrow_head(way.tip, ahead, 9, mix(way.colour, {0, 0, 0}, 0.5));
         m_places.add_curve(straight(way.end, way.tip));
     }
@@ -443,7 +413,6 @@ class SliceDrawer {
 
     Canvas& m_canvas;
     const SliceMap& m_map;
-    const WeftRuns& m_runs;
     LabelPlaces m_places;
     std::size_t m_first_yarn;
     std::vector<WayOut> m_ways_out;
@@ -473,10 +442,23 @@ void add_shown(PageText& text, const Block& block, const SliceMap& map) {
     if (!words.empty()) text.notes.push_back("Shown: " + words + ".");
 }
 
+/// Whether a turn is drawn, or the way out to it: not where its yarn is trimmed off.
+bool is_drawn(const SliceMap& map, const SliceTurn& shown, bool trim) {
+    const SlicePath& path = map.paths[shown.from ? *shown.from : *shown.to];
+    return shown.stays() || !trim || std::ranges::find(path.loose, false) != path.loose.end();
+}
+
+bool has_arrows(const SliceMap& map, bool trim) {
+    return std::ranges::any_of(
+               map.paths, [&](const SlicePath& path) { return !arrow_places(map, path, trim).empty(); }) ||
+           std::ranges::any_of(
+               map.turns, [&](const SliceTurn& shown) { return shown.from && is_drawn(map, shown, trim); });
+}
+
 PageText slice_words(const Subject& subject, const SliceMap& map, const WeftRuns& runs) {
     const Block& block = subject.block;
     const std::size_t line = subject.request.line;
-    const bool warps_run = map.dots == System::weft;
+    const bool warps_run = map.dots == System::weft, trim = subject.request.trim;
     const std::string place = std::to_string(line + 1);
     PageText text = words_of(
         subject, warps_run ? "warp slice, column " + place + ": " +
@@ -487,18 +469,21 @@ PageText slice_words(const Subject& subject, const SliceMap& map, const WeftRuns
     add_shown(text, block, map);
     text.notes.push_back(warps_run
                              ? "Dots: wefts with their pick numbers. Lines: warps with their end numbers."
-                             : "Dots: warps with their end numbers. Lines: wefts with their pick numbers; "
-                               "arrows show the way of the shuttle.");
+                             : std::string("Dots: warps with their end numbers. Lines: wefts with their pick "
+                                           "numbers") +
+                                   (has_arrows(map, trim) ? "; arrows show the way of the shuttle." : "."));
     const auto loose = [](const SlicePath& path) {
         return std::ranges::find(path.loose, true) != path.loose.end();
     };
-    if (subject.request.trim) {
+    if (trim) {
         text.notes.emplace_back("Trimmed: yarns that are loose on purpose are left out.");
     } else if (std::ranges::any_of(map.paths, loose) || std::ranges::any_of(map.dot_list, &SliceDot::loose)) {
         text.notes.emplace_back("Dotted: loose on purpose.");
     }
-    const auto uncaught = [](const Turn& turn) { return turn.caught_by == CaughtBy::none; };
-    if (!warps_run && std::ranges::any_of(runs.turns(), uncaught))
+    const auto uncaught = [&](const SliceTurn& shown) {
+        return !shown.caught() && is_drawn(map, shown, trim);
+    };
+    if (std::ranges::any_of(map.turns, uncaught))
         text.notes.emplace_back("Black dotted turns are not caught.");
     return text;
 }
@@ -515,7 +500,7 @@ Result<std::string> draw_slice(const Subject& subject) {
                                     origin.y - Page::body_top + 58));
     const std::size_t first_yarn =
         map.dots == System::weft ? subject.block.first_pick(map.begin) : subject.block.first_end(map.begin);
-    SliceDrawer(page.canvas, map, runs, first_yarn, subject.request.trim).draw();
+    SliceDrawer(page.canvas, map, first_yarn, subject.request.trim).draw();
     return std::move(page.canvas).finish();
 }
 
