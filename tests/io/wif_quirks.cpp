@@ -162,10 +162,10 @@ TEST_CASE("WIF: shaft 0, several shafts and unlisted threads") {
     CHECK(rows(read(with("1=1\n2=2,3", "1=\n2=0"))) == "---/---");
 }
 
-TEST_CASE("WIF: a warning names the ends that the threading leaves out, but not those that it puts on shaft 0") {
+TEST_CASE("WIF: a warning names the ends that the threading leaves out, and those that it puts on shaft 0") {
     check_warning(read(with("2=2\n3=3", "3=3")), 20, "[THREADING] leaves out end 2, read as on no shaft");
-    CHECK(read(with("2=2\n3=3", "2=0\n3=3")).warnings.empty());
-    CHECK(read(with("2=2\n3=3", "2=\n3=3")).warnings.empty());
+    check_warning(read(with("2=2\n3=3", "2=0\n3=3")), 20, "[THREADING] puts end 2 on no shaft (0)");
+    check_warning(read(with("2=2\n3=3", "2=\n3=0")), 20, "[THREADING] puts ends 2 to 3 on no shaft (0)");
     const std::string wide = with("Threads=3", "Threads=30", with("3=3\n", "3=3\n5=1\n8=1\n30=2\n"));
     check_warning(read(wide), 20, "leaves out ends 4, 6 to 7, 9 to 29, read as");
     std::string odd = "1=1\n";
@@ -178,6 +178,22 @@ TEST_CASE("WIF: a warning names the ends that the threading leaves out, but not 
     CHECK(std::ranges::any_of(last.warnings, [](const std::string& text) {
         return text.find("[THREADING] leaves out end 4") != std::string::npos;
     }));
+}
+
+TEST_CASE("WIF: a warning names picks and treadles without a line, not those that are said to lift nothing") {
+    check_warning(read(with("1=1\n2=2,3", "2=2,3")), 24, "[LIFTPLAN] leaves out pick 1, read as lifting nothing");
+    for (const char* nothing : {"1=0\n2=2,3", "1=\n2=2,3"}) CHECK(read(with("1=1\n2=2,3", nothing)).warnings.empty());
+    const std::string treadled = with("[LIFTPLAN]\n1=1\n2=2,3\n", "[TIEUP]\n1=1\n2=2\n[TREADLING]\n1=1\n2=2\n",
+                                      with("LIFTPLAN=true", "TIEUP=true\nTREADLING=true"));
+    CHECK(read(treadled).warnings.empty());  // no pick presses treadle 3
+    const DesignFromWif untied = read(with("2=2\n[TREADLING]", "[TREADLING]", treadled));
+    check_warning(untied, 25, "[TIEUP] leaves out treadle 2, read as lifting nothing");
+    CHECK(rows(untied) == "#--/---");
+    CHECK(read(with("2=2\n[TREADLING]", "2=0\n[TREADLING]", treadled)).warnings.empty());
+    CHECK(read(with("[TREADLING]\n1=1", "[TREADLING]\n1=0", treadled)).warnings.empty());
+    const DesignFromWif unpressed = read(with("[TREADLING]\n1=1\n", "[TREADLING]\n", treadled));
+    check_warning(unpressed, 28, "[TREADLING] leaves out pick 1, read as lifting nothing");
+    CHECK(rows(unpressed) == "---/-#-");
 }
 
 TEST_CASE("WIF: a last pick without a line lifts nothing; a declaration that is far too high is overstated") {
@@ -206,7 +222,7 @@ TEST_CASE("WIF: tie-up and treadling win over a lift plan") {
     const DesignFromWif two =
         read(with("[LIFTPLAN]\n1=1\n2=2,3\n", "[TIEUP]\n1=1\n3=2,3\n[TREADLING]\n1=1,3\n2=2\n",
                   with("LIFTPLAN=true", "TIEUP=true\nTREADLING=true")));
-    CHECK(two.warnings.empty());
+    check_warning(two, 25, "[TIEUP] leaves out treadle 2");
     CHECK(rows(two) == "###/---");
 }
 
@@ -322,6 +338,9 @@ TEST_CASE("WIF: what cannot be understood is refused with its line") {
     check_refused(with("Threads=3", "Threads=3\nUnits=cm\nSpacing=wide"), 19, "not a number");
     check_refused(with("Threads=3", "Threads=3\nColor=1,2"), 18, "neither the number of a colour");
     check_refused(with("[LIFTPLAN]\n1=1\n2=2,3\n", ""), 1, "nothing says how it is woven");
+    check_refused(with("[LIFTPLAN]\n1=1\n2=2,3\n", "[LIFTPLAN]\n"), 24, "[LIFTPLAN] is empty");
+    check_refused(with("[LIFTPLAN]\n1=1\n2=2,3\n", "[TIEUP]\n1=1\n[TREADLING]\n"), 26, "[TREADLING] is empty");
+    check_refused(with("[LIFTPLAN]\n1=1\n2=2,3\n", "[TREADLING]\n1=1\n2=1\n[TIEUP]\n"), 27, "[TIEUP] is empty");
     check_refused(with("[LIFTPLAN]", "[TREADLING]"), 24, "no [TIEUP]");
     check_refused(with("[THREADING]\n1=1\n2=2\n3=3\n", ""), 1, "no [THREADING]");
     check_refused(plain_cloth + "[COLOR TABLE]\n1=1,2\n", 28, "not 3 numbers");

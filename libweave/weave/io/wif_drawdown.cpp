@@ -148,32 +148,34 @@ Result<std::uint32_t> declared_count(const File& file, const std::string& key) {
     return static_cast<std::uint32_t>(count);
 }
 
-/// Ends, from 0 and rising, as people say them: `end 4`, `ends 2, 5 to 7 and 9 more`.
-std::string said(const std::vector<std::size_t>& ends) {
+/// Threads, from 0 and rising, as people say them: `end 4`, `ends 2, 5 to 7 and 9 more`.
+std::string said(const std::string& noun, const std::vector<std::size_t>& threads) {
     constexpr std::size_t most_ranges = 6;
     std::string text;
     std::size_t at = 0;
-    for (std::size_t ranges = 0; at < ends.size() && ranges < most_ranges; ++ranges) {
+    for (std::size_t ranges = 0; at < threads.size() && ranges < most_ranges; ++ranges) {
         const std::size_t first = at++;
-        while (at < ends.size() && ends[at] == ends[at - 1] + 1) ++at;
-        text += (ranges == 0 ? "" : ", ") + std::to_string(ends[first] + 1);
-        if (at - first > 1) text += " to " + std::to_string(ends[at - 1] + 1);
+        while (at < threads.size() && threads[at] == threads[at - 1] + 1) ++at;
+        text += (ranges == 0 ? "" : ", ") + std::to_string(threads[first] + 1);
+        if (at - first > 1) text += " to " + std::to_string(threads[at - 1] + 1);
     }
-    if (at < ends.size()) text += " and " + std::to_string(ends.size() - at) + " more";
-    return (ends.size() == 1 ? "end " : "ends ") + text;
+    if (at < threads.size()) text += " and " + std::to_string(threads.size() - at) + " more";
+    return noun + (threads.size() == 1 ? " " : "s ") + text;
 }
 
-/// The standard lets a file leave out an end that is on no shaft. An end that never moves is seldom meant, though.
-void warn_of_unthreaded(const Section& threading, const std::vector<std::pair<std::size_t, Entry>>& lines,
-                        const Threads& ends, Warnings& warnings) {
-    std::vector<bool> threaded(ends.count);
-    for (const auto& [end, entry] : lines) threaded[end] = true;
+using Lines = std::vector<std::pair<std::size_t, Entry>>;
+
+/// The standard lets a file leave out what lifts nothing. That is seldom meant, though.
+void warn_of_left_out(const Section& section, const Lines& lines, const Threads& threads, const std::string& noun,
+                      const std::string& read_as, Warnings& warnings) {
+    std::vector<bool> is_there(threads.count);
+    for (const auto& [number, entry] : lines) is_there[number] = true;
     std::vector<std::size_t> left_out;
-    for (std::size_t end = 0; end < std::min(ends.count, ends.listed); ++end) {
-        if (!threaded[end]) left_out.push_back(end);
+    for (std::size_t number = 0; number < std::min(threads.count, threads.listed); ++number) {
+        if (!is_there[number]) left_out.push_back(number);
     }
     if (left_out.empty()) return;
-    warnings.add(threading.line, "[THREADING] leaves out " + said(left_out) + ", read as on no shaft");
+    warnings.add(section.line, shown(section.name) + " leaves out " + said(noun, left_out) + ", read as " + read_as);
 }
 
 /// For each shaft, from 1, the ends on it.
@@ -181,29 +183,38 @@ Result<std::vector<EndSet>> read_threading(const File& file, const Threads& ends
                                            Warnings& warnings) {
     const Section& threading = *file.find("threading");
     WEAVE_TRY(const auto lines, per_thread(threading, ends, warnings));
-    warn_of_unthreaded(threading, lines, ends, warnings);
+    warn_of_left_out(threading, lines, ends, "end", "on no shaft", warnings);
+    std::vector<std::size_t> on_none;
     std::vector<EndSet> on_shaft(std::size_t{shafts} + 1);
     for (const auto& [end, entry] : lines) {
         WEAVE_TRY(auto numbers, whole_list(entry.value, entry.line, shafts));
         sort_out(numbers);
+        if (numbers.empty()) on_none.push_back(end);
         if (numbers.size() > most_shafts_of_end)
             return bad_input("puts an end on more than " + counted(most_shafts_of_end, "shaft"),
                              place(entry.line));
         for (const std::uint32_t shaft : numbers)
             on_shaft[shaft].ends.push_back(static_cast<std::uint32_t>(end));
     }
+    if (!on_none.empty())
+        warnings.add(threading.line, "[THREADING] puts " + said("end", on_none) + " on no shaft (0)");
     for (EndSet& set : on_shaft) pack(set, (ends.count + 7) / 8);
     return on_shaft;
 }
 
-/// For each treadle, from 1, the ends on the shafts that are tied to it.
-Result<std::vector<EndSet>> read_tie_up(const File& file, std::uint32_t treadles,
-                                        const std::vector<EndSet>& on_shaft, std::size_t row_bytes,
-                                        Budget& budget, Warnings& warnings) {
+/// What the drawdown has of [TIEUP]: for each treadle, from 1, the ends on the shafts that are tied to it.
+struct TieUp {
+    std::vector<EndSet> on_treadle;
+    std::vector<bool> is_listed;
+};
+
+Result<TieUp> read_tie_up(const File& file, std::uint32_t treadles, const std::vector<EndSet>& on_shaft,
+                          std::size_t row_bytes, Budget& budget, Warnings& warnings) {
     WEAVE_TRY(const auto lines, per_thread(*file.find("tieup"), {treadles, false, treadles}, warnings));
-    std::vector<EndSet> on_treadle(std::size_t{treadles} + 1);
+    TieUp tie_up{std::vector<EndSet>(std::size_t{treadles} + 1), std::vector<bool>(std::size_t{treadles} + 1)};
     std::size_t bytes = 0;
     for (const auto& [treadle, entry] : lines) {
+        tie_up.is_listed[treadle + 1] = true;
         WEAVE_TRY(auto shafts,
                   whole_list(entry.value, entry.line, static_cast<std::uint32_t>(on_shaft.size() - 1)));
         sort_out(shafts);
@@ -216,9 +227,27 @@ Result<std::vector<EndSet>> read_tie_up(const File& file, std::uint32_t treadles
             WEAVE_CHECK_OK(budget.spend(on_shaft[shaft].work(), entry.line));
             on_shaft[shaft].add_to(bits);
         }
-        on_treadle[treadle + 1].bits = std::move(bits);
+        tie_up.on_treadle[treadle + 1].bits = std::move(bits);
     }
-    return on_treadle;
+    return tie_up;
+}
+
+/// A warning names the treadles that picks press but [TIEUP] leaves out.
+Status warn_of_untied(const Section& tie_up, const Lines& picks, const std::vector<bool>& is_listed,
+                      Warnings& warnings) {
+    std::vector<bool> untied(is_listed.size());
+    for (const auto& [pick, entry] : picks) {
+        WEAVE_TRY(const auto treadles,
+                  whole_list(entry.value, entry.line, static_cast<std::uint32_t>(is_listed.size() - 1)));
+        for (const std::uint32_t treadle : treadles) untied[treadle] = treadle > 0 && !is_listed[treadle];
+    }
+    std::vector<std::size_t> left_out;
+    for (std::size_t treadle = 1; treadle < untied.size(); ++treadle) {
+        if (untied[treadle]) left_out.push_back(treadle - 1);
+    }
+    if (!left_out.empty())
+        warnings.add(tie_up.line, "[TIEUP] leaves out " + said("treadle", left_out) + ", read as lifting nothing");
+    return {};
 }
 
 Result<bool> is_rising(const File& file, Warnings& warnings) {
@@ -244,6 +273,11 @@ Result<Drive> drive_of(const File& file, Warnings& warnings) {
     }
     if (treadled) return Drive::treadles;
     if (holds("liftplan")) return Drive::lift_plan;
+    for (const char* name : {"treadling", "tieup", "liftplan"}) {
+        const Section* section = file.find(name);
+        if (section == nullptr || holds(name)) continue;
+        return bad_input(shown(name) + " is empty, so nothing says how it is woven", place(section->line));
+    }
     if (holds("treadling"))
         return bad_input("[TREADLING] has no [TIEUP] that says what the treadles move",
                          place(file.find("treadling")->line));
@@ -289,12 +323,15 @@ Result<CardImage> drawdown(const File& file, Drive drive, const Threads& ends, c
     WEAVE_TRY(std::vector<EndSet> moved, read_threading(file, ends, shafts, warnings));
     const std::size_t row_bytes = (ends.count + 7) / 8;
     Budget budget;
-    if (drive == Drive::treadles) {
-        WEAVE_TRY(const std::uint32_t treadles, declared_count(file, "treadles"));
-        WEAVE_TRY(moved, read_tie_up(file, treadles, moved, row_bytes, budget, warnings));
-    }
     const Section& plan = *file.find(drive == Drive::treadles ? "treadling" : "liftplan");
     WEAVE_TRY(const auto lines, per_thread(plan, picks, warnings));
+    warn_of_left_out(plan, lines, picks, "pick", "lifting nothing", warnings);
+    if (drive == Drive::treadles) {
+        WEAVE_TRY(const std::uint32_t treadles, declared_count(file, "treadles"));
+        WEAVE_TRY(TieUp tie_up, read_tie_up(file, treadles, moved, row_bytes, budget, warnings));
+        moved = std::move(tie_up.on_treadle);
+        WEAVE_CHECK_OK(warn_of_untied(*file.find("tieup"), lines, tie_up.is_listed, warnings));
+    }
     CardImage card(picks.count, ends.count);
     for (const auto& [pick, entry] : lines) {
         WEAVE_TRY(auto numbers,

@@ -29,8 +29,9 @@ Result<Threads> picks_of(const File& file, Drive drive, Warnings& warnings);
 Result<std::vector<std::pair<std::size_t, Entry>>> per_thread(const Section& section, const Threads& threads,
                                                               Warnings& warnings);
 
-/// The card image: pick by pick the shafts that rise (or sink), and the ends on them. A warning names ends that
-/// [THREADING] leaves out; `shaft 0` says so itself.
+/// The card image: pick by pick the shafts that rise (or sink), and the ends on them. Warnings name what
+/// lifts nothing, as that is seldom meant: ends that [THREADING] leaves out or puts on shaft 0, picks without a line,
+/// and treadles that picks press but [TIEUP] leaves out. A pick or treadle of shaft 0 says so itself.
 Result<CardImage> drawdown(const File& file, Drive drive, const Threads& ends, const Threads& picks,
                            Warnings& warnings);
 
