@@ -151,6 +151,8 @@ TEST_CASE("a call that makes no sense ends with 2 and says what is wrong with it
         {{"render", "t.weave", "--view", "warp:0", "-o", "new.png"}, {"0", "1 to 4"}},
         {{"flip", "t.weave", "--pick", "0", "--end", "1", "-o", "new.weave"}, {"--pick"}},
         {{"flip", "t.weave", "--pick", "-1", "--end", "1", "-o", "new.weave"}, {"--pick", "-1"}},
+        {{"flip", "t.weave", "--pick", "99999999999999999999", "--end", "1", "-o", "new.weave"},
+         {"--pick", "99999999999999999999 not in range 1 to "}},
         {{"flip", "t.weave", "--pick", "0x2", "--end", "1", "-o", "new.weave"}, {"--pick", "0x2"}},
         {{"flip", "t.weave", "--pick", "+2", "--end", "1", "-o", "new.weave"}, {"--pick", "+2"}},
         {{"flip", "t.weave", "--pick", "", "--end", "1", "-o", "new.weave"}, {"--pick"}},

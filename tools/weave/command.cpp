@@ -66,6 +66,12 @@ fs::path written_place(fs::path name) {
 
 constexpr const char* reading_options[] = {"--pick-1", "--end-1", "--lifted"};
 
+/// Digits, with or without a minus, however many.
+bool is_whole(std::string_view word) {
+    if (word.starts_with('-')) word.remove_prefix(1);
+    return !word.empty() && word.find_first_not_of("0123456789") == std::string_view::npos;
+}
+
 std::string lost_flip_line(const LostFlip& lost) {
     return "a flip of block '" + lost.block + "' no longer applies: " + lost.reason;
 }
@@ -112,8 +118,8 @@ void on_run(CLI::App* command, Program& program, std::function<Status()> run) {
 
 std::string settle_whole(std::string& word, std::int64_t low, std::int64_t high) {
     const std::optional<std::int64_t> number = parse_whole(word);
-    if (!number) return "'" + word + "' is not a whole number";
-    if (*number < low || *number > high)
+    if (!is_whole(word)) return "'" + word + "' is not a whole number";
+    if (!number || *number < low || *number > high)
         return "Value " + word + " not in range " + std::to_string(low) + " to " + std::to_string(high);
     word = std::to_string(*number);
     return "";
@@ -214,9 +220,10 @@ Status save_cloth(Program& program, const Design& design, const std::string& fil
     }
     WEAVE_CHECK_OK(save_design(design, file));
     std::vector<std::string> notes = warnings;
+    for (const std::string& line : warnings) program.note(line);
+    note_lost_flips(program, woven->lost_flips, file);
     for (const LostFlip& lost : woven->lost_flips) notes.push_back(lost_flip_line(lost));
     const BlockGrid& grid = woven->grid;
-    for (const std::string& line : notes) program.note(line);
     program.answer({{"file", file},
                     {"picks", grid.picks()},
                     {"ends", grid.ends()},
