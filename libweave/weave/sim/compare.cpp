@@ -341,6 +341,12 @@ Fit fit_by_nearness(const Fitter& fitter, std::vector<Pair>& pairs) {
     return mirrored.rms < best.rms ? mirrored : best;
 }
 
+/// Nobody asks what else would fit while yarns lie nearer than this share of a radius.
+constexpr double near_enough = 0.1;
+/// What else fits is told only if it more than halves the deviation: each further try fits a little better by
+/// chance.
+constexpr double far_better = 0.5;
+
 /// Pairs with the alignment that fits them best.
 struct Match {
     MatchedBy by = MatchedBy::order;
@@ -365,6 +371,7 @@ Match match_by_order(const Fitter& fitter, std::size_t yarns) {
 /// another.
 Match match_by_nearness(const Fitter& fitter, const Match& order) {
     Match match = match_by_nearness(fitter), again{MatchedBy::nearness, {}, {}};
+    if (match.fit.rms < far_better * order.fit.rms) return match;
     again.fit = fit_from(fitter, order.fit.alignment, false, again.pairs, match.fit.rms);
     return again.fit.rms < match.fit.rms ? again : match;
 }
@@ -391,12 +398,6 @@ Result<Match> first_match(const Fitter& fitter, const Yarns& yarns, const Measur
                          "are too many to match by nearness: give equally many, in order, or a part");
     return match_by_nearness(fitter);
 }
-
-/// Nobody asks what else would fit while yarns lie nearer than this share of a radius.
-constexpr double near_enough = 0.1;
-/// What else fits is told only if it more than halves the deviation: each further try fits a little better by
-/// chance.
-constexpr double far_better = 0.5;
 
 struct Unit {
     const char* name;
