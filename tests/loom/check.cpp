@@ -227,7 +227,7 @@ TEST_CASE("a relaxed cloth tells the yarn that each beam and each feeder gives")
     INFO(told[0].message);
     // 6.6 mm on 2 mm of cloth: 3.3 m on a metre, of 100 g a kilometre.
     CHECK(told[0].message.find(
-              "beam 'ground': 3 ends take 3.30 m (0.33 g) for a metre of cloth, 0.01 m (0.00 g) for one "
+              "beam 'ground': 3 ends take 3.30 m (0.33 g) for a metre of cloth, 6.6 mm (0.7 mg) for one "
               "repeat of the design; each from 1.050 m (end 2) to 1.150 m (end 3)") != std::string::npos);
     CHECK(told[1].message.find("beam 'pile': 1 end takes ") != std::string::npos);
     CHECK(told[2].message.find("4 picks of the design take 5.00 m (0.25 g)") != std::string::npos);

@@ -120,7 +120,9 @@ struct Amount {
         gram += length_mm * yarn.linear_density_tex * 1e-6;  // tex: grams for each kilometre
     }
     [[nodiscard]] std::string words(double times) const {
-        return decimal(mm * times / 1000, 2) + " m (" + decimal(gram * times, 2) + " g)";
+        const double long_mm = mm * times, heavy_g = gram * times;
+        return (long_mm < 100 ? decimal(long_mm) + " mm" : decimal(long_mm / 1000, 2) + " m") + " (" +
+               (heavy_g < 0.1 ? decimal(1000 * heavy_g) + " mg" : decimal(heavy_g, 2) + " g") + ")";
     }
 };
 

@@ -109,17 +109,17 @@ Json number_or_null(const std::optional<std::size_t>& number) {
 
 /// As `weave simulate` writes it today, also of files of earlier versions.
 Json coverage_json(const Yarns& yarns, const InspectedPart& part) {
-    Json coverage{{"whole", part.is_whole},
-                  {"rows", stretch_json(part.rows)},
+    Json coverage{{"rows", stretch_json(part.rows)},
                   {"columns", stretch_json(part.columns)},
+                  {"repeats", sim::part_of(sim::part_of(yarns.report, "coverage"), "repeats")},
                   {"picks", stretch_json(part.picks)},
                   {"ends", stretch_json(part.ends)},
                   {"of",
                    {{"rows", part.cloth_rows},
                     {"columns", part.cloth_columns},
                     {"picks", number_or_null(part.cloth_picks)},
-                    {"ends", number_or_null(part.cloth_ends)}}}};
-    coverage["repeats"] = sim::part_of(sim::part_of(yarns.report, "coverage"), "repeats");
+                    {"ends", number_or_null(part.cloth_ends)}}},
+                  {"whole", part.is_whole}};
     return coverage;
 }
 
