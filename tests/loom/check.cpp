@@ -172,15 +172,91 @@ TEST_CASE("take-up: stops, regulator, beams") {
     c.expect_at("take-up.stop", 0, {});
     CHECK(c.lacks("take-up.beam"));
     CHECK(c.lacks("consumption"));
-    c.take_ups = TakeUps{0.1, 0.11, 0.1, 0.2};
+    c.relaxed.emplace().take_up = {0.1, 0.11, 0.1, 0.2};
     c.expect_at("take-up.beam", {}, 3);
     c.design.warp.beams = {{"a"}, {"b"}};
     c.design.warp.beam_order.once = {0, 0, 0, 1};
     CHECK(c.passes("take-up.beam"));
-    c.take_ups->at(2) = std::numeric_limits<double>::quiet_NaN();
+    c.relaxed->take_up.at(2) = std::numeric_limits<double>::quiet_NaN();
     CHECK(c.lacks("take-up.beam"));  // end 3 binds, so it should have a take-up
-    c.take_ups->pop_back();
+    c.relaxed->take_up.pop_back();
     CHECK(c.lacks("take-up.beam"));
+}
+
+TEST_CASE(
+    "without a limit of the loom the take-up of each beam is told, and warned of beyond the usual "
+    "difference") {
+    Case c;
+    c.profile.limits.take_up_difference.reset();
+    c.design.warp.beams = {{"a"}, {"b"}};
+    c.design.warp.beam_order.once = {0, 0, 0, 1};
+    c.relaxed.emplace().take_up = {0.1, 0.105, 0.095, 0.2};
+    CHECK(c.passes("take-up.beam"));
+    const std::vector<Finding> told = c.of("take-up.beam");
+    REQUIRE(told.size() == 2);  // one a beam
+    CHECK(told[0].severity == Severity::info);
+    CHECK(told[0].end == 1);
+    CHECK(told[0].message.find("'a' end 2 takes up 10.5 % and end 3 only 9.5 % of 3 ends") !=
+          std::string::npos);
+    CHECK(told[1].end == 3);
+    c.relaxed->take_up[1] = 0.1051;
+    CHECK_FALSE(c.passes("take-up.beam"));
+    const std::vector<Finding> warned = c.of("take-up.beam");
+    REQUIRE(warned.size() == 2);
+    CHECK(warned[0].severity == Severity::warning);
+    CHECK(warned[0].message.find("the profile sets no limit") != std::string::npos);
+    CHECK(warned[1].severity == Severity::info);
+    c.profile.severities["take-up.beam"] = Severity::off;
+    CHECK(c.of("take-up.beam").empty());
+}
+
+TEST_CASE("a relaxed cloth tells the yarn that each beam and each feeder gives") {
+    Case c;
+    c.design.warp.beams = {{"ground"}, {"pile"}, {"idle"}};
+    c.design.warp.beam_order.once = {0, 0, 0, 1};
+    c.design.warp.yarns[0].linear_density_tex = 100;
+    c.design.weft.yarns[0].linear_density_tex = 50;
+    RelaxedCloth& relaxed = c.relaxed.emplace();
+    CHECK(c.lacks("consumption"));  // no lengths
+    relaxed.end_mm = {2.2, 2.1, 2.3, 5};
+    relaxed.feeder_mm = {10};
+    relaxed.length_mm = 2;
+    relaxed.width_mm = 2;
+    const std::vector<Finding> told = c.of("consumption");
+    REQUIRE(told.size() == 3);  // two beams with ends, one feeder
+    INFO(told[0].message);
+    // 6.6 mm on 2 mm of cloth: 3.3 m on a metre, of 100 g a kilometre.
+    CHECK(told[0].message.find(
+              "beam 'ground': 3 ends take 3.30 m (0.33 g) for a metre of cloth, 6.6 mm (0.7 mg) for one "
+              "repeat of the design; each from 1.050 m (end 2) to 1.150 m (end 3)") != std::string::npos);
+    CHECK(told[1].message.find("beam 'pile': 1 end takes ") != std::string::npos);
+    CHECK(told[2].message.find("4 picks of the design take 5.00 m (0.25 g)") != std::string::npos);
+    CHECK(told[0].severity == Severity::info);
+    c.profile.hook_rule = HookRule::repeats;
+    c.profile.repeats = 2;
+    CHECK(c.of("consumption")[0].message.find("6 ends take 6.60 m (0.66 g)") != std::string::npos);
+    CHECK(c.of("consumption")[2].message.find("take 10.00 m (0.50 g)") != std::string::npos);
+    relaxed.end_mm[1] = std::numeric_limits<double>::quiet_NaN();
+    CHECK(c.lacks("consumption"));  // end 2 binds
+    relaxed.end_mm[1] = 2.1;
+    relaxed.feeder_mm.push_back(1);
+    CHECK(c.lacks("consumption"));
+}
+
+TEST_CASE("the finished width is told against that in the reed, if the simulation found it") {
+    Case c;  // 4 ends at 20 to the centimetre: 2 mm in the reed
+    RelaxedCloth& relaxed = c.relaxed.emplace();
+    relaxed.width_mm = 1.9;
+    CHECK(c.lacks("cloth.width"));
+    relaxed.width_found = true;
+    const std::vector<Finding> told = c.of("cloth.width");
+    REQUIRE(told.size() == 1);
+    CHECK(told[0].severity == Severity::info);
+    CHECK(told[0].message.find(
+              "1.9 mm wide, and 2.0 mm in the reed, which takes 50.0 mm: it draws in by 5.0 %") !=
+          std::string::npos);
+    relaxed.width_mm = 0;
+    CHECK(c.lacks("cloth.width"));
 }
 
 TEST_CASE("reed and density") {

@@ -48,21 +48,21 @@ struct Case {
     Design design;
     LoomProfile profile = loom();
     Evaluation cloth{block_of(plain), {}};
-    std::optional<TakeUps> take_ups;
+    std::optional<RelaxedCloth> relaxed;
 
     [[nodiscard]] std::vector<Finding> of(const std::string& rule) const {
         std::vector<Finding> found;
-        for (const Finding& f : check_for_loom(design, cloth, profile, take_ups).findings) {
+        for (const Finding& f : check_for_loom(design, cloth, profile, relaxed).findings) {
             if (f.rule == rule) found.push_back(f);
         }
         return found;
     }
     [[nodiscard]] bool passes(const std::string& rule) const {
-        const auto passed = check_for_loom(design, cloth, profile, take_ups).passed;
+        const auto passed = check_for_loom(design, cloth, profile, relaxed).passed;
         return std::find(passed.begin(), passed.end(), rule) != passed.end();
     }
     [[nodiscard]] bool lacks(const std::string& rule) const {
-        const auto missing = check_for_loom(design, cloth, profile, take_ups).not_evaluated;
+        const auto missing = check_for_loom(design, cloth, profile, relaxed).not_evaluated;
         return std::any_of(missing.begin(), missing.end(),
                            [&](const auto& n) { return n.rule == rule && !n.reason.empty(); });
     }

@@ -136,6 +136,64 @@ TEST_CASE("without a count in common each yarn is matched with the nearest, and 
         20);
 }
 
+TEST_CASE("yarns in another order are matched by order, and it is told how much nearer the nearest lie") {
+    Yarns yarns = twill();
+    for (SimulatedYarn& yarn : yarns.yarns) {  // so that no turn lays it on itself
+        const auto number = static_cast<double>(yarn.number);
+        const double by = 0.02 * number * number * (yarn.system == System::weft ? 1 : 0.5);
+        for (Vec3& place : yarn.spline.control) place[yarn.system == System::weft ? 0 : 1] += by;
+    }
+    for_all(
+        [&](Random& random) {
+            MeasuredCloth measured = scan(yarns, {}, random);
+            std::ranges::reverse(measured.yarns);
+            const Comparison found = compared(yarns, measured);
+            CHECK(found.matched_by == MatchedBy::order);
+            CHECK(found.rms_mm > 0.01);
+            REQUIRE(found.by_nearness);
+            CHECK(found.by_nearness->rms_mm < 1e-6);
+            CHECK_FALSE(found.unit);
+            const auto nearest = compare(yarns, measured, MatchedBy::nearness);
+            REQUIRE(nearest);
+            CHECK(nearest->matched_by == MatchedBy::nearness);
+            CHECK(nearest->rms_mm < 1e-6);
+            CHECK_FALSE(nearest->by_nearness);
+        },
+        3);
+}
+
+TEST_CASE("a scan in another unit is told by how well it fits there") {
+    const Yarns yarns = twill();
+    const std::pair<double, const char*> units[]{{1e3, "µm"}, {0.1, "cm"}, {1 / 25.4, "inches"}};
+    for (const auto& [scale, name] : units) {
+        CAPTURE(name);
+        Random random(5);
+        MeasuredCloth measured = scan(yarns, {}, random);
+        for (MeasuredYarn& yarn : measured.yarns) {
+            for (Vec3& place : yarn.places) place *= scale;
+        }
+        const Comparison found = compared(yarns, measured);
+        REQUIRE(found.unit);
+        CHECK(found.unit->unit == name);
+        CHECK(found.unit->mm == Approx(1 / scale));
+        CHECK(found.unit->rms_mm < 1e-6);
+        CHECK(found.unit->matched_by == MatchedBy::order);
+    }
+    Random random(6);
+    const Comparison right = compared(yarns, scan(yarns, {}, random));
+    CHECK_FALSE(right.unit);
+    CHECK_FALSE(right.by_nearness);
+}
+
+TEST_CASE("order is refused where there are not as many yarns") {
+    const Yarns yarns = twill();
+    Random random(7);
+    MeasuredCloth measured = scan(yarns, {}, random);
+    measured.yarns.pop_back();
+    CHECK_FALSE(compare(yarns, measured, MatchedBy::order));
+    CHECK(compare(yarns, measured));
+}
+
 TEST_CASE("a yarn that lies a period aside is the same yarn") {
     Random random(7);
     const Yarns yarns = twill();

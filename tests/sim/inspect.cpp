@@ -56,7 +56,130 @@ Yarns level_plain_weave(double pitch, double height) {
     return yarns;
 }
 
+/// `rows` by `columns` cut out of a larger plain weave, with its rims frozen: rows from 10 and columns
+/// from 20.
+Yarns cut_out(std::size_t rows, std::size_t columns) {
+    StraightCloth wish;
+    wish.layers = 1;
+    wish.rows = rows;
+    wish.columns = columns;
+    wish.over = plain_over;
+    Yarns yarns = straight_cloth(wish);
+    for (SimulatedYarn& yarn : yarns.yarns) {
+        yarn.number += yarn.system == System::weft ? 10 : 20;
+        yarn.spline.is_periodic = false;
+        for (std::vector<Vec3>* places : {&yarn.spline.control, &yarn.planned}) {
+            for (Vec3& place : *places) place += Vec3(10, 20, 0);
+        }
+    }
+    for (Crossing& crossing : yarns.crossings) crossing.pick += 10, crossing.end += 20;
+    yarns.is_periodic = {false, false};
+    yarns.region = {10, 9 + rows, 20, 19 + columns};
+    yarns.cloth_rows = yarns.cloth_columns = 60;
+    return yarns;
+}
+
+/// Lifts the outermost three control points of each end, which bends it as far as its first two rows.
+void lift_rims(Yarns& yarns) {
+    for (SimulatedYarn& yarn : yarns.yarns) {
+        if (yarn.system == System::weft) continue;
+        for (std::size_t i = 0; i < 3; ++i)
+            yarn.spline.control[i].z() += 1, yarn.spline.control[yarn.spline.control.size() - 1 - i].z() += 1;
+    }
+}
+
 }  // namespace
+
+TEST_CASE("a part of a cloth is called one, and what lies near its frozen rims is not measured") {
+    const Yarns calm = cut_out(12, 14);
+    Yarns yarns = calm;
+    lift_rims(yarns);
+    const Inspection found = looked_over(yarns), still = looked_over(calm);
+    CHECK_FALSE(found.part.is_whole);
+    CHECK(found.part.picks == NumberSpan{10, 21});
+    CHECK(found.part.ends == NumberSpan{20, 33});
+    CHECK(found.picks == 12);
+    CHECK(found.measured_picks == 8);
+    CHECK(found.measured_ends == 10);
+    REQUIRE(found.warp_crimp);
+    CHECK(found.warp_crimp->most == Approx(0).margin(1e-9));
+    REQUIRE(found.thickness_mm);
+    CHECK(*found.thickness_mm == Approx(*still.thickness_mm));
+    REQUIRE(found.take_up.size() == 10);
+    CHECK(found.take_up.front().end == 22);
+    CHECK(found.take_up.back().end == 31);
+    const std::string words = inspection_text(yarns, found);
+    INFO(words);
+    CHECK(words.find("only a PART of the cloth, picks 11 to 22 and ends 21 to 34 (rows 11 to 22 of 60, "
+                     "columns 21 to 34 of "
+                     "60)") != std::string::npos);
+    CHECK(words.find("its 2 outermost rows and columns are left out below: 8 picks and 10 ends are left") !=
+          std::string::npos);
+    const Json json = inspection_json(yarns, found);
+    CHECK(json.at("coverage").at("whole") == false);
+    CHECK(json.at("coverage").at("picks") == Json({11, 22}));
+    CHECK(json.at("coverage").at("rows") == Json({11, 22}));
+    CHECK(json.at("measured").at("left_out_rows") == 2);
+
+    // A whole cloth whose rims are free is measured to the rim.
+    yarns.region = {0, 11, 0, 13};
+    yarns.cloth_rows = 12;
+    yarns.cloth_columns = 14;
+    const Inspection whole = looked_over(yarns);
+    CHECK(whole.part.is_whole);
+    CHECK(whole.measured_picks == 12);
+    CHECK(*whole.thickness_mm > *still.thickness_mm + 0.7);
+}
+
+TEST_CASE("a part that is all rim measures nothing, and says so") {
+    for (const std::size_t size :
+         {std::size_t{4}, std::size_t{7}}) {  // none inside, and fewer than four rows
+        const Yarns yarns = cut_out(size, size);
+        const Inspection found = looked_over(yarns);
+        CHECK_FALSE(found.thickness_mm);
+        CHECK_FALSE(found.warp_crimp);
+        CHECK(found.take_up.empty());
+        CHECK(found.jammed.empty());
+        const std::string words = inspection_text(yarns, found);
+        CHECK(words.find("Thickness not measured") != std::string::npos);
+        CHECK(words.find("Crimp warp not measured, weft not measured") != std::string::npos);
+        CHECK((words.find("nothing is left") != std::string::npos) == (size == 4));
+        CHECK(inspection_json(yarns, found).at("thickness_mm").is_null());
+    }
+}
+
+TEST_CASE("places that jam near a frozen rim are not told") {
+    Yarns yarns = level_plain_weave(0.39, 0.2);
+    CHECK_FALSE(looked_over(yarns).jammed.empty());
+    yarns.is_periodic = {false, false};
+    yarns.report["plan"] = {{{"term", "boundary x"}, {"choice", "frozen"}},
+                            {{"term", "boundary y"}, {"choice", "frozen"}}};
+    CHECK(looked_over(yarns).jammed.empty());  // it has four rows and columns
+}
+
+TEST_CASE(
+    "whether the rest holds, and how far strain departs from what was asked for, is told and carried on") {
+    Yarns yarns = level_plain_weave(1, 0.2);
+    const auto says = [&](const char* words) {
+        return inspection_text(yarns, looked_over(yarns)).find(words) != std::string::npos;
+    };
+    const auto carried = [&] { return inspection_json(yarns, looked_over(yarns)).at("smallest_curvature"); };
+    CHECK(carried().is_null());
+    CHECK_FALSE(says("The rest"));
+    yarns.report["curves_down"] = false;  // of earlier versions, which did not tell whether they had looked
+    CHECK(carried().is_null());
+    yarns.report["curves_down"] = true;
+    CHECK(carried() == "negative");
+    CHECK(says("The rest is a SADDLE: a little push would lead on"));
+    yarns.report["smallest_curvature"] = "positive";
+    CHECK(carried() == "positive");
+    CHECK(says("The rest holds"));
+    yarns.report["smallest_curvature"] = "not looked";
+    CHECK(says("Nobody looked whether the rest holds"));
+    yarns.report["strain_deviation"] = {{"warp", 0.0003}, {"weft", nullptr}};
+    CHECK(says("Strain departs from what was asked for by at most 0.03 points in the warp\n"));
+    CHECK(inspection_json(yarns, looked_over(yarns)).at("strain_deviation").at("warp") == 0.0003);
+}
 
 TEST_CASE("take-up of a sine and of circle arcs is that of their formulas") {
     constexpr double pi = std::numbers::pi;
@@ -320,7 +443,8 @@ TEST_CASE("yarns of any places and lengths are looked over to an end") {
             }
             const auto found = inspect(yarns);
             if (!found) return;
-            CHECK(std::isfinite(found->thickness_mm));
+            REQUIRE(found->thickness_mm);
+            CHECK(std::isfinite(*found->thickness_mm));
             CHECK_FALSE(inspection_json(yarns, *found).dump().empty());
             CHECK_FALSE(inspection_text(yarns, *found).empty());
         },

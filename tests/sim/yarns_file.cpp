@@ -202,6 +202,66 @@ TEST_CASE("a header that asks for more than the file holds allocates nothing") {
           "header: yarns");
 }
 
+TEST_CASE("what contradicts itself is refused with the place") {
+    const auto refused = [](auto change) {
+        Yarns yarns = small();
+        change(yarns);
+        const auto bytes = write_yarns(yarns);
+        REQUIRE_FALSE(bytes);
+        CHECK(bytes.error().code == ErrorCode::bad_input);
+        return bytes.error();
+    };
+    const auto where = [&](auto change) { return refused(change).where; };
+    const auto again = [](std::size_t yarn) {
+        return [yarn](Yarns& yarns) { yarns.yarns.push_back(yarns.yarns[yarn]); };
+    };
+    CHECK(where(again(1)) == "yarns[2].number");
+    CHECK(refused(again(1)).message.find("warp 4 again") != std::string::npos);
+    Yarns two_feeders = small();
+    again(0)(two_feeders);  // a pick of two feeders has two wefts
+    CHECK(write_yarns(two_feeders));
+    again(0)(two_feeders);
+    CHECK_FALSE(write_yarns(two_feeders));
+    CHECK(where([](Yarns& yarns) { yarns.size_mm[0] = 0; }) == "size_mm[0]");
+    CHECK(where([](Yarns& yarns) { yarns.crossings[0].end = 5; }) == "crossings[0]");
+    CHECK(where([](Yarns& yarns) { yarns.crossings[0].pick = 3; }) == "crossings[0]");
+    Yarns open = small();
+    open.size_mm[1] = 0;  // it does not repeat there
+    CHECK(write_yarns(open));
+}
+
+TEST_CASE("a report of what cannot have been is refused with the member; what nobody knows is left alone") {
+    const std::pair<const char*, Json> impossible[]{{"residual", -5},
+                                                    {"residual", nullptr},
+                                                    {"residual", "1e-3"},
+                                                    {"converged", "yes"},
+                                                    {"order_kept", 1},
+                                                    {"max_overlap", -0.1},
+                                                    {"points", -1},
+                                                    {"iterations", 1.5},
+                                                    {"lost_crossings", "none"},
+                                                    {"smallest_curvature", 1},
+                                                    {"smallest_curvature", "flat"},
+                                                    {"strain_deviation", 0.1},
+                                                    {"strain_deviation", {{"warp", -0.1}}}};
+    for (const auto& [name, value] : impossible) {
+        CAPTURE(name, value.dump());
+        Yarns yarns = small();
+        yarns.report[name] = value;
+        const auto bytes = write_yarns(yarns);
+        REQUIRE_FALSE(bytes);
+        CHECK(bytes.error().where == std::string("report.") + name);
+    }
+    Yarns yarns = small();
+    yarns.report = {{"residual", 0},
+                    {"converged", true},
+                    {"curves_down", false},
+                    {"whatever", nullptr},
+                    {"smallest_curvature", "not looked"},
+                    {"strain_deviation", {{"warp", 0.1}, {"weft", nullptr}}}};
+    CHECK(write_yarns(yarns));
+}
+
 TEST_CASE("yarns that no file can hold are refused when writing") {
     const auto where = [](auto change) {
         Yarns yarns = small();
@@ -218,7 +278,8 @@ TEST_CASE("yarns that no file can hold are refused when writing") {
     CHECK(where([&](Yarns& yarns) { yarns.yarns[0].radius_mm = -1; }) == "yarns[0].radius_mm");
     CHECK(where([&](Yarns& yarns) { yarns.yarns[0].length_mm = infinite; }) == "yarns[0].length_mm");
     CHECK(where([&](Yarns& yarns) { yarns.crossings[0].warp = 0; }) == "crossings[0]");
-    CHECK(where([&](Yarns& yarns) { yarns.report["residual"] = infinite; }) == "report");
+    CHECK(where([&](Yarns& yarns) { yarns.report["residual"] = infinite; }) == "report.residual");
+    CHECK(where([&](Yarns& yarns) { yarns.report["other"] = infinite; }) == "report");
     CHECK(where([&](Yarns& yarns) { yarns.report = 3; }) == "report");
     CHECK(where([&](Yarns& yarns) { yarns.title = "\xff"; }).empty());
 }

@@ -60,6 +60,19 @@ Json alignment_json(const sim::Alignment& alignment) {
             {"translation_mm", {by.x(), by.y(), by.z()}}};
 }
 
+Json other_json(const Comparison& comparison) {
+    if (!comparison.by_nearness) return nullptr;
+    return {{"rms_mm", comparison.by_nearness->rms_mm}, {"max_mm", comparison.by_nearness->max_mm}};
+}
+
+Json unit_json(const Comparison& comparison) {
+    if (!comparison.unit) return nullptr;
+    return {{"unit", comparison.unit->unit},
+            {"mm", comparison.unit->mm},
+            {"rms_mm", comparison.unit->rms_mm},
+            {"matched_by", way_of_matching(comparison.unit->matched_by)}};
+}
+
 Json comparison_json(const Yarns& yarns, const MeasuredCloth& measured, const Comparison& comparison) {
     Json per_yarn = Json::array(), measured_alone = Json::array(), simulated_alone = Json::array();
     for (const YarnDeviation& deviation : comparison.per_yarn) {
@@ -81,9 +94,17 @@ Json comparison_json(const Yarns& yarns, const MeasuredCloth& measured, const Co
             {"max_mm", comparison.max_mm},
             {"matched_by", way_of_matching(comparison.matched_by)},
             {"alignment", alignment_json(comparison.alignment)},
+            {"by_nearness", other_json(comparison)},
+            {"unit_hint", unit_json(comparison)},
             {"per_yarn", std::move(per_yarn)},
             {"measured_without_partner", std::move(measured_alone)},
             {"simulated_without_partner", std::move(simulated_alone)}};
+}
+
+std::string short_number(double number) {
+    char text[32];
+    std::snprintf(text, sizeof text, "%g", number);
+    return text;
 }
 
 std::string millimetres(double length) {
@@ -97,11 +118,29 @@ std::string matching_text(const Comparison& comparison) {
         case MatchedBy::name:
             return "matched by pick and end";
         case MatchedBy::order:
-            return "matched in the order of the files, as there are equally many";
+            return "matched in the order of the files";
         case MatchedBy::nearness:
             break;
     }
-    return "matched by nearness, as there are not equally many";
+    return "matched by nearness";
+}
+
+/// What would fit far better.
+std::string hints_text(const Comparison& comparison) {
+    std::string text;
+    if (const auto& other = comparison.by_nearness)
+        text +=
+            "Matched by nearness they lie only " + millimetres(other->rms_mm) + " apart (rms), " +
+            millimetres(other->max_mm) +
+            " at most: the measured yarns may stand in another order; --match nearness compares them so\n";
+    if (const auto& unit = comparison.unit)
+        text += "If the measured places are in " + unit->unit + " and not in mm they lie only " +
+                millimetres(unit->rms_mm) + " apart (rms)" +
+                (unit->matched_by == comparison.matched_by
+                     ? ""
+                     : ", matched by " + way_of_matching(unit->matched_by)) +
+                ": multiply them by " + short_number(unit->mm) + "\n";
+    return text;
 }
 
 std::string comparison_text(const Yarns& yarns, const MeasuredCloth& measured, const Comparison& comparison) {
@@ -110,7 +149,7 @@ std::string comparison_text(const Yarns& yarns, const MeasuredCloth& measured, c
         text +=
             "The measured axes are right-handed, those of the cloth left-handed: x and y were exchanged\n";
     text += "Deviation " + millimetres(comparison.rms_mm) + " on the mean (rms), " +
-            millimetres(comparison.max_mm) + " at most\n";
+            millimetres(comparison.max_mm) + " at most\n" + hints_text(comparison);
     std::vector<YarnDeviation> worst = comparison.per_yarn;
     std::ranges::stable_sort(worst, std::greater{}, &YarnDeviation::rms_mm);
     worst.resize(std::min<std::size_t>(worst.size(), 5));
@@ -129,12 +168,16 @@ std::string comparison_text(const Yarns& yarns, const MeasuredCloth& measured, c
     return text;
 }
 
-Status run_comparison(Program& program, const std::string& file, const std::string& measured_file) {
+Status run_comparison(Program& program, const std::string& file, const std::string& measured_file,
+                      const std::string& match) {
     WEAVE_TRY(const Yarns yarns, load_yarns(file));
     WEAVE_TRY(const std::string bytes, read_file(measured_file, std::uint64_t{8} << 30));
     Result<MeasuredCloth> measured = read_measured_cloth(bytes);
     if (!measured) return std::move(measured).error().in(measured_file);
-    Result<Comparison> comparison = compare(yarns, *measured);
+    const auto wish = match.empty()
+                          ? std::nullopt
+                          : std::optional(match == "order" ? MatchedBy::order : MatchedBy::nearness);
+    Result<Comparison> comparison = compare(yarns, *measured, wish);
     if (!comparison) return std::move(comparison).error().in(file);
     program.answer(comparison_json(yarns, *measured, *comparison),
                    comparison_text(yarns, *measured, *comparison));
@@ -145,14 +188,22 @@ void add_compare(CLI::App& app, Program& program) {
     CLI::App* command =
         add_command(app, program, "compare",
                     "Tell how far relaxed yarns lie from measured ones, once these are laid on them");
-    const auto file = std::make_shared<std::string>(), measured = std::make_shared<std::string>();
+    const auto file = std::make_shared<std::string>(), measured = std::make_shared<std::string>(),
+               match = std::make_shared<std::string>();
     command->add_option("FILE", *file, "the .yarns file of `weave simulate`")->required();
     command
         ->add_option("MEASURED", *measured,
                      "centrelines in mm as text (for each yarn a line with the number of its points, then "
                      "lines x y z), or a .yarns file")
         ->required();
-    on_run(command, program, [=, &program] { return run_comparison(program, *file, *measured); });
+    command
+        ->add_option(
+            "--match", *match,
+            "which measured yarn is which: in the order of the files, or the nearest; without it by pick and "
+            "end where both files name them, else in order where there are as many, else the nearest")
+        ->check(CLI::IsMember({"order", "nearness"}))
+        ->type_name("HOW");
+    on_run(command, program, [=, &program] { return run_comparison(program, *file, *measured, *match); });
 }
 
 }  // namespace

@@ -57,26 +57,26 @@ struct CheckWish {
     std::string file, loom, yarns;
 };
 
-/// Take-ups from relaxed yarns. Those of the design in another scene are taken, and it is said.
-Result<TakeUps> load_take_ups(const Program& program, const std::string& file, const Cloth& cloth) {
+/// What relaxed yarns tell. Those of the design in another scene are taken, and it is said.
+Result<RelaxedCloth> load_relaxed(const Program& program, const std::string& file, const Cloth& cloth) {
     WEAVE_TRY(const Yarns yarns, load_yarns(file));
-    Result<TakeUps> take_ups = take_ups_of(yarns, cloth.design, cloth.evaluation.block->ends());
-    if (!take_ups) return std::move(take_ups).error().in(file);
+    Result<RelaxedCloth> relaxed = relaxed_cloth(yarns, cloth.design, *cloth.evaluation.block);
+    if (!relaxed) return std::move(relaxed).error().in(file);
     if (yarns.scene_sha256 != scene_sha256(cloth.design))
         program.note(on_one_line(file) + " was simulated with another scene than the design's");
-    return take_ups;
+    return relaxed;
 }
 
 Status run_check(Program& program, const CheckWish& wish) {
     WEAVE_TRY(const LoomProfile profile, load_profile(wish.loom));
     WEAVE_TRY(const Cloth cloth, load_cloth(program, wish.file));
     note_stray_pin(program, cloth, wish.file);
-    std::optional<TakeUps> take_ups;
+    std::optional<RelaxedCloth> relaxed;
     if (!wish.yarns.empty()) {
-        WEAVE_TRY(take_ups, load_take_ups(program, wish.yarns, cloth));
+        WEAVE_TRY(relaxed, load_relaxed(program, wish.yarns, cloth));
     }
     const Progress progress("checking " + wish.file);
-    const CheckReport report = check_for_loom(cloth.design, cloth.evaluation, profile, take_ups);
+    const CheckReport report = check_for_loom(cloth.design, cloth.evaluation, profile, relaxed);
     program.answer(to_json(report), in_words(report, profile.name));
     if (report.count(Severity::error) > 0) program.exit_code = findings;
     return {};
@@ -89,7 +89,11 @@ void add_check(CLI::App& app, Program& program) {
     const auto wish = std::make_shared<CheckWish>();
     command->add_option("FILE", wish->file, "the .weave file")->required();
     command->add_option("--loom", wish->loom, "the loom's profile, a .json file")->type_name("FILE")->required();
-    command->add_option("--yarns", wish->yarns, "its relaxed yarns, a .yarns file: take-up is judged as well")->type_name("FILE");
+    command
+        ->add_option(
+            "--yarns", wish->yarns,
+            "its relaxed yarns, a .yarns file: take-up is judged as well, and width and use of yarn told")
+        ->type_name("FILE");
     on_run(command, program, [=, &program] { return run_check(program, *wish); });
 }
 

@@ -41,6 +41,12 @@ void RuleReport::find(Place place, const std::string& message) {
     }
 }
 
+void RuleReport::tell(Place place, const std::string& message) {
+    if (!wanted()) return;
+    ++m_report.counts[static_cast<std::size_t>(Severity::info)];
+    m_report.findings.push_back({m_id, Severity::info, place.pick, place.end, message});
+}
+
 void RuleReport::not_evaluated(std::string reason) {
     if (!m_evaluated) return;
     m_evaluated = false;
@@ -50,6 +56,12 @@ void RuleReport::not_evaluated(std::string reason) {
 std::string percent(double share) {
     char text[32];
     std::snprintf(text, sizeof text, "%.1f %%", share * 100);
+    return text;
+}
+
+std::string decimal(double value, int digits) {
+    char text[64];
+    std::snprintf(text, sizeof text, "%.*f", digits, value);
     return text;
 }
 
@@ -80,9 +92,9 @@ bool comes_before(const Finding& a, const Finding& b) {
 }  // namespace
 
 CheckReport check_for_loom(const Design& design, const Evaluation& cloth, const LoomProfile& profile,
-                           const std::optional<TakeUps>& take_ups) {
+                           const std::optional<RelaxedCloth>& relaxed) {
     const Block& block = *cloth.block;
-    Subject subject{design, cloth, profile, take_ups, block, block.card_image(), pick_table(design, block),
+    Subject subject{design, cloth, profile, relaxed, block, block.card_image(), pick_table(design, block),
                     {},     {},    false};
     subject.turns = profile.insertion == Insertion::shuttle && design.scene.weft_mode == WeftMode::wraparound;
     if (subject.turns) {
@@ -99,6 +111,7 @@ CheckReport check_for_loom(const Design& design, const Evaluation& cloth, const 
     check_detail::check_feeders(subject, report);
     check_detail::check_turns(subject, report);
     check_detail::check_warp(subject, report);
+    check_detail::check_relaxed(subject, report);
     std::stable_sort(report.findings.begin(), report.findings.end(), comes_before);
     return report;
 }

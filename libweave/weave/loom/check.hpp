@@ -31,6 +31,21 @@ struct NotEvaluated {
 /// end that is loose all along and takes up nothing.
 using TakeUps = std::vector<double>;
 
+/// What a relaxed simulation tells of the whole design, as plain data.
+struct RelaxedCloth {
+    TakeUps take_up;  ///< of each end
+    /// Yarn that goes into one repeat of the design, without tension, mm: of each end, NaN of one that is loose all
+    /// along; and drawn from each feeder by all its picks. A pick that is loose all along counts with the width.
+    std::vector<double> end_mm, feeder_mm;
+    double length_mm = 0, width_mm = 0;  ///< of one repeat along the ends, and along the picks
+    bool width_found = false;  ///< the simulation let the cloth find its width; else it is that which was given
+};
+
+/// Ends of one beam may differ in take-up by so much where the profile sets no limit. A beam lets all its ends off
+/// alike, so what one takes up less hangs in the shed as slack unless the warp's own stretch takes it in: warp is
+/// held at a strain of about a hundredth (the paper's S = 1.01), and beyond that difference there is none left.
+inline constexpr double usual_take_up_difference = 0.01;
+
 struct CheckReport {
     /// Worst first, then by rule, pick, end. No rule lists more than a hundred; one more says how many there
     /// were besides.
@@ -54,6 +69,6 @@ const std::vector<Rule>& rules();
 /// Holds a design to a loom: every rule of rules() is judged, or listed as not evaluated with the reason,
 /// never passed silently.
 CheckReport check_for_loom(const Design& design, const Evaluation& cloth, const LoomProfile& profile,
-                           const std::optional<TakeUps>& take_ups = {});
+                           const std::optional<RelaxedCloth>& relaxed = {});
 
 }  // namespace weave

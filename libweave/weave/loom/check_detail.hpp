@@ -40,6 +40,8 @@ class RuleReport {
     /// Whether the profile leaves this rule on; else it has been listed as not evaluated.
     [[nodiscard]] bool wanted() const { return m_severity != Severity::off; }
     void find(Place place, const std::string& message);
+    /// What is worth knowing though the rule is kept.
+    void tell(Place place, const std::string& message);
     void not_evaluated(std::string reason);
 
   private:
@@ -55,7 +57,7 @@ struct Subject {
     const Design& design;
     const Evaluation& cloth;
     const LoomProfile& profile;
-    const std::optional<TakeUps>& take_ups;
+    const std::optional<RelaxedCloth>& relaxed;
     const Block& block;
     CardImage card;
     std::vector<Pick> picks;
@@ -69,6 +71,8 @@ inline std::string person(std::size_t number) {
 }
 /// A share as a percentage with one digit.
 std::string percent(double share);
+/// A number with so many digits after the point.
+std::string decimal(double value, int digits = 1);
 
 void check_structure(const Subject& subject, CheckReport& report);  ///< block.*, flips.*
 void check_floats(const Subject& subject, CheckReport& report);     ///< float.*, bind.*
@@ -78,7 +82,9 @@ void check_lifts(const Subject& subject, CheckReport& report);      ///< lift.*
 void check_feeders(const Subject& subject, CheckReport& report);    ///< feeders.*
 /// turn.*, insertion.match, repeat.doubled
 void check_turns(const Subject& subject, CheckReport& report);
-/// take-up.*, reed.*, warp.density, cloth.width, consumption
+/// take-up.stop, take-up.regulator, reed.*, warp.density
 void check_warp(const Subject& subject, CheckReport& report);
+/// take-up.beam, cloth.width, consumption: what a relaxed simulation tells
+void check_relaxed(const Subject& subject, CheckReport& report);
 
 }  // namespace weave::check_detail

@@ -1,20 +1,13 @@
-// Rules about the warp and its way through the loom: take-up, reed, density, width, consumption.
+// Rules about the warp and its way through the loom: take-up, reed, density.
 
 #include <weave/loom/check_detail.hpp>
 
 #include <algorithm>
 #include <cmath>
-#include <cstdio>
 
 namespace weave::check_detail {
 
 namespace {
-
-std::string decimal(double value) {
-    char text[64];
-    std::snprintf(text, sizeof text, "%.1f", value);
-    return text;
-}
 
 /// The picks of a row lie on top of each other only if the cloth stands still until the last of them is in.
 void check_stops(const Subject& subject, CheckReport& report) {
@@ -41,61 +34,6 @@ void check_regulator(const Subject& subject, CheckReport& report) {
         at_pick(static_cast<std::size_t>(stop - subject.picks.begin())),
         "the cloth has to stand still after " + counted(static_cast<std::size_t>(stops), "pick") +
             ", but the profile names no hook that stops the take-up: set it on the loom by the pick table");
-}
-
-struct Spread {
-    std::size_t least = 0, most = 0;  ///< ends
-    bool seen = false;
-};
-
-/// The first end without a take-up that is not loose all along, on purpose: those take up nothing.
-std::optional<std::size_t> missing_end(const Subject& subject, const TakeUps& take_ups) {
-    if (std::none_of(take_ups.begin(), take_ups.end(), [](double t) { return std::isnan(t); })) return {};
-    const CardImage loose = loose_ends(subject.block);
-    for (std::size_t end = 0; end < take_ups.size(); ++end) {
-        if (!std::isnan(take_ups[end])) continue;
-        for (std::size_t pick = 0; pick < loose.picks(); ++pick) {
-            if (!loose.weft_over(pick, end)) return end;
-        }
-    }
-    return {};
-}
-
-void check_beams(const Subject& subject, CheckReport& report) {
-    RuleReport rule(report, subject.profile, "take-up.beam");
-    const auto limit = subject.profile.limits.take_up_difference;
-    if (!subject.take_ups)
-        return rule.not_evaluated("needs the take-up of each end from a relaxed simulation");
-    if (!limit)
-        return rule.not_evaluated("the profile sets no limit for the spread of take-up within a beam");
-    const TakeUps& take_ups = *subject.take_ups;
-    if (take_ups.size() != subject.block.ends()) {
-        return rule.not_evaluated("the take-ups are of " + counted(take_ups.size(), "end") +
-                                  ", the design has " + std::to_string(subject.block.ends()));
-    }
-    if (std::any_of(take_ups.begin(), take_ups.end(), [](double t) { return std::isinf(t); })) {
-        return rule.not_evaluated("the take-ups are not all numbers");
-    }
-    if (const auto end = missing_end(subject, take_ups))
-        return rule.not_evaluated("the take-up of end " + person(*end) + " is missing");
-    const WarpPlan& warp = subject.design.warp;
-    std::vector<Spread> spreads(warp.beams.size());
-    for (std::size_t end = 0; end < take_ups.size(); ++end) {
-        if (std::isnan(take_ups[end])) continue;
-        Spread& spread = spreads.at(warp.beam_order.at(end));
-        if (!spread.seen) spread = {end, end, true};
-        if (take_ups[end] < take_ups[spread.least]) spread.least = end;
-        if (take_ups[end] > take_ups[spread.most]) spread.most = end;
-    }
-    for (std::size_t beam = 0; beam < spreads.size(); ++beam) {
-        const Spread& spread = spreads[beam];
-        const double difference = spread.seen ? take_ups[spread.most] - take_ups[spread.least] : 0;
-        if (difference <= *limit) continue;
-        rule.find(at_end(spread.most), "on beam '" + warp.beams[beam].name + "' end " + person(spread.most) +
-                                           " takes up " + percent(take_ups[spread.most]) + " and end " +
-                                           person(spread.least) + " only " + percent(take_ups[spread.least]) +
-                                           "; this loom's limit is a difference of " + percent(*limit));
-    }
 }
 
 void check_width(const Subject& subject, CheckReport& report) {
@@ -141,14 +79,9 @@ void check_density(const Subject& subject, CheckReport& report) {
 void check_warp(const Subject& subject, CheckReport& report) {
     check_stops(subject, report);
     check_regulator(subject, report);
-    check_beams(subject, report);
     check_width(subject, report);
     check_dents(subject, report);
     check_density(subject, report);
-    RuleReport(report, subject.profile, "cloth.width")
-        .not_evaluated("needs the cloth as it lies off the loom, from a simulation");
-    RuleReport(report, subject.profile, "consumption")
-        .not_evaluated("needs the relaxed length of every end and pick from a simulation");
 }
 
 }  // namespace weave::check_detail

@@ -48,8 +48,8 @@ const std::vector<Rule>& rules() {
         {"reed.width", error, "the warp with its selvedge is not wider than the reed"},
         {"reed.dents", info, "the ends of all repeats fill the last dent of the reed"},
         {"warp.density", warning, "the warp has the density of the harness, give or take a hundredth"},
-        {"cloth.width", info, "width of the finished cloth"},
-        {"consumption", info, "yarn used from each cone and beam"},
+        {"cloth.width", info, "width of the finished cloth against that in the reed"},
+        {"consumption", info, "yarn used from each beam and feeder for a metre of cloth and for the design"},
     };
     return all;
 }

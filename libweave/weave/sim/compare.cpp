@@ -160,13 +160,14 @@ class Fitter {
         comparison.alignment = alignment;
     }
 
-  private:
+    /// The largest radius of the simulated yarns.
     [[nodiscard]] double scale(const std::vector<Pair>& pairs) const {
         double scale = 0;
         for (const Pair& pair : pairs) scale = std::max(scale, m_yarns.yarns[pair.simulated].radius_mm);
         return scale;
     }
 
+  private:
     /// The simulated yarns that pass nearest to a place.
     [[nodiscard]] std::vector<std::size_t> candidates(const Vec3& place) const {
         std::vector<std::pair<double, std::size_t>> all;
@@ -320,17 +321,128 @@ void list_alone(const Yarns& yarns, const MeasuredCloth& measured, Comparison& c
 }
 
 /// Matching and alignment in turn, until the pairs stay.
-Fit fit_by_nearness(const Fitter& fitter, std::vector<Pair>& pairs) {
+Fit fit_from(const Fitter& fitter, Alignment alignment, bool parallel, std::vector<Pair>& pairs,
+             double worst) {
     Fit best;
-    for (const bool mirrored : {false, true}) {
-        Alignment alignment = fitter.middles(mirrored);
-        for (int round = 0; round < matching_rounds; ++round) {
-            const std::vector<Pair> now = fitter.nearest_pairs(alignment);
-            const Fit fit = fitter.best(now, true);
-            alignment = fit.alignment;
-            if (fit.rms >= best.rms * (mirrored && round == 0 ? clearly_better : 1)) break;
-            best = fit;
-            pairs = now;
+    for (int round = 0; round < matching_rounds; ++round) {
+        const std::vector<Pair> now = fitter.nearest_pairs(alignment);
+        const Fit fit = fitter.best(now, parallel);
+        alignment = fit.alignment;
+        if (fit.rms >= (round == 0 ? worst : best.rms)) break;
+        best = fit;
+        pairs = now;
+    }
+    return best;
+}
+
+Fit fit_by_nearness(const Fitter& fitter, std::vector<Pair>& pairs) {
+    Fit best = fit_from(fitter, fitter.middles(false), true, pairs, std::numeric_limits<double>::max());
+    const Fit mirrored = fit_from(fitter, fitter.middles(true), true, pairs, clearly_better * best.rms);
+    return mirrored.rms < best.rms ? mirrored : best;
+}
+
+/// Nobody asks what else would fit while yarns lie nearer than this share of a radius.
+constexpr double near_enough = 0.1;
+/// What else fits is told only if it more than halves the deviation: each further try fits a little better by
+/// chance.
+constexpr double far_better = 0.5;
+
+/// Pairs with the alignment that fits them best.
+struct Match {
+    MatchedBy by = MatchedBy::order;
+    std::vector<Pair> pairs;
+    Fit fit;
+};
+
+Match match_by_nearness(const Fitter& fitter) {
+    Match match{MatchedBy::nearness, {}, {}};
+    match.fit = fit_by_nearness(fitter, match.pairs);
+    return match;
+}
+
+Match match_by_order(const Fitter& fitter, std::size_t yarns) {
+    Match match;
+    for (std::size_t k = 0; k < yarns; ++k) match.pairs.push_back({k, k});
+    match.fit = fitter.best(match.pairs, false);
+    return match;
+}
+
+/// The same by nearness from where order has laid them, too: that way their axes need not be along one
+/// another.
+Match match_by_nearness(const Fitter& fitter, const Match& order) {
+    Match match = match_by_nearness(fitter), again{MatchedBy::nearness, {}, {}};
+    if (match.fit.rms < far_better * order.fit.rms) return match;
+    again.fit = fit_from(fitter, order.fit.alignment, false, again.pairs, match.fit.rms);
+    return again.fit.rms < match.fit.rms ? again : match;
+}
+
+bool can_be_matched_by_nearness(const Yarns& yarns, const MeasuredCloth& measured) {
+    return yarns.yarns.size() <= most_tries / measured.yarns.size();
+}
+
+Result<Match> first_match(const Fitter& fitter, const Yarns& yarns, const MeasuredCloth& measured,
+                          std::optional<MatchedBy> wish) {
+    Match match{MatchedBy::name, wish ? std::vector<Pair>() : pairs_by_name(yarns, measured.names), {}};
+    if (!match.pairs.empty()) {
+        match.fit = fitter.best(match.pairs, false);
+        return match;
+    }
+    const bool as_many = yarns.yarns.size() == measured.yarns.size();
+    const std::string counts = std::to_string(measured.yarns.size()) + " measured and " +
+                               std::to_string(yarns.yarns.size()) + " simulated yarns ";
+    if (wish == MatchedBy::order && !as_many)
+        return bad_input(counts + "cannot be matched in order: there must be as many");
+    if (as_many && wish != MatchedBy::nearness) return match_by_order(fitter, yarns.yarns.size());
+    if (!can_be_matched_by_nearness(yarns, measured))
+        return bad_input(counts +
+                         "are too many to match by nearness: give equally many, in order, or a part");
+    return match_by_nearness(fitter);
+}
+
+struct Unit {
+    const char* name;
+    double mm;
+};
+constexpr Unit units[]{{"µm", 1e-3}, {"m", 1e3}, {"tenths of a mm", 0.1}, {"cm", 10}, {"inches", 25.4}};
+
+double length_of(const std::vector<MeasuredYarn>& yarns) {
+    double length = 0;
+    for (const MeasuredYarn& yarn : yarns) {
+        for (std::size_t k = 0; k + 1 < yarn.places.size(); ++k)
+            length += (yarn.places[k + 1] - yarn.places[k]).norm();
+    }
+    return length / static_cast<double>(yarns.size());
+}
+
+double length_of(const std::vector<SimulatedYarn>& yarns) {
+    double length = 0;
+    for (const SimulatedYarn& yarn : yarns) length += yarn.length_mm;
+    return length / static_cast<double>(yarns.size());
+}
+
+/// The unit in which the measured yarns fit best, if that is far better than `match` in mm. Only units that
+/// give a mean length within a factor of 2 are tried.
+std::optional<UnitHint> better_unit(const Yarns& yarns, const MeasuredCloth& measured, const Match& match) {
+    std::optional<UnitHint> best;
+    double bound = far_better * match.fit.rms;
+    const double share = length_of(yarns.yarns) / length_of(measured.yarns);
+    for (const auto& [name, mm] : units) {
+        if (!(share / mm > 0.5 && share / mm < 2)) continue;
+        MeasuredCloth scaled = measured;
+        for (MeasuredYarn& yarn : scaled.yarns) {
+            for (Vec3& place : yarn.places) place *= mm;
+        }
+        const Fitter fitter(yarns, scaled);
+        std::vector<Match> tries;
+        if (match.by != MatchedBy::nearness) {
+            tries.push_back({match.by, match.pairs, fitter.best(match.pairs, false)});
+        }
+        if (can_be_matched_by_nearness(yarns, measured))
+            tries.push_back(tries.empty() ? match_by_nearness(fitter) : match_by_nearness(fitter, tries[0]));
+        for (const Match& other : tries) {
+            if (other.fit.rms >= bound) continue;
+            bound = (other.by == match.by ? 1 : far_better) * other.fit.rms;
+            best = UnitHint{name, mm, other.fit.rms, other.by};
         }
     }
     return best;
@@ -357,26 +469,23 @@ Result<MeasuredCloth> read_measured_cloth(std::string_view bytes) {
     return cloth;
 }
 
-Result<Comparison> compare(const Yarns& yarns, const MeasuredCloth& measured) {
+Result<Comparison> compare(const Yarns& yarns, const MeasuredCloth& measured, std::optional<MatchedBy> wish) {
     if (yarns.yarns.empty() || measured.yarns.empty()) return bad_input("there is no yarn to compare");
     const Fitter fitter(yarns, measured);
+    WEAVE_TRY(const Match match, first_match(fitter, yarns, measured, wish));
     Comparison comparison;
-    std::vector<Pair> pairs = pairs_by_name(yarns, measured.names);
-    Fit fit;
-    if (!pairs.empty()) {
-        comparison.matched_by = MatchedBy::name;
-    } else if (yarns.yarns.size() == measured.yarns.size()) {
-        for (std::size_t k = 0; k < yarns.yarns.size(); ++k) pairs.push_back({k, k});
-    } else if (yarns.yarns.size() > most_tries / measured.yarns.size()) {
-        return bad_input(
-            std::to_string(measured.yarns.size()) + " measured and " + std::to_string(yarns.yarns.size()) +
-            " simulated yarns are too many to match by nearness: give equally many, in order, or a part");
-    } else {
-        comparison.matched_by = MatchedBy::nearness;
-    }
-    fit = pairs.empty() ? fit_by_nearness(fitter, pairs) : fitter.best(pairs, false);
-    fitter.measure(pairs, fit.alignment, comparison);
+    comparison.matched_by = match.by;
+    fitter.measure(match.pairs, match.fit.alignment, comparison);
     list_alone(yarns, measured, comparison);
+    if (comparison.rms_mm <= near_enough * fitter.scale(match.pairs)) return comparison;
+    comparison.unit = better_unit(yarns, measured, match);
+    if (match.by == MatchedBy::order && !comparison.unit && can_be_matched_by_nearness(yarns, measured)) {
+        const Match other = match_by_nearness(fitter, match);
+        Comparison nearness;
+        fitter.measure(other.pairs, other.fit.alignment, nearness);
+        if (nearness.rms_mm < far_better * comparison.rms_mm)
+            comparison.by_nearness = {nearness.rms_mm, nearness.max_mm};
+    }
     return comparison;
 }
 

@@ -5,6 +5,7 @@
 #include <weave/sim/yarns.hpp>
 
 #include <cstddef>
+#include <optional>
 #include <string>
 #include <vector>
 
@@ -34,6 +35,19 @@ struct YarnDeviation {
     Vec3 worst{0, 0, 0};  ///< place in the simulated cloth where it is greatest
 };
 
+/// Another matching under which the measured yarns fit far better.
+struct OtherMatching {
+    double rms_mm = 0, max_mm = 0;
+};
+
+/// A unit in which the measured lengths fit far better than in mm.
+struct UnitHint {
+    std::string unit;                         ///< such as `µm`
+    double mm = 1;                            ///< that one of it is
+    double rms_mm = 0;                        ///< if they are in it
+    MatchedBy matched_by = MatchedBy::order;  ///< so far apart
+};
+
 /// How far measured yarns lie from simulated ones.
 struct Comparison {
     double rms_mm = 0, max_mm = 0;
@@ -41,6 +55,8 @@ struct Comparison {
     std::vector<std::size_t> measured_alone, simulated_alone;  ///< yarns without a partner
     MatchedBy matched_by = MatchedBy::order;
     sim::Alignment alignment;  ///< from the measured axes to those of the simulated cloth
+    std::optional<OtherMatching> by_nearness;  ///< where they were matched by order
+    std::optional<UnitHint> unit;
 };
 
 /// Lays the measured yarns on the simulated ones and measures how far apart they are.
@@ -52,7 +68,12 @@ struct Comparison {
 /// as much as the length of curve that the place stands for (half way to each neighbour); so it does not
 /// matter how either is cut into points, nor which way a yarn was followed. A yarn of more than 4,096 places
 /// is cut evenly into so many. Matching by nearness needs the two to have their axes along one another to
-/// begin with. Errors: no yarn to compare.
-Result<Comparison> compare(const Yarns& yarns, const MeasuredCloth& measured);
+/// begin with. Errors: no yarn to compare, too many for nearness.
+///
+/// Yarns are matched by name where the measured ones have names, else by order where there are as many, else
+/// by nearness; `match` asks for order or nearness. Where they lie further apart than a tenth of a radius it
+/// is tried whether another matching or another unit fits far better: less than half as far apart.
+Result<Comparison> compare(const Yarns& yarns, const MeasuredCloth& measured,
+                           std::optional<MatchedBy> match = {});
 
 }  // namespace weave

@@ -89,12 +89,36 @@ struct ChangedCrossing {
     bool found = true;       ///< whether the yarns still cross near there
 };
 
-/// What a weaver wants to know of a relaxed cloth.
+/// First and last of a row of numbers, from 0.
+using NumberSpan = std::array<std::size_t, 2>;
+
+/// Which part of its cloth a piece is.
+struct InspectedPart {
+    bool is_whole = true;
+    NumberSpan rows{}, columns{};
+    std::optional<NumberSpan> picks, ends;  ///< that cross in it; nothing where none do
+    std::size_t cloth_rows = 0, cloth_columns = 0;
+    std::optional<std::size_t> cloth_picks, cloth_ends;  ///< where the report of the run tells them
+};
+
+/// So many rows or columns from a frozen rim nothing is measured: it is held as planned, so yarns near it run
+/// steeper, and jam where they would have room. How far that reaches was measured (README.md): crimp is that
+/// of the cloth from the second row or the third column on.
+inline constexpr std::size_t disturbed_by_rim = 2;
+/// A yarn that is left over fewer rows or columns than this says nothing of its crimp.
+inline constexpr std::size_t least_measured = 4;
+
+/// What a weaver wants to know of a relaxed cloth. Where its rims were frozen all that is measured, and all
+/// that moved, leans, bunches or jams, is of what lies further inside than `disturbed_by_rim`.
 struct Inspection {
-    std::vector<EndTakeUp> take_up;  ///< by end
+    InspectedPart part;
+    std::array<bool, 2> frozen_rims{};                  ///< across x and y
+    std::size_t measured_picks = 0, measured_ends = 0;  ///< all, where no rim is frozen
+    std::vector<EndTakeUp> take_up;                     ///< by end, of those that can be measured
     std::vector<BeamTakeUp> beams;
     std::optional<Spread> warp_crimp, weft_crimp;  ///< (length - straight length) / straight length
-    double thickness_mm = 0;                       ///< from the lowest to the highest surface of a yarn
+    /// From the lowest to the highest surface of a yarn; nothing where nothing can be measured.
+    std::optional<double> thickness_mm;
     double settled = 1;  ///< height of the thickest sheet over the planned one, from centre to centre
     std::vector<std::vector<YarnNumber>>
         sheets;  ///< that nothing binds to one another, lowest first; see sheets_of

@@ -1,4 +1,5 @@
 #include <weave/sim/inspect.hpp>
+#include <weave/sim/report_words.hpp>
 
 #include <cmath>
 
@@ -98,6 +99,37 @@ Json changed_json(const ChangedCrossing& changed) {
             {"found", changed.found}};
 }
 
+Json stretch_json(const std::optional<NumberSpan>& stretch) {
+    return stretch ? Json({(*stretch)[0] + 1, (*stretch)[1] + 1}) : Json(nullptr);
+}
+
+Json number_or_null(const std::optional<std::size_t>& number) {
+    return number ? Json(*number) : Json(nullptr);
+}
+
+/// As `weave simulate` writes it today, also of files of earlier versions.
+Json coverage_json(const Yarns& yarns, const InspectedPart& part) {
+    Json coverage{{"rows", stretch_json(part.rows)},
+                  {"columns", stretch_json(part.columns)},
+                  {"repeats", sim::part_of(sim::part_of(yarns.report, "coverage"), "repeats")},
+                  {"picks", stretch_json(part.picks)},
+                  {"ends", stretch_json(part.ends)},
+                  {"of",
+                   {{"rows", part.cloth_rows},
+                    {"columns", part.cloth_columns},
+                    {"picks", number_or_null(part.cloth_picks)},
+                    {"ends", number_or_null(part.cloth_ends)}}},
+                  {"whole", part.is_whole}};
+    return coverage;
+}
+
+Json measured_json(const Inspection& inspection) {
+    return {{"picks", inspection.measured_picks},
+            {"ends", inspection.measured_ends},
+            {"left_out_rows", inspection.frozen_rims[0] ? disturbed_by_rim : 0},
+            {"left_out_columns", inspection.frozen_rims[1] ? disturbed_by_rim : 0}};
+}
+
 /// What the report of the run says, or null.
 Json reported(const Yarns& yarns, const char* name) {
     const auto found = yarns.report.find(name);
@@ -109,12 +141,16 @@ Json reported(const Yarns& yarns, const char* name) {
 Json inspection_json(const Yarns& yarns, const Inspection& inspection) {
     Json json{
         {"title", yarns.title}, {"design_sha256", yarns.design_sha256}, {"scene_sha256", yarns.scene_sha256}};
-    for (const char* name : {"fidelity", "converged", "residual", "max_overlap", "coverage", "friction", "starts", "symmetry"})
+    for (const char* name : {"fidelity", "converged", "residual", "max_overlap", "strain_deviation",
+                             "friction", "starts", "symmetry"})
         json[name] = reported(yarns, name);
+    json["smallest_curvature"] = sim::smallest_curvature(yarns.report);
+    json["coverage"] = coverage_json(yarns, inspection.part);
+    json["measured"] = measured_json(inspection);
     json["picks"] = inspection.picks;
     json["ends"] = inspection.ends;
     json["size_mm"] = {yarns.size_mm[0], yarns.size_mm[1]};
-    json["thickness_mm"] = inspection.thickness_mm;
+    json["thickness_mm"] = inspection.thickness_mm ? Json(*inspection.thickness_mm) : Json(nullptr);
     json["settled"] = inspection.settled;
     json["crimp"] = {{"warp", spread_or_null(inspection.warp_crimp)},
                      {"weft", spread_or_null(inspection.weft_crimp)}};

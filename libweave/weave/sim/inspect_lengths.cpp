@@ -24,12 +24,56 @@ double length_from_above(const Spline& spline) {
     return length;
 }
 
+/// Length of a centreline between two parameters, by chords: to a ten-thousandth where it bends to its own
+/// width.
+double length_between(const Spline& spline, double from, double to) {
+    constexpr double chords_a_segment = 16;
+    const auto chords = std::max(1.0, std::ceil(chords_a_segment * (to - from)));
+    double length = 0;
+    Vec3 last = spline.place(from);
+    for (double k = 1; k <= chords; ++k) {
+        const Vec3 next = spline.place(from + (to - from) * k / chords);
+        length += (next - last).norm();
+        last = next;
+    }
+    return length;
+}
+
 /// Crimp of a yarn. One of several picks goes there and back, so of that the planned way as seen from above
 /// counts.
 double crimp_of(const SimulatedYarn& yarn, bool several_picks) {
     if (!several_picks) return take_up_of(yarn);
     const double way = length_from_above({yarn.planned, yarn.spline.is_periodic, yarn.spline.shift});
     return way > 0 ? (yarn.length_mm - way) / way : 0;
+}
+
+/// Crimp of each yarn away from frozen rims: of its measured stretches together, each against the straight
+/// way seen from above. Nothing where a yarn has none.
+std::vector<std::optional<double>> crimps_inside(const InspectionSubject& subject) {
+    std::vector<double> lengths(subject.yarns.yarns.size(), 0), ways = lengths;
+    for (const auto& [yarn, from, to] : measured_stretches(subject)) {
+        const Spline& spline = subject.yarns.yarns[yarn].spline;
+        const Vec3 apart = spline.place(to) - spline.place(from);
+        lengths[yarn] += length_between(spline, from, to);
+        ways[yarn] += std::hypot(apart.x(), apart.y());
+    }
+    std::vector<std::optional<double>> crimps(lengths.size());
+    for (std::size_t y = 0; y < crimps.size(); ++y) {
+        if (ways[y] > 0) crimps[y] = lengths[y] / ways[y] - 1;
+    }
+    return crimps;
+}
+
+std::vector<std::optional<double>> crimps_of(const InspectionSubject& subject) {
+    if (subject.frozen_rims[0] || subject.frozen_rims[1]) return crimps_inside(subject);
+    std::vector<std::size_t> strands_in(subject.yarns.yarns.size(), 0);
+    for (const Strand& strand : subject.strands) ++strands_in[strand.yarn];
+    std::vector<std::optional<double>> crimps;
+    for (std::size_t y = 0; y < strands_in.size(); ++y) {
+        const SimulatedYarn& yarn = subject.yarns.yarns[y];
+        crimps.emplace_back(crimp_of(yarn, yarn.system == System::weft && strands_in[y] > 1));
+    }
+    return crimps;
 }
 
 class SpreadMaker {
@@ -120,8 +164,7 @@ void find_alike(const std::map<std::tuple<std::uint32_t, double, std::size_t>, S
 }  // namespace
 
 void find_lengths(const InspectionSubject& subject, Inspection& inspection) {
-    std::vector<std::size_t> picks_in(subject.yarns.yarns.size(), 0);
-    for (const Strand& strand : subject.strands) ++picks_in[strand.yarn];
+    const std::vector<std::optional<double>> crimps = crimps_of(subject);
     SpreadMaker warp, weft;
     std::map<std::uint32_t, SpreadMaker> beams;
     std::map<std::tuple<std::uint32_t, double, std::size_t>, SpreadMaker> alike;
@@ -130,7 +173,8 @@ void find_lengths(const InspectionSubject& subject, Inspection& inspection) {
     Courses courses(subject);
     for (std::size_t y = 0; y < subject.yarns.yarns.size(); ++y) {
         const SimulatedYarn& yarn = subject.yarns.yarns[y];
-        const double crimp = crimp_of(yarn, yarn.system == System::weft && picks_in[y] > 1);
+        if (!crimps[y]) continue;
+        const double crimp = *crimps[y];
         (yarn.system == System::warp ? warp : weft).add(crimp, yarn.number);
         if (yarn.system != System::warp) continue;
         inspection.take_up.push_back({yarn.number, yarn.beam, crimp});

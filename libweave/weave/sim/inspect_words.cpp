@@ -2,6 +2,7 @@
 
 #include <weave/core/text.hpp>
 #include <weave/sim/inspect.hpp>
+#include <weave/sim/report_words.hpp>
 #include <weave/sim/starts.hpp>
 #include <weave/sim/symmetry.hpp>
 
@@ -84,6 +85,26 @@ std::optional<double> reported(const Yarns& yarns, const char* name) {
     return found->get<double>();
 }
 
+/// What else is known of the rest: whether it is one that holds, and how far yarns are strained otherwise
+/// than asked.
+std::string rest_text(const Json& report) {
+    std::string text;
+    const bool rests = sim::part_of(report, "converged") == true;
+    const Json curvature = rests ? sim::smallest_curvature(report) : Json(nullptr);
+    if (curvature == "negative") text += "The rest is a SADDLE: a little push would lead on\n";
+    if (curvature == "positive") text += "The rest holds: after every small push the yarns come back\n";
+    if (curvature == "not looked") text += "Nobody looked whether the rest holds or is a saddle\n";
+    const Json strain = sim::part_of(report, "strain_deviation");
+    std::string each;
+    for (const char* system : {"warp", "weft"}) {
+        const Json share = sim::part_of(strain, system);
+        if (share.is_number())
+            each += (each.empty() ? "" : ", ") + format("%.2g points in the ", 100 * share.get<double>()) +
+                    system;
+    }
+    return each.empty() ? text : text + "Strain departs from what was asked for by at most " + each + "\n";
+}
+
 std::string run_text(const Yarns& yarns, const Inspection& inspection) {
     const auto converged = yarns.report.find("converged");
     const auto residual = reported(yarns, "residual");
@@ -95,15 +116,16 @@ std::string run_text(const Yarns& yarns, const Inspection& inspection) {
         return counted(crossings.size(), "crossing") + what + ", such as pick " + std::to_string(crossings.front().pick + 1) +
                " with end " + std::to_string(crossings.front().end + 1) + "\n";
     };
-    if (inspection.changed.empty() && inspection.slid.empty()) return text + "; every crossing lies as the card says\n";
+    if (inspection.changed.empty() && inspection.slid.empty())
+        return text + "; every crossing lies as the card says\n" + rest_text(yarns.report);
     text += inspection.changed.empty() ? "; no yarn passed through another\n"
                                        : "\nCHANGED: " + such(inspection.changed, " no longer as the card says");
     if (!inspection.slid.empty()) text += "SLID: " + such(inspection.slid, " no longer where planned, open or not held");
-    return text;
+    return text + rest_text(yarns.report);
 }
 
 std::string crimp_text(const char* system, const std::optional<Spread>& crimp) {
-    if (!crimp) return std::string(system) + " none";
+    if (!crimp) return std::string(system) + " not measured";
     std::string text = system + (" " + percent(crimp->mean));
     if (crimp->most - crimp->least >= 0.001)
         text += " (" + percent(crimp->least) + " to " + percent(crimp->most) + ")";
@@ -124,12 +146,44 @@ std::string beam_text(const BeamTakeUp& beam) {
            " run alike and differ by " + format("%.1f points\n", 100 * *beam.alike);
 }
 
+/// `picks 21 to 60 of 80`, or without what the report of the run does not tell.
+std::string stretch_text(const char* name, const std::optional<NumberSpan>& stretch,
+                         const std::optional<std::size_t>& of) {
+    if (!stretch) return std::string("no ") + name;
+    return std::string(name) + " " + std::to_string((*stretch)[0] + 1) + " to " +
+           std::to_string((*stretch)[1] + 1) + (of ? " of " + std::to_string(*of) : "");
+}
+
+/// Which picks and ends of the cloth these are; of a whole cloth how many.
+std::string part_text(const Inspection& inspection) {
+    const InspectedPart& part = inspection.part;
+    if (part.is_whole) return counted(inspection.picks, "pick") + " and " + counted(inspection.ends, "end");
+    return "only a PART of the cloth, " + stretch_text("picks", part.picks, part.cloth_picks) + " and " +
+           stretch_text("ends", part.ends, part.cloth_ends) + " (" +
+           stretch_text("rows", part.rows, part.cloth_rows) + ", " +
+           stretch_text("columns", part.columns, part.cloth_columns) + ")";
+}
+
+/// What frozen rims leave to be measured.
+std::string rims_text(const Inspection& inspection) {
+    const auto [rows, columns] = inspection.frozen_rims;
+    if (!rows && !columns) return "";
+    const std::string lines = rows && columns ? "rows and columns" : rows ? "rows" : "columns";
+    std::string text = "Its rims were held as planned, so its " + std::to_string(disturbed_by_rim) +
+                       " outermost " + lines + " are left out below: ";
+    if (inspection.measured_picks == 0 || inspection.measured_ends == 0) return text + "nothing is left\n";
+    return text + counted(inspection.measured_picks, "pick") + " and " +
+           counted(inspection.measured_ends, "end") + " are left\n";
+}
+
 std::string measures_text(const Yarns& yarns, const Inspection& inspection) {
-    std::string text = "Thickness " + mm(inspection.thickness_mm);
+    std::string text = rims_text(inspection) + "Thickness " +
+                       (inspection.thickness_mm ? mm(*inspection.thickness_mm) : "not measured");
     if (std::abs(inspection.settled - 1) >= 0.01)
         text += format(", its layers at %.0f %% of their planned distance", 100 * inspection.settled);
     text += "\nCrimp " + crimp_text("warp", inspection.warp_crimp) + ", " +
-            crimp_text("weft", inspection.weft_crimp) + "\nTake-up\n";
+            crimp_text("weft", inspection.weft_crimp) + "\nTake-up" +
+            (inspection.beams.empty() ? " not measured\n" : "\n");
     for (const BeamTakeUp& beam : inspection.beams) text += beam_text(beam);
     if (const auto overlap = reported(yarns, "max_overlap"); overlap && *overlap > 0)
         text += format("Yarns press into one another by at most %.0f %% of their width\n", 100 * *overlap);
@@ -200,7 +254,7 @@ std::string moved_text(const Inspection& inspection, System system) {
         if (yarn.yarn.system == system && numbers.insert(yarn.yarn.number).second) moved.push_back(yarn);
     }
     if (moved.empty()) return "";
-    const std::size_t all = system == System::warp ? inspection.ends : inspection.picks;
+    const std::size_t all = system == System::warp ? inspection.measured_ends : inspection.measured_picks;
     std::string text = "MOVED by more than their width: " + std::to_string(moved.size()) + " of " +
                        counted(all, name_of(system)) + ": ";
     for (std::size_t k = 0; k < moved.size() && k < most_told; ++k) {
@@ -219,7 +273,7 @@ std::string jammed_text(const Inspection& inspection, System system) {
         if (yarn.yarn.system == system) jammed.push_back(yarn);
     }
     if (jammed.empty()) return "";
-    const std::size_t all = system == System::warp ? inspection.ends : inspection.picks;
+    const std::size_t all = system == System::warp ? inspection.measured_ends : inspection.measured_picks;
     const JammedYarn& worst = jammed.front();
     const std::string other = name_of(system == System::warp ? System::weft : System::warp);
     return "JAMMED: " + std::to_string(jammed.size()) + " of " + counted(all, name_of(system)) +
@@ -233,8 +287,7 @@ std::string jammed_text(const Inspection& inspection, System system) {
 
 std::string inspection_text(const Yarns& yarns, const Inspection& inspection) {
     std::string text =
-        on_one_line(yarns.title) + ": " + counted(inspection.picks, "pick") + " and " +
-        counted(inspection.ends, "end") + ", " +
+        on_one_line(yarns.title) + ": " + part_text(inspection) + ", " +
         format("%.1f mm along the ends, %.1f mm along the picks\n", yarns.size_mm[0], yarns.size_mm[1]);
     text += run_text(yarns, inspection) + measures_text(yarns, inspection);
     text += sim::starts_text(yarns.report) + sim::symmetry_text(yarns.report);

@@ -22,6 +22,24 @@ inline double number_in(const Json& object, const char* name) {
     return part.is_number() ? part.get<double>() : 0;
 }
 
+/// What the plan of a run chose for a term such as `boundary x`, or nothing.
+inline std::string plan_choice(const Json& report, const char* term) {
+    const Json plan = part_of(report, "plan");
+    if (!plan.is_array()) return "";
+    for (const Json& line : plan) {
+        const Json choice = part_of(line, "choice");
+        if (part_of(line, "term") == term && choice.is_string()) return choice.get<std::string>();
+    }
+    return "";
+}
+
+/// `smallest_curvature` of a report, or null. Files of earlier versions only said where they saw one below 0.
+inline Json smallest_curvature(const Json& report) {
+    Json curvature = part_of(report, "smallest_curvature");
+    if (curvature.is_null() && part_of(report, "curves_down") == true) return "negative";
+    return curvature;
+}
+
 inline std::string short_format(const char* pattern, double value) {
     std::array<char, 120> text{};
     std::snprintf(text.data(), text.size(), pattern, value);

@@ -236,21 +236,25 @@ Yarns copied_back(Yarns yarns, const Plan& plan, const Design& design) {
     return whole;
 }
 
-/// Rows and columns from 0, picks and ends from 1.
-Json coverage_of(const Plan& plan) {
+/// What of the cloth the yarns cover, first and last from 1, once a repeat has been copied back over it.
+Json coverage_of(const Plan& plan, const Design& design) {
     const Region& region = plan.curves.region;
     std::array<std::size_t, 2> picks{SIZE_MAX, 0}, ends{SIZE_MAX, 0};
     for (const Crossing& crossing : plan.curves.crossings) {
         picks = {std::min(picks[0], crossing.pick + 1), std::max(picks[1], crossing.pick + 1)};
         ends = {std::min(ends[0], crossing.end + 1), std::max(ends[1], crossing.end + 1)};
     }
-    Json coverage{{"rows", {region.first_row, region.last_row}},
-                  {"columns", {region.first_column, region.last_column}},
-                  {"repeats", {plan.repeats[0], plan.repeats[1]}}};
+    const std::array<std::size_t, 2> rows{region.first_row + 1, (region.last_row + 1) * plan.repeats[0]},
+        columns{region.first_column + 1, (region.last_column + 1) * plan.repeats[1]};
+    Json coverage{{"rows", rows}, {"columns", columns}, {"repeats", {plan.repeats[0], plan.repeats[1]}}};
+    picks[1] *= plan.repeats[0], ends[1] *= plan.repeats[1];
     if (picks[1] > 0) coverage["picks"] = picks, coverage["ends"] = ends;
-    const bool rows = region.first_row == 0 && (region.last_row + 1) * plan.repeats[0] == plan.cloth_rows;
-    const bool columns = region.first_column == 0 && (region.last_column + 1) * plan.repeats[1] == plan.cloth_columns;
-    coverage["whole"] = rows && columns;
+    coverage["of"] = {{"rows", plan.cloth_rows}, {"columns", plan.cloth_columns}};
+    if (const auto cloth = outline(design)) {
+        coverage["of"]["picks"] = cloth->grid.picks();
+        coverage["of"]["ends"] = cloth->grid.ends();
+    }
+    coverage["whole"] = rows[0] == 1 && rows[1] == plan.cloth_rows && columns[0] == 1 && columns[1] == plan.cloth_columns;
     return coverage;
 }
 
@@ -408,7 +412,7 @@ class Simulation {
         const bool balanced = !m_periods || m_periods->balanced;
         yarns.report = {{"design_sha256", yarns.design_sha256},
                         {"scene_sha256", yarns.scene_sha256},
-                        {"coverage", coverage_of(m_plan)},
+                        {"coverage", coverage_of(m_plan, m_design)},
                         {"solver", std::string(sim::name_of(m_options.solver))},
                         {"backend", "cpu"},
                         {"fidelity", std::string(sim::name_of(m_plan.fidelity))},

@@ -61,7 +61,7 @@ Json figures_of(const Yarns& yarns) {
                  {"energy_N_mm", yarns.report.at("energy_N_mm")}};
     const Result<Inspection> inspection = inspect(yarns);
     if (!inspection) return figures;
-    figures["thickness_mm"] = inspection->thickness_mm;
+    if (inspection->thickness_mm) figures["thickness_mm"] = *inspection->thickness_mm;
     if (inspection->warp_crimp) figures["warp_crimp"] = inspection->warp_crimp->mean;
     if (inspection->weft_crimp) figures["weft_crimp"] = inspection->weft_crimp->mean;
     return figures;

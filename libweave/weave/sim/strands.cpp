@@ -150,7 +150,8 @@ std::vector<std::size_t> sheets_of(const Yarns& yarns) {
     return SheetFinder(yarns).run();
 }
 
-std::vector<Strand> strands_of(const Yarns& yarns, const std::vector<CrossingPlace>& places) {
+std::vector<Strand> strands_of(const Yarns& yarns, const std::vector<CrossingPlace>& places,
+                               const std::vector<char>& counted) {
     const std::vector<std::size_t> sheets = sheets_of(yarns);
     std::vector<Strand> strands;
     std::vector<std::size_t> order(yarns.crossings.size());
@@ -164,6 +165,7 @@ std::vector<Strand> strands_of(const Yarns& yarns, const std::vector<CrossingPla
         std::iota(order.begin(), order.end(), std::size_t{0});
         std::ranges::sort(order, {}, key);
         for (const std::size_t i : order) {
+            if (!counted.empty() && counted[i] == 0) continue;
             const auto [number, yarn, at, other] = key(i);
             if (strands.empty() || strands.back().system != system || strands.back().number != number ||
                 strands.back().yarn != yarn)

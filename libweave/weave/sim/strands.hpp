@@ -35,8 +35,10 @@ struct Strand {
     Vec3 moved{0, 0, 0};                 ///< mean of now less planned
 };
 
-/// The strands of a cloth, wefts before warps, each by number.
-std::vector<Strand> strands_of(const Yarns& yarns, const std::vector<CrossingPlace>& places);
+/// The strands of a cloth, wefts before warps, each by number. `counted` tells for each crossing whether it counts;
+/// empty: all do.
+std::vector<Strand> strands_of(const Yarns& yarns, const std::vector<CrossingPlace>& places,
+                               const std::vector<char>& counted = {});
 
 /// For each yarn the number of its sheet. Yarns of one sheet hold one another: from each of them a way leads
 /// to each other, always from a yarn to one that lies above it at a crossing. So a cloth of several sheets

@@ -7,6 +7,7 @@
 #include <cmath>
 #include <cstring>
 #include <limits>
+#include <map>
 
 namespace weave {
 
@@ -64,6 +65,34 @@ Status check_sizes(const SimulatedYarn& yarn) {
     return {};
 }
 
+/// No pick has more wefts: one of each of its feeders.
+constexpr std::size_t most_wefts_of_pick = 2;
+
+/// An end is one yarn, and a pick has one of each feeder: whoever looks for one by its number finds it.
+Status check_numbers(const Yarns& yarns) {
+    std::map<std::pair<System, std::size_t>, std::size_t> seen;
+    for (std::size_t y = 0; y < yarns.yarns.size(); ++y) {
+        const SimulatedYarn& yarn = yarns.yarns[y];
+        const bool warp = yarn.system == System::warp;
+        if (++seen[{yarn.system, yarn.number}] <= (warp ? 1 : most_wefts_of_pick)) continue;
+        const std::string number = std::to_string(yarn.number);
+        return bad_input(warp ? "is warp " + number + " again: an end is one yarn"
+                              : "is the third weft of number " + number + ": a pick has one or two feeders",
+                         yarn_place(y) + ".number");
+    }
+    return {};
+}
+
+/// What repeats does so after some length.
+Status check_periods(const Yarns& yarns) {
+    for (std::size_t axis = 0; axis < 2; ++axis) {
+        if (yarns.is_periodic[axis] && !(yarns.size_mm[axis] > 0))
+            return bad_input("must be above 0 where the piece is periodic",
+                             "size_mm[" + std::to_string(axis) + "]");
+    }
+    return {};
+}
+
 Status check_crossing(const Yarns& yarns, const Crossing& crossing) {
     const auto is_of = [&](std::size_t yarn, System system) {
         return yarn < yarns.yarns.size() && yarns.yarns[yarn].system == system;
@@ -71,6 +100,10 @@ Status check_crossing(const Yarns& yarns, const Crossing& crossing) {
     const auto number = static_cast<std::size_t>(most_yarn_number);
     if (!is_of(crossing.weft, System::weft)) return bad_input("names a weft that is not there");
     if (!is_of(crossing.warp, System::warp)) return bad_input("names a warp that is not there");
+    if (yarns.yarns[crossing.warp].number != crossing.end)
+        return bad_input("names another end than that of its warp");
+    if (yarns.yarns[crossing.weft].number > crossing.pick)
+        return bad_input("names a pick before the first of its weft");
     if (crossing.weft_key >= most_file_points || crossing.warp_key >= most_file_points)
         return bad_input("has a key point beyond the limit");
     if (crossing.pick > number || crossing.end > number)
@@ -82,6 +115,60 @@ Status check_crossings(const Yarns& yarns) {
     for (std::size_t i = 0; i < yarns.crossings.size(); ++i) {
         if (auto status = check_crossing(yarns, yarns.crossings[i]); !status)
             return std::move(status).error().under("crossings[" + std::to_string(i) + "]");
+    }
+    return {};
+}
+
+// ---- Report ----
+
+bool is_amount(const Json& json) {
+    return json.is_number() && json.get<double>() >= 0 && json.get<double>() <= largest_number;
+}
+bool is_count(const Json& json) {
+    return json.is_number_unsigned() || (json.is_number_integer() && json.get<std::int64_t>() >= 0);
+}
+bool is_flag(const Json& json) {
+    return json.is_boolean();
+}
+bool is_curvature(const Json& json) {
+    return json == "positive" || json == "negative" || json == "not looked";
+}
+bool is_deviation(const Json& json) {
+    const auto fits = [](const Json& share) { return share.is_null() || is_amount(share); };
+    return json.is_object() && std::ranges::all_of(json, fits);
+}
+
+/// A member of a report that people are told, and what it can be.
+struct ReportMember {
+    const char* name;
+    bool (*fits)(const Json&);
+    const char* wish;
+};
+constexpr const char* wish_amount = "must be a number from 0 on";
+constexpr const char* wish_count = "must be a whole number from 0 on";
+constexpr const char* wish_flag = "must be true or false";
+constexpr ReportMember report_members[]{
+    {"converged", is_flag, wish_flag},
+    {"order_kept", is_flag, wish_flag},
+    {"residual", is_amount, wish_amount},
+    {"goal", is_amount, wish_amount},
+    {"max_overlap", is_amount, wish_amount},
+    {"seconds", is_amount, wish_amount},
+    {"points", is_count, wish_count},
+    {"contacts", is_count, wish_count},
+    {"iterations", is_count, wish_count},
+    {"lost_crossings", is_count, wish_count},
+    {"slid_crossings", is_count, wish_count},
+    {"smallest_curvature", is_curvature, "must be \"positive\", \"negative\" or \"not looked\""},
+    {"strain_deviation", is_deviation, "must be an object of numbers from 0 on"},
+};
+
+/// None of its members need be there, but what is there is what a run can have ended with.
+Status check_report(const Json& report) {
+    for (const ReportMember& member : report_members) {
+        const auto found = report.find(member.name);
+        if (found != report.end() && !member.fits(*found))
+            return bad_input(member.wish, std::string("report.") + member.name);
     }
     return {};
 }
@@ -271,6 +358,9 @@ Result<Header> read_header(std::string_view text) {
     WEAVE_CHECK_OK(reader.status());
     WEAVE_CHECK_OK(check_hash(yarns.design_sha256, "design_sha256"));
     WEAVE_CHECK_OK(check_hash(yarns.scene_sha256, "scene_sha256"));
+    WEAVE_CHECK_OK(check_periods(yarns));
+    WEAVE_CHECK_OK(check_numbers(yarns));
+    WEAVE_CHECK_OK(check_report(yarns.report));
     return header;
 }
 
