@@ -284,6 +284,22 @@ TEST_CASE("a free period shrinks to where no force is left on its rim") {
     CHECK(again.at("periods").at("size_mm").at(1).get<double>() == Approx(yarns.size_mm[1]).epsilon(1e-3));
 }
 
+TEST_CASE("a period that does not settle is told with its force, and who looks at the yarns later sees the same cloth") {
+    const Workshop shop;
+    shop.must({"samples", "plain", "-o", "d.weave"});
+    for (const char* rim : {"y=relaxing:-1000", "x=relaxing:5", "y=relaxing:0.2"}) {
+        INFO(rim);
+        const Json said = shop.json({"simulate", "d.weave", "--threads", "1", "--boundary", rim, "-o", "r.yarns"}, std::string(rim) == "y=relaxing:0.2" ? 0 : 1);
+        const Json seen = shop.json({"inspect", "r.yarns"}, said.at("converged").get<bool>() ? 0 : 1);
+        CHECK(said.at("converged") == said.at("periods").at("balanced"));
+        CHECK((said.at("ending") == "periods") == !said.at("converged").get<bool>());
+        CHECK(seen.at("slid_crossings").size() == said.at("slid_crossings").get<std::size_t>());
+        CHECK(seen.at("order_kept") == said.at("order_kept"));
+    }
+    const Ended told = shop.run({"simulate", "d.weave", "--threads", "1", "--boundary", "x=relaxing:5", "-o", "r.yarns"});
+    CHECK(told.out.find("the period along x is NOT settled") != std::string::npos);
+}
+
 TEST_CASE("pinned yarns and crossings stay where they are planned") {
     const Workshop shop;
     shop.must({"samples", "layer-to-layer", "-o", "d.weave"});

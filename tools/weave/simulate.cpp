@@ -232,6 +232,22 @@ std::string interruption_in_words(const Json& report) {
     return text + "\n";
 }
 
+/// Periods that should have relaxed and did not come to the force asked for.
+std::string periods_in_words(const Json& report) {
+    if (!report.contains("periods") || report.at("periods").at("balanced").get<bool>()) return "";
+    const Json& periods = report.at("periods");
+    std::string text;
+    for (const std::size_t k : {0, 1}) {
+        if (periods.at("asked_N").at(k).is_null()) continue;
+        char line[200];
+        std::snprintf(line, sizeof line, "the period along %c is NOT settled after %zu rounds: its rim pulls with %.3g N, asked for were %.3g N\n",
+                      k == 0 ? 'x' : 'y', periods.at("rounds").get<std::size_t>(), periods.at("force_N").at(k).get<double>(),
+                      periods.at("asked_N").at(k).get<double>());
+        text += line;
+    }
+    return text;
+}
+
 std::string ending_in_words(const Json& report) {
     char line[200];
     std::snprintf(line, sizeof line, "%s: residual %.1e (goal %.0e) after %zu steps and %.2f s, %zu points, greatest overlap %.0f %%\n",
@@ -243,7 +259,7 @@ std::string ending_in_words(const Json& report) {
     std::string order = lost > 0 ? counted(lost, "crossing") + " no longer as the card says\n"
                         : slid > 0 ? "" : "every crossing lies as the card says\n";
     if (slid > 0) order += counted(slid, "crossing") + " no longer where planned, open or not held; no yarn passed through another there\n";
-    return line + order + coverage_in_words(report) + friction_in_words(report) + flips_in_words(report) +
+    return line + periods_in_words(report) + order + coverage_in_words(report) + friction_in_words(report) + flips_in_words(report) +
            sim::starts_text(report) + sim::symmetry_text(report) + interruption_in_words(report);
 }
 

@@ -398,11 +398,28 @@ class Simulation {
                            {"settle_seconds", settle_seconds}, {"settle_iterations", done ? m_last.iterations : 0}});
     }
 
+    /// The planned places in the periods reached, so that whoever compares them with the yarns looks at the same
+    /// cloth: what the yarns say of themselves is that of these periods.
+    void plan_in_periods_reached() {
+        ClothCurves& curves = m_plan.curves;
+        Vec3 grown(1, 1, 1);
+        for (std::size_t k = 0; k < 2; ++k) {
+            if (!m_scene.is_periodic[k]) continue;
+            grown[static_cast<int>(k)] = m_scene.period_mm[k] / curves.size_mm[k];
+            curves.size_mm[k] = m_scene.period_mm[k];
+        }
+        for (YarnCurve& curve : curves.yarns) {
+            for (KeyPoint& key : curve.keys) key.place = key.place.cwiseProduct(grown);
+            curve.shift = curve.shift.cwiseProduct(grown);
+        }
+        for (SimYarn& yarn : m_plan.scene.yarns) {
+            for (Vec3& place : yarn.control) place = place.cwiseProduct(grown);
+            yarn.shift = yarn.shift.cwiseProduct(grown);
+        }
+    }
+
     Yarns measured() {
-        // What the yarns say of themselves is that of the periods reached.
-        m_plan.curves.size_mm = {m_scene.is_periodic[0] ? m_scene.period_mm[0] : m_plan.curves.size_mm[0],
-                                 m_scene.is_periodic[1] ? m_scene.period_mm[1] : m_plan.curves.size_mm[1]};
-        for (std::size_t y = 0; y < m_scene.yarns.size(); ++y) m_plan.scene.yarns[y].shift = m_scene.yarns[y].shift;
+        plan_in_periods_reached();
         const RelaxedRepeat result(m_design, m_plan, *m_energy, m_state);
         const Contacts contacts = contacts_of(*m_energy, m_state);
         const CrossingOrder order = crossing_order(m_plan.curves, splines());
@@ -445,7 +462,9 @@ class Simulation {
                                         {"farthest_slip_mm", m_friction.slip.farthest_mm}};
         }
         if (m_periods) {
+            const auto asked = [&](std::size_t k) { return m_plan.rim_force_N[k] ? Json(*m_plan.rim_force_N[k]) : Json(); };
             yarns.report["periods"] = {{"size_mm", m_plan.curves.size_mm}, {"force_N", m_periods->force_N},
+                                       {"asked_N", {asked(0), asked(1)}},
                                        {"rounds", m_periods->rounds}, {"balanced", m_periods->balanced}};
         }
         return yarns;
