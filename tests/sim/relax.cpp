@@ -245,6 +245,24 @@ TEST_CASE("a rest that is none but a saddle is left: a straight rod that is pres
     CHECK(rest.energy < 0.5 * saddle.energy);
 }
 
+TEST_CASE("what is at rest is so under its own law of stretch, however loose the goal and long the start") {
+    // Wefts laid twice as long as they are give way at first.
+    for (const double goal : {40.0, 20.0, 10.0, 5.0, 2.5, 1.2, 0.6, 0.3, 0.15, 1e-4}) {
+        INFO("goal " << goal);
+        SimScene scene = plain_weave({.count = 2, .swing = 0.7});
+        for (SimYarn& yarn : scene.yarns) {
+            yarn.is_fed = false;
+            yarn.rest_mm = 0.5 * control_length(yarn);
+        }
+        Bench bench(scene);
+        const RelaxResult result = relax(bench.energy, bench.state, {.residual = goal, .watch = {}});
+        REQUIRE(result.ending == Ending::converged);
+        CHECK(result.residual <= goal);
+        CHECK(bench.evaluate() == Approx(result.energy).epsilon(1e-12));
+        CHECK(greatest_force(bench.executor, bench.gradient) / reference_force(bench.energy, bench.state) <= goal * (1 + 1e-9));
+    }
+}
+
 TEST_CASE("points that lie on one another are spread along their yarn before it relaxes; held ones stay") {
     SimScene scene = plain_weave({.count = 2});
     for (const std::size_t i : {3, 4, 5}) scene.yarns[0].control[i] = scene.yarns[0].control[2];

@@ -12,6 +12,14 @@ constexpr double contact_floor = 0.01;
 /// Share of their distance by which yarns may come closer in one step: below a half, so that both may.
 constexpr double closest = 0.45;
 
+/// What of `apart` is across two nearly parallel directions, the same whichever of them comes first.
+template <class Real>
+Vec<Real> away_from(const Vec<Real>& apart, const Vec<Real>& along, const Vec<Real>& other) {
+    const Real turn = along.dot(other) < 0 ? Real(-1) : Real(1);
+    const Vec<Real> both = along / along.norm() + turn * other / other.norm();
+    return apart - both * (both.dot(apart) / both.squaredNorm());
+}
+
 }  // namespace
 
 template <class Real>
@@ -195,14 +203,6 @@ double Energy<Real>::safe_share_of(const FabricView<Real>& fabric, std::size_t a
         share =
             std::min(share, closest * std::sqrt(static_cast<double>(apart2) / static_cast<double>(change2)));
     return share;
-}
-
-/// What of `apart` is across two nearly parallel directions, the same whichever of them comes first.
-template <class Real>
-static Vec<Real> away_from(const Vec<Real>& apart, const Vec<Real>& along, const Vec<Real>& other) {
-    const Real turn = along.dot(other) < 0 ? Real(-1) : Real(1);
-    const Vec<Real> both = along / along.norm() + turn * other / other.norm();
-    return apart - both * (both.dot(apart) / both.squaredNorm());
 }
 
 /// Yarns that lie deep in one another may pass between their samples: there it counts how far apart the

@@ -154,11 +154,8 @@ template <class Real>
 std::string crushed_words(const Fabric<Real>& fabric, const std::vector<Real>& state) {
     for (std::size_t y = 0; y < fabric.yarns().size(); ++y) {
         const SimYarn& yarn = fabric.scene().yarns[y];
-        const YarnPlace& place = fabric.yarns()[y];
         if (yarn.is_fed || yarn.rest_mm <= 0) continue;
-        double length = 0;
-        for (std::size_t s = 0; s < place.segments; ++s)
-            length += double(Speeds<Real>(fabric.gauss(), &state[3 * (place.first_slot + s)]).length);
+        const double length = fabric.length_mm(state, y);
         if (length < 0.5 * yarn.rest_mm)
             return words(", yarn %.0f lies in %.0f %% of its length", static_cast<double>(y + 1),
                          100 * length / yarn.rest_mm);

@@ -147,6 +147,15 @@ std::vector<std::vector<Vec3>> Fabric<Real>::control(const std::vector<Real>& st
 }
 
 template <class Real>
+double Fabric<Real>::length_mm(const std::vector<Real>& state, std::size_t yarn) const {
+    const YarnPlace& place = m_places[yarn];
+    double length = 0;
+    for (std::size_t s = 0; s < place.segments; ++s)
+        length += static_cast<double>(Speeds<Real>(m_gauss, &state[3 * (place.first_slot + s)]).length);
+    return length;
+}
+
+template <class Real>
 void Fabric<Real>::follow(std::vector<Real>& state) const {
     follow_change(state);
     for (const FollowSlot& follow : m_follows) {

@@ -66,6 +66,8 @@ class Fabric {
     [[nodiscard]] std::vector<Real> state() const;
     /// The control points of a state, yarn by yarn.
     [[nodiscard]] std::vector<std::vector<Vec3>> control(const std::vector<Real>& state) const;
+    /// Length of a yarn's centreline in a state.
+    [[nodiscard]] double length_mm(const std::vector<Real>& state, std::size_t yarn) const;
     /// Places the following slots of a state.
     void follow(std::vector<Real>& state) const;
     /// The same for a change of state: no periods are added.

@@ -65,11 +65,7 @@ double greatest_strain(const Fabric<Real>& fabric, const std::vector<Real>& stat
     double greatest = 0;
     for (std::size_t y = 0; y < fabric.yarns().size(); ++y) {
         if (fabric.scene().yarns[y].is_fed) continue;
-        const YarnPlace& place = fabric.yarns()[y];
-        double length = 0;
-        for (std::size_t s = 0; s < place.segments; ++s)
-            length += static_cast<double>(Speeds<Real>(fabric.gauss(), &state[3 * (place.first_slot + s)]).length);
-        greatest = std::max(greatest, length / fabric.scene().yarns[y].rest_mm - 1);
+        greatest = std::max(greatest, fabric.length_mm(state, y) / fabric.scene().yarns[y].rest_mm - 1);
     }
     return greatest;
 }
@@ -97,7 +93,7 @@ class Relaxing {
         m_value = m_energy.evaluate(m_state, m_gradient);
         while (true) {
             m_result.residual = residual_of(m_gradient);
-            if (m_gives && (m_result.residual <= residual_that_tightens || m_result.iterations == m_options.most_iterations)) tighten();
+            if (m_gives && m_result.residual <= std::max(residual_that_tightens, m_options.residual)) tighten();
             // Rest is judged by the forces of this state: those of a crushed start would hide what is left.
             if (m_result.residual <= m_options.residual) measure_anew();
             const Progress progress{m_result.iterations, m_result.residual, m_value, seconds_since(m_start)};

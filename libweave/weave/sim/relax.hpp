@@ -56,8 +56,8 @@ double reference_force(Energy<Real>& energy, const std::vector<Real>& state);
 template <class Real>
 double greatest_force(const Executor& executor, const std::vector<Real>& gradient);
 
-/// Relaxes to an equilibrium by damped Newton steps: the matrix is convex far from rest and exact near it,
-/// preconditioned conjugate gradients solve for the step, and no step lets yarns pass through one another.
+/// Relaxes to an equilibrium: by steps that learn from the energy's history far from rest (descent.hpp), by Newton's in a
+/// trust region near it or where the others stall (newton.hpp). No step lets yarns pass through one another.
 template <class Real>
 RelaxResult relax(Energy<Real>& energy, std::vector<Real>& state, const RelaxOptions& options);
 

@@ -15,7 +15,7 @@ namespace weave::sim {
 
 /// Which solver relaxes.
 enum class Solver : std::uint8_t {
-    relax,  ///< damped Newton steps (relax.hpp)
+    relax,  ///< steps that learn, Newton's near rest (relax.hpp)
     paper,  ///< motion in time, as the paper did it (paper.hpp): slow, the baseline
 };
 
