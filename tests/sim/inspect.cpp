@@ -173,7 +173,7 @@ TEST_CASE(
     CHECK(says("The rest is a SADDLE: a little push would lead on"));
     yarns.report["smallest_curvature"] = "positive";
     CHECK(carried() == "positive");
-    CHECK(says("The rest holds"));
+    CHECK(says("The energy curves up in every direction looked at"));
     yarns.report["smallest_curvature"] = "not looked";
     CHECK(says("Nobody looked whether the rest holds"));
     yarns.report["strain_deviation"] = {{"warp", 0.0003}, {"weft", nullptr}};

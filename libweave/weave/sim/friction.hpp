@@ -130,7 +130,7 @@ struct PlaceTangents {
         for (std::uint32_t k = 0; k < yarn.samples; ++k) {
             const Vec<Real> tangent = combine(fabric.bases[yarn.basis + k].slope, slots);
             const Vec<Real> unit = tangent / guarded(tangent.norm(), yarn);
-            for (int c = 0; c < 3; ++c) tangents[3 * (segment.sample + k) + std::size_t(c)] = unit[c];
+            for (int c = 0; c < 3; ++c) tangents[3 * std::size_t(segment.sample + k) + std::size_t(c)] = unit[c];
         }
     }
 };

@@ -92,7 +92,7 @@ std::string rest_text(const Json& report) {
     const bool rests = sim::part_of(report, "converged") == true;
     const Json curvature = rests ? sim::smallest_curvature(report) : Json(nullptr);
     if (curvature == "negative") text += "The rest is a SADDLE: a little push would lead on\n";
-    if (curvature == "positive") text += "The rest holds: after every small push the yarns come back\n";
+    if (curvature == "positive") text += "The energy curves up in every direction looked at: no small push was found that leads away from this rest\n";
     if (curvature == "not looked") text += "Nobody looked whether the rest holds or is a saddle\n";
     const Json strain = sim::part_of(report, "strain_deviation");
     std::string each;
