@@ -268,7 +268,11 @@ class Simulation {
 
     Yarns run() {
         if (m_options.start) m_scene = scene_at(m_plan, *m_options.start);
+        if (m_options.coarser != nullptr) {
+            if (std::optional<Yarns> ended = begin_coarser()) return std::move(*ended);
+        }
         relax_scene();
+        m_scene.slip_from.reset();  // what follows begins anew
         for (const Flip& flip : m_options.flips) {
             if (m_last.ending == Ending::stopped || m_last.ending == Ending::time) break;
             make(flip);
@@ -277,6 +281,39 @@ class Simulation {
     }
 
   private:
+    /// Relaxes the coarser plan and takes its yarns over; gives them where the run ends with them.
+    std::optional<Yarns> begin_coarser() {
+        SimulationOptions options = m_options;
+        options.residual.reset();
+        options.flips.clear();
+        options.coarser = nullptr;
+        Simulation coarser(m_design, *m_options.coarser, options);
+        Yarns yarns = coarser.run();
+        const Ending ending = coarser.m_last.ending;
+        if (ending == Ending::stopped || ending == Ending::time) return yarns;
+        if (m_options.after_coarser && !m_options.after_coarser(yarns)) return yarns;
+        m_seconds = coarser.m_seconds;
+        m_iterations = coarser.m_iterations;
+        m_evaluations = coarser.m_evaluations;
+        const std::optional<StartState> start =
+            refined_start(m_plan, *m_options.coarser, {controls_of(coarser.m_scene), coarser.m_scene.period_mm});
+        m_coarser = {{"taken", start.has_value()}};
+        for (const char* name : {"fidelity", "points_per_key", "points", "goal", "residual", "ending", "iterations", "seconds",
+                                 "energy_N_mm", "lost_crossings"})
+            m_coarser[name] = yarns.report.at(name);
+        if (!start) return {};
+        m_scene = scene_at(m_plan, *start);
+        // Both levels are one way from the plan to the rest.
+        if (m_scene.friction > 0) m_scene.slip_from = SlipStart{controls_of(m_plan.scene), m_plan.scene.period_mm};
+        return {};
+    }
+
+    static std::vector<std::vector<Vec3>> controls_of(const SimScene& scene) {
+        std::vector<std::vector<Vec3>> control;
+        for (const SimYarn& yarn : scene.yarns) control.push_back(yarn.control);
+        return control;
+    }
+
     [[nodiscard]] RelaxOptions relax_options() const {
         RelaxOptions options;
         options.residual = m_options.residual.value_or(m_plan.goal);
@@ -332,11 +369,7 @@ class Simulation {
 
     [[nodiscard]] std::size_t lost() const { return lost_crossings(m_plan.curves, splines()).size(); }
 
-    [[nodiscard]] std::vector<Spline> splines() const {
-        std::vector<std::vector<Vec3>> control;
-        for (const SimYarn& yarn : m_scene.yarns) control.push_back(yarn.control);
-        return splines_of(std::move(control));
-    }
+    [[nodiscard]] std::vector<Spline> splines() const { return splines_of(controls_of(m_scene)); }
 
     /// Of control points of every yarn of the scene: one for each planned curve.
     [[nodiscard]] std::vector<Spline> splines_of(std::vector<std::vector<Vec3>> control) const {
@@ -455,6 +488,7 @@ class Simulation {
                         {"plan", lines_json(m_plan)},
                         {"peak_bytes", peak_bytes()}};
         if (!m_options.flips.empty()) yarns.report["flips"] = m_flips;
+        if (!m_coarser.is_null()) yarns.report["coarser"] = m_coarser;
         if (m_scene.friction > 0) {
             yarns.report["friction"] = {{"coefficient", m_scene.friction}, {"rounds", m_friction.rounds},
                                         {"agreed", m_friction.agreed}, {"press_N", m_friction.slip.press_N},
@@ -505,7 +539,7 @@ class Simulation {
     RelaxResult m_last;
     FrictionResult m_friction;
     std::optional<PeriodsResult> m_periods;
-    Json m_flips = Json::array();
+    Json m_flips = Json::array(), m_coarser;
     double m_seconds = 0;
     std::size_t m_iterations = 0, m_evaluations = 0;
 };
