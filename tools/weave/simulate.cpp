@@ -385,6 +385,8 @@ Status start_coarser(const Block& block, Task& task, const sim::Plan& plan, cons
     sim::SimulationRequest request = task.request;
     request.points_per_key.reset();
     WEAVE_TRY(request.fidelity, sim::parse_fidelity(start_from));
+    // Half as many points alone save little: work follows the contact samples. At up to 0.45 no yarn was seen to pass another.
+    if (request.fidelity == sim::Fidelity::draft) request.sample_spacing = 0.4;
     WEAVE_TRY(task.coarser, plan_of(task.design, block, request, wish.file));
     if (task.coarser->points_per_key >= plan.points_per_key)
         return usage_error("has no fewer points than what is asked for", "--start-from " + start_from);
