@@ -200,16 +200,11 @@ std::vector<SimulatedYarn> copies_of(const Yarns& repeat, System system, std::si
 Yarns copied_back(Yarns yarns, const Plan& plan, const Design& design) {
     const std::array<std::size_t, 2>& times = plan.repeats;
     if (times[0] * times[1] == 1) return yarns;
-    struct {
-        std::size_t picks = 0, ends = 0;
-    } count;
-    for (const Crossing& crossing : plan.curves.crossings) {
-        count.picks = std::max(count.picks, crossing.pick + 1);
-        count.ends = std::max(count.ends, crossing.end + 1);
-    }
-    const std::vector<SimulatedYarn> wefts = copies_of(yarns, System::weft, times[0], times[1], count.picks,
+    // Not counted from the crossings: the last pick of a repeat may have no weft, its last end may be loose.
+    const std::size_t picks = plan.cloth_picks / times[0], ends = plan.cloth_ends / times[1];
+    const std::vector<SimulatedYarn> wefts = copies_of(yarns, System::weft, times[0], times[1], picks,
                                                        Vec3(yarns.size_mm[0], 0, 0), design),
-                                     warps = copies_of(yarns, System::warp, times[1], times[0], count.ends,
+                                     warps = copies_of(yarns, System::warp, times[1], times[0], ends,
                                                        Vec3(0, yarns.size_mm[1], 0), design);
     Yarns whole = yarns;
     whole.region = {0, plan.cloth_rows - 1, 0, plan.cloth_columns - 1};
@@ -226,8 +221,8 @@ Yarns copied_back(Yarns yarns, const Plan& plan, const Design& design) {
                 crossing.warp_key += x * warp.keys.size();
                 crossing.weft += x * weft_yarns;
                 crossing.warp = wefts.size() + y * warp_yarns + (crossing.warp - weft_yarns);
-                crossing.pick += x * count.picks;
-                crossing.end += y * count.ends;
+                crossing.pick += x * picks;
+                crossing.end += y * ends;
                 whole.crossings.push_back(crossing);
             }
         }
@@ -237,7 +232,7 @@ Yarns copied_back(Yarns yarns, const Plan& plan, const Design& design) {
 }
 
 /// What of the cloth the yarns cover, first and last from 1, once a repeat has been copied back over it.
-Json coverage_of(const Plan& plan, const Design& design) {
+Json coverage_of(const Plan& plan) {
     const Region& region = plan.curves.region;
     std::array<std::size_t, 2> picks{SIZE_MAX, 0}, ends{SIZE_MAX, 0};
     for (const Crossing& crossing : plan.curves.crossings) {
@@ -247,13 +242,11 @@ Json coverage_of(const Plan& plan, const Design& design) {
     const std::array<std::size_t, 2> rows{region.first_row + 1, (region.last_row + 1) * plan.repeats[0]},
         columns{region.first_column + 1, (region.last_column + 1) * plan.repeats[1]};
     Json coverage{{"rows", rows}, {"columns", columns}, {"repeats", {plan.repeats[0], plan.repeats[1]}}};
-    picks[1] *= plan.repeats[0], ends[1] *= plan.repeats[1];
-    if (picks[1] > 0) coverage["picks"] = picks, coverage["ends"] = ends;
-    coverage["of"] = {{"rows", plan.cloth_rows}, {"columns", plan.cloth_columns}};
-    if (const auto cloth = outline(design)) {
-        coverage["of"]["picks"] = cloth->grid.picks();
-        coverage["of"]["ends"] = cloth->grid.ends();
-    }
+    picks[1] += (plan.repeats[0] - 1) * (plan.cloth_picks / plan.repeats[0]);
+    ends[1] += (plan.repeats[1] - 1) * (plan.cloth_ends / plan.repeats[1]);
+    if (picks[0] <= picks[1]) coverage["picks"] = picks, coverage["ends"] = ends;
+    coverage["of"] = {{"rows", plan.cloth_rows}, {"columns", plan.cloth_columns},
+                      {"picks", plan.cloth_picks}, {"ends", plan.cloth_ends}};
     coverage["whole"] = rows[0] == 1 && rows[1] == plan.cloth_rows && columns[0] == 1 && columns[1] == plan.cloth_columns;
     return coverage;
 }
@@ -462,7 +455,7 @@ class Simulation {
         const bool balanced = !m_periods || m_periods->balanced;
         yarns.report = {{"design_sha256", yarns.design_sha256},
                         {"scene_sha256", yarns.scene_sha256},
-                        {"coverage", coverage_of(m_plan, m_design)},
+                        {"coverage", coverage_of(m_plan)},
                         {"solver", std::string(sim::name_of(m_options.solver))},
                         {"backend", "cpu"},
                         {"fidelity", std::string(sim::name_of(m_plan.fidelity))},
