@@ -42,7 +42,7 @@ async function show() {
         const content = await view.show({ ...target?.names, me, go, refresh: show, signed_in, search: new URLSearchParams(location.search) });
         if (here !== location.href) return;
         shown = content;
-        main.replaceChildren(...[content.body].flat());
+        main.replaceChildren(...[content.body].flat(3).filter(Boolean));
         document.title = content.title + ' · loomlink';
     } catch (error) {
         if (here !== location.href) return;

@@ -12,9 +12,9 @@ export function svg(tag, properties = {}, ...children) {
 
 function fill(element, properties, children) {
     for (const [name, value] of Object.entries(properties)) {
-        if (value === undefined || value === null || value === false) continue;
+        if (value === undefined || value === null || (value === false && !name.startsWith('aria-'))) continue;
         if (name.startsWith('on')) element.addEventListener(name.slice(2), value);
-        else element.setAttribute(name, value === true ? '' : String(value));
+        else element.setAttribute(name, value === true && !name.startsWith('aria-') ? '' : String(value));
     }
     element.append(...children.flat(3).filter(child => child !== null && child !== undefined && child !== false));
     return element;
@@ -24,11 +24,11 @@ function fill(element, properties, children) {
 export const link = (to, properties, ...children) => h('a', { href: to, ...properties }, ...children);
 
 /** A time as the reader's clock shows it, with the exact one on hover. */
-export function when(iso) {
+export function when(iso, to_the_second = false) {
     const time = new Date(iso);
     if (Number.isNaN(time.getTime())) return h('span', {}, String(iso));
     return h('time', { datetime: iso, title: iso },
-        time.toLocaleString(undefined, { dateStyle: 'medium', timeStyle: 'short' }));
+        time.toLocaleString(undefined, { dateStyle: 'medium', timeStyle: to_the_second ? 'medium' : 'short' }));
 }
 
 /** The first characters of a hash; the whole of it is read out and copied by its button. */

@@ -29,7 +29,7 @@ export async function show({ search, go }) {
             h('section', { class: 'card' }, facts([['Records', head.size.toLocaleString('en')], ['Root', hash(head.root)], ['Signed', when(head.at)]]), verdict,
                 h('p', { class: 'hint' }, 'Offline: ', h('code', {}, 'loomlink audit verify audit-bundle.json --key KEY'))),
             h('form', { class: 'row', onsubmit: event => { event.preventDefault(); go(`/log?from=0&design=${encodeURIComponent(filter.value)}`); } }, filter, h('button', {}, 'Show')),
-            table('Records', ['No.', 'When', 'Who', 'What', 'About', 'Why', 'Signed'], events.map(event => [event.seq, when(event.at), event.actor, event.kind, event.subject ?? '', event.reason ?? '', event.signed ? '✓ ' + event.signed : ''])),
+            table('Records', ['No.', 'When', 'Who', 'What', 'About', 'Why', 'Signed'], events.toReversed().map(event => [event.seq, when(event.at, true), event.actor, event.kind, event.subject ?? '', event.reason ?? '', event.signed ? '✓ ' + event.signed : ''])),
             h('nav', { class: 'buttons', 'aria-label': 'Pages' }, from > 0 ? h('a', { class: 'button', href: to(from - page) }, 'Older') : null,
                 events.length === page && from + page <= last ? h('a', { class: 'button', href: to(from + page) }, 'Newer') : null)],
     };

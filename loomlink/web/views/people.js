@@ -28,7 +28,7 @@ export async function show({ refresh }) {
     return {
         title: 'People',
         body: [h('div', { class: 'head' }, h('h1', {}, 'People'), h('div', { class: 'buttons' }, h('button', { type: 'button', onclick: change_policy }, 'Policy …'), h('button', { type: 'button', class: 'main', onclick: invite }, 'Invite …'))),
-            table('People', ['Name', 'Full name', 'Roles', 'Key', ''], people.map(person => [person.name, person.full_name, person.active ? person.roles.join(', ') : 'disabled', person.key ? hash(person.key) : 'none',
+            table('People', ['Name', 'Full name', 'Roles', 'Key', 'Change'], people.map(person => [person.name, person.full_name, person.active ? person.roles.join(', ') : 'disabled', person.key ? hash(person.key) : 'none',
                 h('div', { class: 'buttons' }, h('button', { type: 'button', onclick: () => change_roles(person) }, 'Roles …'), h('button', { type: 'button', onclick: () => reset(person) }, 'New key …'),
                     h('button', { type: 'button', onclick: () => post(at('people', person.name, person.active ? 'disable' : 'enable')).then(done('Done'), error => say(error.message)) }, person.active ? 'Disable' : 'Enable'))]))],
     };

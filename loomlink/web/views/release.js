@@ -40,7 +40,7 @@ export async function show({ loom, release, me, refresh }) {
             h('a', { class: 'button', href: `${api}/files/${encodeURIComponent(file.name)}`, download: file.name }, 'Pull ' + file.name), ' ',
             h('span', {}, size(file.size)), ' ', hash(file.sha256)))),
             h('p', { class: 'hint' }, 'Pull all files and the manifest into one folder, then check it before loading: ', h('code', {}, 'loomlink verify-files FOLDER'),
-                '. The program ', h('code', {}, `loomlink pull ${loom} ${release}`), ' does both.')),
+                '. The program ', h('code', {}, `loomlink pull '${loom}' ${release}`), ' does both.')),
         h('div', { class: 'go_to' }, h('form', { onsubmit: event => { event.preventDefault(); show_pick(asked()); } }, field('Go to pick', number), h('button', { class: 'main' }, 'Go')),
             h('button', { type: 'button', 'aria-label': 'One pick back', onclick: () => step(-1) }, '−'), h('button', { type: 'button', 'aria-label': 'One pick on', onclick: () => step(1) }, '+'),
             h('button', { type: 'button', onclick: keep }, 'Remember as last woven')),

@@ -60,7 +60,7 @@ function checks(path, content, looms) {
         try {
             const report = await get(`${path}/check?loom=${encodeURIComponent(choice.value)}`);
             place.replaceChildren(h('p', {}, `${counted(report.errors, 'error')}, ${counted(report.warnings, 'warning')}, ${counted(report.not_evaluated.length, 'rule')} not evaluated.`),
-                report.findings.length === 0 ? h('p', { class: 'good' }, 'Nothing was found.') : table('Findings', ['', 'Rule', 'Pick', 'End', 'What'], report.findings.map(finding =>
+                report.findings.length === 0 ? h('p', { class: 'good' }, 'Nothing was found.') : table('Findings', ['Severity', 'Rule', 'Pick', 'End', 'What'], report.findings.map(finding =>
                     [h('span', { class: 'severity ' + finding.severity }, finding.severity), finding.rule, finding.pick ?? '', finding.end ?? '', finding.message])));
         } catch (error) {
             place.replaceChildren(h('p', { class: 'trouble', role: 'alert' }, error.message));
@@ -73,7 +73,7 @@ function checks(path, content, looms) {
 
 function evidence(content) {
     return h('section', { class: 'card' }, h('h2', {}, 'Evidence'), content.evidence.length === 0 ? h('p', { class: 'empty' }, 'No evidence yet.')
-        : table('Evidence', ['Kind', 'Of', 'Result', 'Signed by', 'When', ''], content.evidence.map(item => [item.kind, item.covers, item.result, item.signer, when(item.at),
+        : table('Evidence', ['Kind', 'Of', 'Result', 'Signed by', 'When', 'Counts'], content.evidence.map(item => [item.kind, item.covers, item.result, item.signer, when(item.at),
             item.stale ? h('span', { class: 'state withdrawn', title: item.stale }, 'stale: ' + item.stale) : h('span', { class: 'good' }, 'counts')])));
 }
 
