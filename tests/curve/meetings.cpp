@@ -46,17 +46,38 @@ std::vector<Vec3> samples_of(const YarnCurve& yarn) {
     return samples;
 }
 
-/// The least distance of samples of different yarns, images up to two repeats away.
+/// The corners of the least box around places.
+std::array<Vec3, 2> box_of(const std::vector<Vec3>& places) {
+    std::array<Vec3, 2> box{places.front(), places.front()};
+    for (const Vec3& place : places) box = {box[0].cwiseMin(place), box[1].cwiseMax(place)};
+    return box;
+}
+
+/// The least distance of samples of different yarns, all their images included.
 double brute_least(const ClothCurves& curves) {
     std::vector<std::vector<Vec3>> samples;
-    for (const YarnCurve& yarn : curves.yarns) samples.push_back(samples_of(yarn));
+    std::vector<std::array<Vec3, 2>> boxes;
+    for (const YarnCurve& yarn : curves.yarns) {
+        samples.push_back(samples_of(yarn));
+        boxes.push_back(box_of(samples.back()));
+    }
     double least = 1e300;
-    const int x = curves.is_periodic[0] ? 2 : 0, y = curves.is_periodic[1] ? 2 : 0;
     for (std::size_t a = 0; a < samples.size(); ++a) {
         for (std::size_t b = 0; b < a; ++b) {
-            for (int i = -x; i <= x; ++i) {
-                for (int j = -y; j <= y; ++j) {
+            std::array<int, 2> images{0, 0};  // a curve may be longer than the repeat
+            for (int c = 0; c < 2; ++c) {
+                const double reach =
+                    std::max(boxes[a][1][c] - boxes[b][0][c], boxes[b][1][c] - boxes[a][0][c]);
+                if (curves.is_periodic[std::size_t(c)])
+                    images[std::size_t(c)] = int(std::ceil(reach / curves.size_mm[std::size_t(c)])) + 1;
+            }
+            for (int i = -images[0]; i <= images[0]; ++i) {
+                for (int j = -images[1]; j <= images[1]; ++j) {
                     const Vec3 moved(i * curves.size_mm[0], j * curves.size_mm[1], 0);
+                    const Vec3 gap = (boxes[a][0] - boxes[b][1] - moved)
+                                         .cwiseMax(boxes[b][0] + moved - boxes[a][1])
+                                         .cwiseMax(0.0);
+                    if (gap.norm() >= least) continue;
                     for (const Vec3& p : samples[a]) {
                         for (const Vec3& q : samples[b]) least = std::min(least, (p - q - moved).norm());
                     }

@@ -255,6 +255,19 @@ TEST_CASE("loops from both sides that hook each other stop where they meet") {
     CHECK(way.turns[1].pick == 2);
 }
 
+TEST_CASE("loops from both sides that meet between two ends are drawn past each other where nothing hooks them") {
+    // 2-3 is caught by end 1, 1-4 from the right by end 0: drawn tight they no longer cross between the two ends, so
+    // that 0-5, below the one and above the other, comes out.
+    Tally tally;
+    compare(card_of({"1000", "0111", "1101", "1011", "1111", "1000"}), picks_of({2, 1, 0, 0, 1, 2}, {true, false, true}), 3, tally);
+    CHECK(tally.crossed + tally.compared == 1);
+    const auto way = weft_way(card_of({"1000", "0111", "1101", "1011", "1111", "1000"}), picks_of({2, 1, 0, 0, 1, 2}, {true, false, true}));
+    REQUIRE(way.turns.size() == 3);
+    CHECK(way.turns[0].caught_by == CaughtBy::none);
+    CHECK(way.turns[1].end == 0);
+    CHECK(way.turns[2].end == 1);
+}
+
 TEST_CASE("a loop is not pulled past two others that hook each other") {
     // Loop 1-3 from the right hooks 2-4 from the left. Loop 0-5 lies below the first and above the second: it comes
     // past the one, and pick 3 keeps it from the other.

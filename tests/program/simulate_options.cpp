@@ -73,6 +73,11 @@ TEST_CASE("options that make no sense are refused in a line that names them") {
     refused({"--symmetry"}, 2, {"--symmetry", "one repeat"});
     refused({"--symmetry", "--flip", "1,1"}, 2, {"--symmetry", "flips"});
     refused({"--symmetry", "--resume", "x.yarns"}, 2, {"--symmetry", "--resume"});
+    refused({"--start-from", "draft", "--resume", "x.yarns"}, 2, {"--start-from draft", "--resume"});
+    refused({"--start-from", "draft", "--symmetry"}, 2, {"--start-from draft", "other starts"});
+    refused({"--start-from", "draft", "--starts", "1"}, 2, {"--start-from draft", "other starts"});
+    refused({"--start-from", "nothing"}, 2, {"nothing"});
+    refused({"--start-from", "standard"}, 2, {"--start-from standard", "no fewer points"});
     shop.must({"samples", "orthogonal", "-o", "d.weave"});
     const Ended illegal = shop.run({"flip", "d.weave", "--pick", "1", "--end", "1", "-o", "g.weave"});
     if (illegal.exit == 1) refused({"--flip", "1,1", "--save-design", "g.weave"}, 1, {"--flip 1,1", "in the way"});
@@ -83,7 +88,7 @@ TEST_CASE("a plan that is only explained takes no option that makes no differenc
     shop.must({"samples", "plain", "-o", "d.weave"});
     using Words = std::vector<std::string>;
     for (const Words& words : {Words{"-o", "x.yarns"}, {"--residual", "1e-5"}, {"--starts", "2"}, {"--seed", "3"}, {"--symmetry"},
-                               {"--flip", "1,1"}, {"--resume", "x.yarns"}, {"--steps", "3"}, {"--seconds", "3"}, {"--threads", "1"},
+                               {"--flip", "1,1"}, {"--resume", "x.yarns"}, {"--start-from", "draft"}, {"--steps", "3"}, {"--seconds", "3"}, {"--threads", "1"},
                                {"--solver", "paper"}, {"--backend", "cpu"}, {"--save-design", "g.weave"}}) {
         Words all{"simulate", "d.weave", "--explain"};
         all.insert(all.end(), words.begin(), words.end());
@@ -137,6 +142,42 @@ TEST_CASE("a relaxation goes on from a file, in more points too, and not from on
                  {"t.yarns", "another part"});
 }
 
+TEST_CASE("a run that begins in fewer points shows them first, marked, and then those asked for") {
+    const Workshop shop;
+    shop.must({"samples", "tl013-wrong", "-o", "d.weave"});
+    Workshop::Running running = shop.start({"simulate", "d.weave", "--threads", "1", "--start-from", "draft", "--residual", "1e-30", "-o", "d.yarns"});
+    REQUIRE(running.says("in all points"));
+    const weave::Yarns shown = yarns_in(shop, "d.yarns");
+    CHECK(shown.report.at("goes_on") == "standard");
+    CHECK(shown.report.at("fidelity") == "draft");
+    CHECK(shop.run({"inspect", "d.yarns"}).out.find("ON THE WAY to standard") != std::string::npos);
+    ::kill(running.child, SIGINT);
+    running.finish();
+    const weave::Yarns kept = yarns_in(shop, "d.yarns");
+    CHECK_FALSE(kept.report.contains("goes_on"));
+    CHECK(kept.report.at("ending") == "stopped");
+    const Json& coarser = kept.report.at("coarser");
+    CHECK(coarser.at("taken") == true);
+    CHECK(coarser.at("residual").get<double>() <= 1e-2);
+    CHECK(2 * coarser.at("points").get<int>() == kept.report.at("points").get<int>());
+}
+
+TEST_CASE("reference begins at standard, and a run that ends in fewer points leaves these") {
+    const Workshop shop;
+    shop.must({"samples", "plain", "-o", "d.weave"});
+    const Json whole = shop.json({"simulate", "d.weave", "--threads", "1", "--fidelity", "reference", "-o", "d.yarns"});
+    CHECK(whole.at("converged") == true);
+    CHECK(whole.at("coarser").at("fidelity") == "standard");
+    CHECK(whole.at("iterations").get<int>() > whole.at("coarser").at("iterations").get<int>());
+    const Json at_once = shop.json({"simulate", "d.weave", "--threads", "1", "--fidelity", "reference", "--start-from", "plan", "-o", "e.yarns"});
+    CHECK_FALSE(at_once.contains("coarser"));
+    CHECK(whole.at("energy_N_mm").get<double>() == Approx(at_once.at("energy_N_mm").get<double>()).epsilon(1e-4));
+
+    const Json cut = shop.json({"simulate", "d.weave", "--threads", "1", "--fidelity", "reference", "--seconds", "1e-9", "-o", "f.yarns"}, 1);
+    CHECK(cut.at("fidelity") == "standard");
+    CHECK(cut.at("ending") == "time");
+}
+
 TEST_CASE("a tiled cloth resumes as its smallest repeat") {
     const Workshop shop;
     shop.must({"samples", "plain", "-o", "d.weave"});
@@ -155,7 +196,7 @@ TEST_CASE("a run that is stopped leaves a whole file that says so, and another g
     shop.must({"samples", "tl013-wrong", "-o", "d.weave"});
     for (const int signal : {SIGINT, SIGTERM}) {
         Workshop::Running running =
-            shop.start({"simulate", "d.weave", "--threads", "1", "-o", "d.yarns", "--fidelity", "reference"});
+            shop.start({"simulate", "d.weave", "--threads", "1", "-o", "d.yarns", "--fidelity", "reference", "--start-from", "plan"});
         REQUIRE(running.says("residual"));
         ::kill(running.child, signal);
         const Ended ended = running.finish();
@@ -217,7 +258,7 @@ TEST_CASE("what an interrupted run has not done is said, though what it did is a
 TEST_CASE("two signals in a breath are one: the yarns are written all the same") {
     const Workshop shop;
     shop.must({"samples", "tl013-wrong", "-o", "d.weave"});
-    Workshop::Running running = shop.start({"simulate", "d.weave", "--threads", "1", "-o", "d.yarns", "--fidelity", "reference"});
+    Workshop::Running running = shop.start({"simulate", "d.weave", "--threads", "1", "-o", "d.yarns", "--fidelity", "reference", "--start-from", "plan"});
     REQUIRE(running.says("residual"));
     ::kill(running.child, SIGINT);
     ::usleep(20'000);

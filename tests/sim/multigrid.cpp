@@ -83,19 +83,19 @@ Eigen::MatrixXd whole_of(Preconditioner& preconditioner, std::size_t rows) {
 
 }  // namespace
 
-TEST_CASE("strands hold the rows of each yarn, closed where nothing of it is frozen") {
+TEST_CASE("the rows of each yarn are found, closed where nothing of it is frozen") {
     Random random(1);
     SimScene scene = plain_weave({.count = 2});
     scene.yarns[1].frozen.assign(scene.yarns[1].control.size(), 0);
     scene.yarns[1].frozen[2] = 1;
     scene.yarns[2].frozen.assign(scene.yarns[2].control.size(), 1);
     const Bench bench(scene);
-    const std::vector<Strand> strands = strands_of(bench.fabric);
-    REQUIRE(strands.size() == 3);
+    const std::vector<YarnRows> yarns = rows_of_yarns(bench.fabric);
+    REQUIRE(yarns.size() == 3);
     const auto points = static_cast<std::uint32_t>(scene.yarns[0].control.size());
-    CHECK((strands[0].first == 0 && strands[0].rows == points && strands[0].is_closed));
-    CHECK((strands[1].first == points && strands[1].rows == points - 1 && !strands[1].is_closed));
-    CHECK((strands[2].first == 2 * points - 1 && strands[2].rows == points && strands[2].is_closed));
+    CHECK((yarns[0].first == 0 && yarns[0].rows == points && yarns[0].is_closed));
+    CHECK((yarns[1].first == points && yarns[1].rows == points - 1 && !yarns[1].is_closed));
+    CHECK((yarns[2].first == 2 * points - 1 && yarns[2].rows == points && yarns[2].is_closed));
 }
 
 TEST_CASE("the multigrid is symmetric and positive, for matrices that curve down too") {
@@ -107,7 +107,7 @@ TEST_CASE("the multigrid is symmetric and positive, for matrices that curve down
                 for (std::size_t row = 0; row < cloth.matrix.rows(); row += 5)
                     cloth.matrix.value(cloth.matrix.diagonal(row))[4] -= 100;
             }
-            Multigrid multigrid(cloth.bench.executor, strands_of(cloth.bench.fabric));
+            Multigrid multigrid(cloth.bench.executor, rows_of_yarns(cloth.bench.fabric));
             REQUIRE(multigrid.levels() > 1);
             multigrid.factor(cloth.matrix);
             const Eigen::MatrixXd inverse = whole_of(multigrid, cloth.matrix.rows());
@@ -123,7 +123,7 @@ TEST_CASE("few rows are solved as a whole") {
     Random random(weave::testing::run_seed());
     INFO("WEAVE_SEED=" << weave::testing::run_seed());
     const BentCloth cloth(random, 2);
-    Multigrid multigrid(cloth.bench.executor, strands_of(cloth.bench.fabric));
+    Multigrid multigrid(cloth.bench.executor, rows_of_yarns(cloth.bench.fabric));
     CHECK(multigrid.levels() == 1);
     multigrid.factor(cloth.matrix);
     std::vector<double> x;
@@ -142,7 +142,7 @@ TEST_CASE("on a bent cloth conjugate gradients need fewer steps with the multigr
         PivotsOnly pivots(cloth.matrix);
         const CgResult plain =
             conjugate_gradients(cloth.bench.executor, cloth.matrix, pivots, load, 1e-3, 5000, x);
-        Multigrid multigrid(cloth.bench.executor, strands_of(cloth.bench.fabric));
+        Multigrid multigrid(cloth.bench.executor, rows_of_yarns(cloth.bench.fabric));
         multigrid.factor(cloth.matrix);
         const CgResult result =
             conjugate_gradients(cloth.bench.executor, cloth.matrix, multigrid, load, 1e-3, 5000, x);
@@ -154,10 +154,10 @@ TEST_CASE("on a bent cloth conjugate gradients need fewer steps with the multigr
 
 TEST_CASE("a bundle of yarns of one point each still has a last level") {
     // 300 yarns of a single row: only bundles of them can be pieces.
-    std::vector<Strand> strands;
+    std::vector<YarnRows> yarns;
     std::vector<std::uint32_t> first{0}, columns;
     for (std::uint32_t row = 0; row < 300; ++row) {
-        strands.push_back({row, 1, false});
+        yarns.push_back({row, 1, false});
         columns.push_back(row);
         first.push_back(row + 1);
     }
@@ -167,7 +167,7 @@ TEST_CASE("a bundle of yarns of one point each still has a last level") {
         for (int k = 0; k < 9; k += 4) matrix.value(matrix.diagonal(row))[k] = 2;
     }
     const Executor executor(1);
-    Multigrid multigrid(executor, strands);
+    Multigrid multigrid(executor, yarns);
     CHECK(multigrid.levels() == 2);
     multigrid.factor(matrix);
     std::vector<double> x;
@@ -183,8 +183,8 @@ TEST_CASE("the multigrid is the same bit for bit on one thread and on three") {
     Random random(seed), same(seed);
     const BentCloth one(random, 24, 1), three(same, 24, 3);
     std::vector<double> first, second;
-    Multigrid a(one.bench.executor, strands_of(one.bench.fabric)),
-        b(three.bench.executor, strands_of(three.bench.fabric));
+    Multigrid a(one.bench.executor, rows_of_yarns(one.bench.fabric)),
+        b(three.bench.executor, rows_of_yarns(three.bench.fabric));
     a.factor(one.matrix);
     b.factor(three.matrix);
     a.apply(one.force, first);

@@ -5,6 +5,9 @@
 #include <weave/sim/simulate.hpp>
 
 #include <catch2/catch.hpp>
+#include <set>
+#include <tuple>
+#include <utility>
 
 using namespace weave;
 using namespace weave::sim;
@@ -48,6 +51,34 @@ TEST_CASE("an end that is loose all along is left out, and the others lie as if 
     REQUIRE(one.report.at("converged") == true);
     REQUIRE(one.yarns.size() == other.yarns.size());
     for (std::size_t y = 0; y < one.yarns.size(); ++y) CHECK(one.yarns[y].spline.control == other.yarns[y].spline.control);
+}
+
+TEST_CASE("yarns of a repeat that is copied back keep their numbers, though its last end is loose and its last pick empty") {
+    Design design = design_of();
+    design.weft.feeder_order = {{0}, {0}, {}};
+    // Rows of one pick, but each second of two, the last of which has no weft; columns alike with a loose end.
+    const Block block = make_block({1, 2, 1, 2}, {1, 2, 1, 2}, [](std::size_t i, std::size_t j) {
+                            std::string stack = (i + j) % 2 == 0 ? "P0 T0" : "T0 P0";
+                            if (i % 2 == 1) stack += " T1~";
+                            if (j % 2 == 1) stack += " P1~";
+                            return parse_stack(stack).value();
+                        }).value();
+    SimulationOptions options;
+    options.threads = 1;
+    SimulationRequest request;
+    const auto numbers = [&](bool reduce) {
+        request.reduce = reduce;
+        const Plan plan = make_plan(design, block, request).value();
+        REQUIRE((plan.repeats[0] * plan.repeats[1] > 1) == reduce);
+        const Yarns yarns = simulate(design, plan, options);
+        std::set<std::pair<System, std::size_t>> found;
+        for (const SimulatedYarn& yarn : yarns.yarns) found.emplace(yarn.system, yarn.number);
+        std::set<std::pair<std::size_t, std::size_t>> crossed;
+        for (const Crossing& crossing : yarns.crossings) crossed.emplace(crossing.pick, crossing.end);
+        const Json& coverage = yarns.report.at("coverage");
+        return std::tuple(found, crossed, coverage.at("picks"), coverage.at("ends"));
+    };
+    CHECK(numbers(true) == numbers(false));
 }
 
 TEST_CASE("a part of which nothing can move is refused, whatever its size") {

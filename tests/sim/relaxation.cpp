@@ -25,7 +25,7 @@ std::size_t lost_in(const Plan& plan, const SimScene& scene) {
     std::vector<Spline> splines(plan.curves.yarns.size());
     for (std::size_t y = 0; y < scene.yarns.size(); ++y)
         splines[plan.curve_of[y]] = {scene.yarns[y].control, scene.yarns[y].is_periodic, scene.yarns[y].shift};
-    const auto l = lost_crossings(plan.curves, splines); for (auto& x : l) printf("LOST pick %zu end %zu found %d key %zu\n", x.crossing.pick, x.crossing.end, x.found, x.crossing.weft_key); return l.size();
+    return lost_crossings(plan.curves, splines).size();
 }
 
 bool is_finite(const SimScene& scene) {

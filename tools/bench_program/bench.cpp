@@ -1,5 +1,7 @@
 // Benchmarks of libweave: each case prints times and the peak memory of its process, in words or as JSON.
 
+#include "settling.hpp"
+
 #include <weave/block/operations.hpp>
 #include <weave/block/preset.hpp>
 #include <weave/core/file.hpp>
@@ -227,7 +229,7 @@ struct Case {
     Json (*run)();
 };
 constexpr Case cases[] = {{"shoe", shoe}, {"shoe-edit", shoe_edit}, {"stencil-20000", stencil_20000},
-                            {"mixed-radii", mixed_radii}, {"tiled", tiled}, {"flip", flip_settles}};
+                            {"mixed-radii", mixed_radii}, {"tiled", tiled}, {"flip", flip_settles}, {"settling", bench::settling}};
 
 }  // namespace
 

@@ -29,7 +29,7 @@ namespace weave::program {
 namespace {
 
 struct Wish {
-    std::string file, out, fidelity = "standard", region, solver = "relax", backend = "cpu", resume, save_design;
+    std::string file, out, fidelity = "standard", region, solver = "relax", backend = "cpu", resume, save_design, start_from;
     std::vector<std::string> set, boundaries, pins, fields, flips;
     bool wraparound = false, explain = false, whole = false, symmetry = false;
     std::optional<double> residual, points, seconds;
@@ -50,6 +50,7 @@ struct Task {
     sim::SimulationRequest request;
     sim::SimulationOptions options;
     std::vector<Flip> flips;
+    std::optional<sim::Plan> coarser;  ///< where options.coarser points to
 };
 
 Status check_backend(const std::string& backend) {
@@ -80,6 +81,10 @@ Status check_wish(const Wish& wish) {
         return usage_error("what is looked at from other starts takes no flips", wish.symmetry ? "--symmetry" : "--starts");
     if (wish.symmetry && !wish.resume.empty())
         return usage_error("the smallest repeat and the whole begin at the same start: without --resume", "--symmetry");
+    if (!wish.start_from.empty() && !wish.resume.empty())
+        return usage_error("there is one start: without --resume", "--start-from " + wish.start_from);
+    if (!wish.start_from.empty() && (wish.starts > 0 || wish.symmetry))
+        return usage_error("what is looked at from other starts begins at the planned one", "--start-from " + wish.start_from);
     return {};
 }
 
@@ -123,9 +128,10 @@ class Teller {
   public:
     explicit Teller(double goal) : m_goal(goal) {}
 
-    /// What relaxes from now on, such as ` the whole cloth`.
-    void turn_to(std::string what) {
+    /// What relaxes from now on, such as ` the whole cloth`, and to which residual if not the same as before.
+    void turn_to(std::string what, std::optional<double> goal = {}) {
         m_what = std::move(what);
+        m_goal = goal.value_or(m_goal);
         m_next = std::min(m_next, seconds() + first_after);
     }
 
@@ -225,6 +231,18 @@ std::string friction_in_words(const Json& report) {
     return line;
 }
 
+/// Which points it began in, and whether the others went on from there.
+std::string start_in_words(const Json& report) {
+    if (!report.contains("coarser")) return "";
+    const Json& coarser = report.at("coarser");
+    char line[200];
+    std::snprintf(line, sizeof line, "began in %zu points (%s): residual %.1e after %zu steps and %.2f s%s\n",
+                  coarser.at("points").get<std::size_t>(), coarser.at("fidelity").get<std::string>().c_str(),
+                  coarser.at("residual").get<double>(), coarser.at("iterations").get<std::size_t>(), coarser.at("seconds").get<double>(),
+                  coarser.at("taken").get<bool>() ? "" : "; NOT gone on from, as crossings lay wrong in so few: begun anew as planned");
+    return line;
+}
+
 std::string interruption_in_words(const Json& report) {
     if (!report.contains("interrupted")) return "";
     std::string text = "INTERRUPTED, left undone: ";
@@ -259,7 +277,7 @@ std::string ending_in_words(const Json& report) {
     std::string order = lost > 0 ? counted(lost, "crossing") + " no longer as the card says\n"
                         : slid > 0 ? "" : "every crossing lies as the card says\n";
     if (slid > 0) order += counted(slid, "crossing") + " no longer where planned, open or not held; no yarn passed through another there\n";
-    return line + periods_in_words(report) + order + coverage_in_words(report) + friction_in_words(report) + flips_in_words(report) +
+    return line + start_in_words(report) + periods_in_words(report) + order + coverage_in_words(report) + friction_in_words(report) + flips_in_words(report) +
            sim::starts_text(report) + sim::symmetry_text(report) + interruption_in_words(report);
 }
 
@@ -307,6 +325,7 @@ Result<Yarns> relaxed(const Block& block, Task& task, const sim::Plan& plan, con
     }
     const Yarns repeat = sim::simulate(task.design, plan, options);
     if (interrupted()) return repeat;
+    options.coarser = nullptr;
     sim::SimulationRequest request = task.request;
     request.reduce = false;
     WEAVE_TRY(const sim::Plan whole, plan_of(task.design, block, request, wish.file));
@@ -344,11 +363,52 @@ Result<Yarns> simulated(const Block& block, Task& task, const sim::Plan& plan, c
     return yarns;
 }
 
+/// Which fidelity's points a run begins in; empty: its own. `reference` refines the rest that `standard` comes to, so that the
+/// two can be compared, and is there sooner as a rule (docs/simulation).
+std::string first_points(const Wish& wish) {
+    if (wish.start_from == "plan") return "";
+    const bool may = wish.resume.empty() && !wish.points && wish.starts == 0 && !wish.symmetry;
+    return wish.start_from.empty() && may && wish.fidelity == "reference" ? "standard" : wish.start_from;
+}
+
+/// What the coarser yarns say of themselves while they stand for the finer ones to come.
+Status show_coarser(Yarns yarns, const sim::Plan& plan, const std::string& file) {
+    yarns.report["goes_on"] = std::string(sim::name_of(plan.fidelity));
+    WEAVE_TRY(const std::string bytes, write_yarns(yarns));
+    return write_file(file, bytes);
+}
+
+/// Lets the run begin in the points of another fidelity. The file has its yarns as soon as these are at rest.
+Status start_coarser(const Block& block, Task& task, const sim::Plan& plan, const Wish& wish, Teller& teller, Status& shown) {
+    const std::string start_from = first_points(wish);
+    if (start_from.empty()) return {};
+    sim::SimulationRequest request = task.request;
+    request.points_per_key.reset();
+    WEAVE_TRY(request.fidelity, sim::parse_fidelity(start_from));
+    // Half as many points alone save little: work follows the contact samples. At up to 0.45 no yarn was seen to pass another.
+    if (request.fidelity == sim::Fidelity::draft) request.sample_spacing = 0.4;
+    WEAVE_TRY(task.coarser, plan_of(task.design, block, request, wish.file));
+    if (task.coarser->points_per_key >= plan.points_per_key)
+        return usage_error("has no fewer points than what is asked for", "--start-from " + start_from);
+    task.options.coarser = &*task.coarser;
+    const double goal = wish.residual.value_or(plan.goal);
+    teller.turn_to(" in the points of " + start_from, task.coarser->goal);
+    task.options.after_coarser = [&, goal](const Yarns& yarns) {
+        teller.turn_to(" in all points", goal);
+        shown = show_coarser(yarns, plan, wish.out);
+        return shown && !interrupted();
+    };
+    return {};
+}
+
 /// The same while a person is told how far it has come, and may end it.
 Result<Yarns> watched(const Block& block, Task& task, const sim::Plan& plan, const Wish& wish) {
     Teller teller(wish.residual.value_or(plan.goal));
     task.options.watch = [&](const sim::Progress& progress) { return teller(progress); };
+    Status shown;
+    WEAVE_CHECK_OK(start_coarser(block, task, plan, wish, teller, shown));
     WEAVE_TRY(Yarns yarns, simulated(block, task, plan, wish, teller));
+    WEAVE_CHECK_OK(shown);
     teller.end();
     std::vector<std::string> undone;
     if (interrupted()) undone = left_undone(yarns.report, task, wish);
@@ -425,6 +485,10 @@ void add_simulate(CLI::App& app, Program& program) {
     command->add_option("--flip", wish->flips, "let a pick and an end change sides in the relaxed cloth")->type_name("PICK,END")->allow_extra_args(false);
     command->add_option("--save-design", wish->save_design, "the .weave file to write with the flips that were made")->type_name("FILE");
     command->add_option("--resume", wish->resume, "go on from these relaxed yarns of the same design")->type_name("FILE");
+    command->add_option("--start-from", wish->start_from, "relax in the fewer points of this fidelity first, such as draft, or at once: plan; reference "
+                                                          "begins at standard if nothing is said. The file has these yarns, so "
+                                                          "marked, until the others are at rest")
+        ->type_name("WORD");
     command->add_option("--region", wish->region, "only a part, with frozen rims: picks:1-40,ends:1-60")->type_name("PART");
     command->add_flag("--wraparound", wish->wraparound, "the picks of a feeder are one yarn that turns at the edges");
     command->add_flag("--whole", wish->whole, "do not reduce a periodic cloth to its smallest repeat");
@@ -441,7 +505,7 @@ void add_simulate(CLI::App& app, Program& program) {
     command->footer("Ctrl-C writes the yarns as they lie (exit 1), for --resume to go on from; again, half a second later or more, ends at "
                     "once without them.\n" + command->get_footer());
     on_run(command, program, [=, &program] {
-        wish->no_plan_option = given_of(command, {"--out", "--solver", "--residual", "--backend", "--flip", "--save-design", "--resume", "--starts",
+        wish->no_plan_option = given_of(command, {"--out", "--solver", "--residual", "--backend", "--flip", "--save-design", "--resume", "--start-from", "--starts",
                                                   "--symmetry", "--seed", "--steps", "--seconds", "--threads"});
         return run_simulation(program, *wish);
     });

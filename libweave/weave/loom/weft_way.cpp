@@ -338,6 +338,8 @@ class Loops {
             if (turn == nowhere || strand.depth[index(side)] < from_there) continue;
             if (strand.depth[index(side)] > from_there) return false;
             if (other.turn.side == side && other.arrival > m_loops[turn].arrival) return false;
+            // Bights from both sides between the same two ends are drawn past each other where nothing hooks them.
+            if (other.turn.side != side && crossings_agree(other, m_loops[turn])) return false;
         }
         return true;
     }

@@ -142,7 +142,7 @@ Json inspection_json(const Yarns& yarns, const Inspection& inspection) {
     Json json{
         {"title", yarns.title}, {"design_sha256", yarns.design_sha256}, {"scene_sha256", yarns.scene_sha256}};
     for (const char* name : {"fidelity", "converged", "residual", "max_overlap", "strain_deviation",
-                             "friction", "starts", "symmetry"})
+                             "friction", "starts", "symmetry", "goes_on"})
         json[name] = reported(yarns, name);
     json["smallest_curvature"] = sim::smallest_curvature(yarns.report);
     json["coverage"] = coverage_json(yarns, inspection.part);

@@ -24,23 +24,22 @@ std::uint32_t pieces_of(std::uint32_t rows) {
 }  // namespace
 
 template <class Real>
-std::vector<Strand> strands_of(const Fabric<Real>& fabric) {
-    std::vector<Strand> strands;
+std::vector<YarnRows> rows_of_yarns(const Fabric<Real>& fabric) {
+    std::vector<YarnRows> all;
     std::uint32_t row = 0;
     for (std::size_t y = 0; y < fabric.yarns().size(); ++y) {
         const YarnPlace& yarn = fabric.yarns()[y];
-        Strand strand{row, 0, false};
-        for (std::uint32_t i = 0; i < yarn.points; ++i)
-            strand.rows += fabric.moves()[yarn.first_slot + 1 + i];
-        strand.is_closed = fabric.scene().yarns[y].is_periodic && strand.rows == yarn.points;
-        row += strand.rows;
-        if (strand.rows > 0) strands.push_back(strand);
+        YarnRows mine{row, 0, false};
+        for (std::uint32_t i = 0; i < yarn.points; ++i) mine.rows += fabric.moves()[yarn.first_slot + 1 + i];
+        mine.is_closed = fabric.scene().yarns[y].is_periodic && mine.rows == yarn.points;
+        row += mine.rows;
+        if (mine.rows > 0) all.push_back(mine);
     }
-    return strands;
+    return all;
 }
 
-template std::vector<Strand> strands_of(const Fabric<float>&);
-template std::vector<Strand> strands_of(const Fabric<double>&);
+template std::vector<YarnRows> rows_of_yarns(const Fabric<float>&);
+template std::vector<YarnRows> rows_of_yarns(const Fabric<double>&);
 
 template <class Real>
 RowPlaces places_of(const Fabric<Real>& fabric) {
@@ -58,39 +57,39 @@ RowPlaces places_of(const Fabric<Real>& fabric) {
 template RowPlaces places_of(const Fabric<float>&);
 template RowPlaces places_of(const Fabric<double>&);
 
-Multigrid::Multigrid(const Executor& executor, std::vector<Strand> strands, RowPlaces places) : m_executor(executor) {
+Multigrid::Multigrid(const Executor& executor, std::vector<YarnRows> yarns, RowPlaces places) : m_executor(executor) {
     std::size_t rows = 0;
-    for (const Strand& strand : strands) rows += strand.rows;
+    for (const YarnRows& yarn : yarns) rows += yarn.rows;
     m_levels.emplace_back().rows = rows;
     while (m_levels.back().rows > last_rows) {
         // Yarns that are one piece each are bundled with those beside them.
-        if (m_levels.back().rows == strands.size())
-            strands = {{0, static_cast<std::uint32_t>(strands.size()), false}};
-        add_pieces_of_yarns(m_levels.size() - 1, strands);
+        if (m_levels.back().rows == yarns.size())
+            yarns = {{0, static_cast<std::uint32_t>(yarns.size()), false}};
+        add_pieces_of_yarns(m_levels.size() - 1, yarns);
     }
     if (places.at.size() != rows || m_levels.size() <= grids_from) return;
     for (std::size_t l = 1; l <= grids_from; ++l) places = places_of_pieces(m_levels[l], places);
     add_grids(grids_from, std::move(places));
 }
 
-/// Groups the rows of a level into pieces; `strands` become those of the pieces.
-void Multigrid::add_pieces_of_yarns(std::size_t finer, std::vector<Strand>& strands) {
+/// Groups the rows of a level into pieces; `yarns` become those of the pieces.
+void Multigrid::add_pieces_of_yarns(std::size_t finer, std::vector<YarnRows>& yarns) {
     std::vector<Shares> all;
     std::uint32_t pieces = 0;
-    for (Strand& strand : strands) {
-        const std::uint32_t count = pieces_of(strand.rows);
-        for (std::uint32_t i = 0; i < strand.rows; ++i) {
+    for (YarnRows& yarn : yarns) {
+        const std::uint32_t count = pieces_of(yarn.rows);
+        for (std::uint32_t i = 0; i < yarn.rows; ++i) {
             Shares shares{{pieces}, {1}};
             if (count > 1) {
-                const double at = strand.is_closed ? double(i) * count / strand.rows
-                                                   : double(i) * (count - 1) / (strand.rows - 1);
+                const double at = yarn.is_closed ? double(i) * count / yarn.rows
+                                                   : double(i) * (count - 1) / (yarn.rows - 1);
                 const auto piece = static_cast<std::uint32_t>(at);
-                const std::uint32_t next = piece + 1 < count ? piece + 1 : strand.is_closed ? 0 : piece;
+                const std::uint32_t next = piece + 1 < count ? piece + 1 : yarn.is_closed ? 0 : piece;
                 shares = {{pieces + piece, pieces + next}, {1 - (at - piece), at - piece}};
             }
             all.push_back(shares);
         }
-        strand = {pieces, count, strand.is_closed};
+        yarn = {pieces, count, yarn.is_closed};
         pieces += count;
     }
     add_level(finer, std::move(all), pieces);

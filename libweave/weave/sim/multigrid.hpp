@@ -12,16 +12,16 @@
 
 namespace weave::sim {
 
-/// Rows of a matrix that follow one another along a yarn; a closed strand goes on from its last row to its
+/// Rows of a matrix that follow one another along a yarn; a closed yarn goes on from its last row to its
 /// first.
-struct Strand {
+struct YarnRows {
     std::uint32_t first = 0, rows = 0;
     bool is_closed = false;
 };
 
 /// The rows of each yarn, one for each of its control points that moves.
 template <class Real>
-std::vector<Strand> strands_of(const Fabric<Real>& fabric);
+std::vector<YarnRows> rows_of_yarns(const Fabric<Real>& fabric);
 
 /// Where rows lie, seen from above, and the periods of the cloth: 0 where it does not repeat.
 struct RowPlaces {
@@ -42,8 +42,8 @@ RowPlaces places_of(const Fabric<Real>& fabric);
 /// that to ever coarser grids.
 class Multigrid : public Preconditioner {
   public:
-    /// Strands follow one another and cover all rows. Without `places` there are no grids.
-    Multigrid(const Executor& executor, std::vector<Strand> strands, RowPlaces places = {});
+    /// The yarns follow one another and cover all rows. Without `places` there are no grids.
+    Multigrid(const Executor& executor, std::vector<YarnRows> yarns, RowPlaces places = {});
 
     void factor(const BlockMatrix& matrix);
     void apply(const std::vector<double>& residual, std::vector<double>& step) override;
@@ -70,7 +70,7 @@ class Multigrid : public Preconditioner {
         std::vector<double> residual, step;
     };
 
-    void add_pieces_of_yarns(std::size_t finer, std::vector<Strand>& strands);
+    void add_pieces_of_yarns(std::size_t finer, std::vector<YarnRows>& yarns);
     bool add_grid(std::size_t finer, double spacing, RowPlaces& places);
     void add_grids(std::size_t finer, RowPlaces places);
     void add_level(std::size_t finer, std::vector<Shares> shares, std::size_t pieces);

@@ -135,7 +135,7 @@ bool curves_down(Energy<Real>& energy, const std::vector<Real>& state) {
     Hessian<Real> hessian(energy.fabric());
     if (hessian.rows() == 0) return false;
     BlockMatrix matrix;
-    Multigrid preconditioner(energy.executor(), strands_of(energy.fabric()), places_of(energy.fabric()));
+    Multigrid preconditioner(energy.executor(), rows_of_yarns(energy.fabric()), places_of(energy.fabric()));
     hessian.assemble(energy, state, Curvature::exact, matrix);
     matrix.add_to_pivots(1e-7F);
     preconditioner.factor(matrix);

@@ -133,7 +133,7 @@ PeriodsResult relax_periods(SimScene& scene, const RimForces& forces, const Rela
                             const Executor& executor) {
     SlipStart start{{}, scene.period_mm};
     for (const SimYarn& yarn : scene.yarns) start.control.push_back(yarn.control);
-    if (scene.friction > 0) scene.slip_from = std::move(start);
+    if (scene.friction > 0 && !scene.slip_from) scene.slip_from = std::move(start);
     PeriodsResult result = Search(scene, forces, options, tolerance, executor).run();
     scene.slip_from.reset();
     return result;

@@ -127,6 +127,8 @@ class Planner {
         m_plan.goal = resolution.goal;
         m_plan.cloth_rows = m_block.rows();
         m_plan.cloth_columns = m_block.columns();
+        m_plan.cloth_picks = m_block.picks();
+        m_plan.cloth_ends = m_block.ends();
         m_plan.points_per_key = m_request.points_per_key.value_or(resolution.points_per_key);
         m_plan.scene.sample_spacing = m_request.sample_spacing.value_or(resolution.sample_spacing);
         WEAVE_CHECK_OK(check_request());

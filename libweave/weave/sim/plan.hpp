@@ -49,6 +49,7 @@ struct Plan {
     std::vector<std::size_t> curve_of;           ///< of each simulated yarn its index in `curves`
     std::array<std::size_t, 2> repeats{1, 1};    ///< how often the simulated repeat fills the cloth, in x and y
     std::size_t cloth_rows = 0, cloth_columns = 0;  ///< of the whole design
+    std::size_t cloth_picks = 0, cloth_ends = 0;    ///< of the whole design
     /// Where the period relaxes: the force that pulls the whole rim, N.
     std::array<std::optional<double>, 2> rim_force_N{};
     std::vector<PlanLine> lines;

@@ -80,7 +80,7 @@ class Relaxing {
           m_state(state),
           m_options(options),
           m_hessian(energy.fabric()),
-          m_preconditioner(energy.executor(), strands_of(energy.fabric()), places_of(energy.fabric())),
+          m_preconditioner(energy.executor(), rows_of_yarns(energy.fabric()), places_of(energy.fabric())),
           m_descent(energy, m_hessian, m_matrix, m_preconditioner),
           m_newton(energy, m_hessian, m_matrix, m_preconditioner) {}
 

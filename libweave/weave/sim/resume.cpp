@@ -1,5 +1,7 @@
 #include <weave/core/text.hpp>
 #include <weave/curve/spline.hpp>
+#include <weave/sim/linking.hpp>
+#include <weave/sim/order.hpp>
 #include <weave/sim/periods.hpp>
 #include <weave/sim/resume.hpp>
 
@@ -37,6 +39,26 @@ Spline first_part(const Spline& spline, std::size_t repeats, const Vec3& shift) 
     part.control.resize(spline.control.size() / repeats);
     part.shift = shift;
     return part;
+}
+
+/// Whether a scene's yarns have passed through one another since another state of it, or left the order of the card more
+/// often than there.
+bool keeps_order(const Plan& plan, const SimScene& before, const SimScene& now) {
+    const auto control_of = [](const SimScene& scene) {
+        std::vector<std::vector<Vec3>> control;
+        for (const SimYarn& yarn : scene.yarns) control.push_back(yarn.control);
+        return control;
+    };
+    const auto lost_in = [&](const SimScene& scene) {
+        std::vector<Spline> splines(plan.curves.yarns.size());
+        for (std::size_t y = 0; y < scene.yarns.size(); ++y)
+            splines[plan.curve_of[y]] = {scene.yarns[y].control, scene.yarns[y].is_periodic, scene.yarns[y].shift};
+        return lost_crossings(plan.curves, splines).size();
+    };
+    if (lost_in(now) > lost_in(before)) return false;
+    Linking change = linking_of(now, control_of(now));
+    for (const auto& [pair, count] : linking_of(before, control_of(before))) change[pair] -= count;
+    return std::ranges::none_of(change, [](const auto& entry) { return passed_through(entry.second); });
 }
 
 }  // namespace
@@ -82,6 +104,20 @@ Result<StartState> start_from(const Plan& plan, const Yarns& yarns, const std::s
         start.control.push_back(part.control.size() == planned.control.size() ? part.control
                                                                                : resample(part, planned.control.size()).control);
     }
+    return start;
+}
+
+std::optional<StartState> refined_start(const Plan& plan, const Plan& coarser, const StartState& state) {
+    const SimScene coarse = scene_at(coarser, state);
+    StartState start{{}, state.size_mm};
+    for (std::size_t y = 0; y < plan.scene.yarns.size(); ++y) {
+        const SimYarn &planned = plan.scene.yarns[y], &from = coarse.yarns[y];
+        start.control.push_back(resample({from.control, from.is_periodic, from.shift}, planned.control.size()).control);
+        for (std::size_t i = 0; i < planned.frozen.size(); ++i) {
+            if (planned.frozen[i] != 0) start.control[y][i] = planned.control[i];
+        }
+    }
+    if (!keeps_order(plan, plan.scene, scene_at(plan, start))) return {};
     return start;
 }
 

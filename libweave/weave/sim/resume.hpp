@@ -4,6 +4,7 @@
 #include <weave/sim/yarns.hpp>
 
 #include <array>
+#include <optional>
 #include <string>
 #include <vector>
 
@@ -25,5 +26,11 @@ SimScene scene_at(const Plan& plan, const StartState& start);
 /// `scenes` are the hashes of scenes that the yarns may come from. Errors: yarns of another design, scene or part of it.
 Result<StartState> start_from(const Plan& plan, const Yarns& yarns, const std::string& design_sha256,
                               const std::vector<std::string>& scenes);
+
+/// The state of a coarser plan's yarns, at `state` (its periods included), as the start of a plan of the same part of the
+/// cloth: the same curves through more points, what is held being where this plan holds it. Nothing where yarns have passed
+/// through one another on the way from the planned curves, or a crossing no longer lies as the card says: coarse curves may
+/// err in that, and what follows would not mend it.
+std::optional<StartState> refined_start(const Plan& plan, const Plan& coarser, const StartState& state);
 
 }  // namespace weave::sim

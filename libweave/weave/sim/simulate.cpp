@@ -200,16 +200,11 @@ std::vector<SimulatedYarn> copies_of(const Yarns& repeat, System system, std::si
 Yarns copied_back(Yarns yarns, const Plan& plan, const Design& design) {
     const std::array<std::size_t, 2>& times = plan.repeats;
     if (times[0] * times[1] == 1) return yarns;
-    struct {
-        std::size_t picks = 0, ends = 0;
-    } count;
-    for (const Crossing& crossing : plan.curves.crossings) {
-        count.picks = std::max(count.picks, crossing.pick + 1);
-        count.ends = std::max(count.ends, crossing.end + 1);
-    }
-    const std::vector<SimulatedYarn> wefts = copies_of(yarns, System::weft, times[0], times[1], count.picks,
+    // Not counted from the crossings: the last pick of a repeat may have no weft, its last end may be loose.
+    const std::size_t picks = plan.cloth_picks / times[0], ends = plan.cloth_ends / times[1];
+    const std::vector<SimulatedYarn> wefts = copies_of(yarns, System::weft, times[0], times[1], picks,
                                                        Vec3(yarns.size_mm[0], 0, 0), design),
-                                     warps = copies_of(yarns, System::warp, times[1], times[0], count.ends,
+                                     warps = copies_of(yarns, System::warp, times[1], times[0], ends,
                                                        Vec3(0, yarns.size_mm[1], 0), design);
     Yarns whole = yarns;
     whole.region = {0, plan.cloth_rows - 1, 0, plan.cloth_columns - 1};
@@ -226,8 +221,8 @@ Yarns copied_back(Yarns yarns, const Plan& plan, const Design& design) {
                 crossing.warp_key += x * warp.keys.size();
                 crossing.weft += x * weft_yarns;
                 crossing.warp = wefts.size() + y * warp_yarns + (crossing.warp - weft_yarns);
-                crossing.pick += x * count.picks;
-                crossing.end += y * count.ends;
+                crossing.pick += x * picks;
+                crossing.end += y * ends;
                 whole.crossings.push_back(crossing);
             }
         }
@@ -237,7 +232,7 @@ Yarns copied_back(Yarns yarns, const Plan& plan, const Design& design) {
 }
 
 /// What of the cloth the yarns cover, first and last from 1, once a repeat has been copied back over it.
-Json coverage_of(const Plan& plan, const Design& design) {
+Json coverage_of(const Plan& plan) {
     const Region& region = plan.curves.region;
     std::array<std::size_t, 2> picks{SIZE_MAX, 0}, ends{SIZE_MAX, 0};
     for (const Crossing& crossing : plan.curves.crossings) {
@@ -247,13 +242,11 @@ Json coverage_of(const Plan& plan, const Design& design) {
     const std::array<std::size_t, 2> rows{region.first_row + 1, (region.last_row + 1) * plan.repeats[0]},
         columns{region.first_column + 1, (region.last_column + 1) * plan.repeats[1]};
     Json coverage{{"rows", rows}, {"columns", columns}, {"repeats", {plan.repeats[0], plan.repeats[1]}}};
-    picks[1] *= plan.repeats[0], ends[1] *= plan.repeats[1];
-    if (picks[1] > 0) coverage["picks"] = picks, coverage["ends"] = ends;
-    coverage["of"] = {{"rows", plan.cloth_rows}, {"columns", plan.cloth_columns}};
-    if (const auto cloth = outline(design)) {
-        coverage["of"]["picks"] = cloth->grid.picks();
-        coverage["of"]["ends"] = cloth->grid.ends();
-    }
+    picks[1] += (plan.repeats[0] - 1) * (plan.cloth_picks / plan.repeats[0]);
+    ends[1] += (plan.repeats[1] - 1) * (plan.cloth_ends / plan.repeats[1]);
+    if (picks[0] <= picks[1]) coverage["picks"] = picks, coverage["ends"] = ends;
+    coverage["of"] = {{"rows", plan.cloth_rows}, {"columns", plan.cloth_columns},
+                      {"picks", plan.cloth_picks}, {"ends", plan.cloth_ends}};
     coverage["whole"] = rows[0] == 1 && rows[1] == plan.cloth_rows && columns[0] == 1 && columns[1] == plan.cloth_columns;
     return coverage;
 }
@@ -268,7 +261,11 @@ class Simulation {
 
     Yarns run() {
         if (m_options.start) m_scene = scene_at(m_plan, *m_options.start);
+        if (m_options.coarser != nullptr) {
+            if (std::optional<Yarns> ended = begin_coarser()) return std::move(*ended);
+        }
         relax_scene();
+        m_scene.slip_from.reset();  // what follows begins anew
         for (const Flip& flip : m_options.flips) {
             if (m_last.ending == Ending::stopped || m_last.ending == Ending::time) break;
             make(flip);
@@ -277,6 +274,39 @@ class Simulation {
     }
 
   private:
+    /// Relaxes the coarser plan and takes its yarns over; gives them where the run ends with them.
+    std::optional<Yarns> begin_coarser() {
+        SimulationOptions options = m_options;
+        options.residual.reset();
+        options.flips.clear();
+        options.coarser = nullptr;
+        Simulation coarser(m_design, *m_options.coarser, options);
+        Yarns yarns = coarser.run();
+        const Ending ending = coarser.m_last.ending;
+        if (ending == Ending::stopped || ending == Ending::time) return yarns;
+        if (m_options.after_coarser && !m_options.after_coarser(yarns)) return yarns;
+        m_seconds = coarser.m_seconds;
+        m_iterations = coarser.m_iterations;
+        m_evaluations = coarser.m_evaluations;
+        const std::optional<StartState> start =
+            refined_start(m_plan, *m_options.coarser, {controls_of(coarser.m_scene), coarser.m_scene.period_mm});
+        m_coarser = {{"taken", start.has_value()}};
+        for (const char* name : {"fidelity", "points_per_key", "points", "goal", "residual", "ending", "iterations", "seconds",
+                                 "energy_N_mm", "lost_crossings"})
+            m_coarser[name] = yarns.report.at(name);
+        if (!start) return {};
+        m_scene = scene_at(m_plan, *start);
+        // Both levels are one way from the plan to the rest.
+        if (m_scene.friction > 0) m_scene.slip_from = SlipStart{controls_of(m_plan.scene), m_plan.scene.period_mm};
+        return {};
+    }
+
+    static std::vector<std::vector<Vec3>> controls_of(const SimScene& scene) {
+        std::vector<std::vector<Vec3>> control;
+        for (const SimYarn& yarn : scene.yarns) control.push_back(yarn.control);
+        return control;
+    }
+
     [[nodiscard]] RelaxOptions relax_options() const {
         RelaxOptions options;
         options.residual = m_options.residual.value_or(m_plan.goal);
@@ -332,11 +362,7 @@ class Simulation {
 
     [[nodiscard]] std::size_t lost() const { return lost_crossings(m_plan.curves, splines()).size(); }
 
-    [[nodiscard]] std::vector<Spline> splines() const {
-        std::vector<std::vector<Vec3>> control;
-        for (const SimYarn& yarn : m_scene.yarns) control.push_back(yarn.control);
-        return splines_of(std::move(control));
-    }
+    [[nodiscard]] std::vector<Spline> splines() const { return splines_of(controls_of(m_scene)); }
 
     /// Of control points of every yarn of the scene: one for each planned curve.
     [[nodiscard]] std::vector<Spline> splines_of(std::vector<std::vector<Vec3>> control) const {
@@ -429,7 +455,7 @@ class Simulation {
         const bool balanced = !m_periods || m_periods->balanced;
         yarns.report = {{"design_sha256", yarns.design_sha256},
                         {"scene_sha256", yarns.scene_sha256},
-                        {"coverage", coverage_of(m_plan, m_design)},
+                        {"coverage", coverage_of(m_plan)},
                         {"solver", std::string(sim::name_of(m_options.solver))},
                         {"backend", "cpu"},
                         {"fidelity", std::string(sim::name_of(m_plan.fidelity))},
@@ -455,6 +481,7 @@ class Simulation {
                         {"plan", lines_json(m_plan)},
                         {"peak_bytes", peak_bytes()}};
         if (!m_options.flips.empty()) yarns.report["flips"] = m_flips;
+        if (!m_coarser.is_null()) yarns.report["coarser"] = m_coarser;
         if (m_scene.friction > 0) {
             yarns.report["friction"] = {{"coefficient", m_scene.friction}, {"rounds", m_friction.rounds},
                                         {"agreed", m_friction.agreed}, {"press_N", m_friction.slip.press_N},
@@ -505,7 +532,7 @@ class Simulation {
     RelaxResult m_last;
     FrictionResult m_friction;
     std::optional<PeriodsResult> m_periods;
-    Json m_flips = Json::array();
+    Json m_flips = Json::array(), m_coarser;
     double m_seconds = 0;
     std::size_t m_iterations = 0, m_evaluations = 0;
 };

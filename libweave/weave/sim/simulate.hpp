@@ -31,6 +31,11 @@ struct SimulationOptions {
     /// See RelaxOptions; is told of lost crossings as well, unless a period relaxes.
     std::function<bool(const Progress&)> watch;
     std::optional<StartState> start;             ///< instead of the planned curves
+    /// A plan of the same part of the cloth in fewer points. It is relaxed first, to its own goal, and its yarns, refined, are
+    /// the start of the others (refined_start()); without `start`. Null: none.
+    const Plan* coarser = nullptr;
+    /// Is shown the coarser yarns, at rest or not, before the finer ones begin; false ends the run with them.
+    std::function<bool(const Yarns&)> after_coarser;
     /// Made one after the other once the cloth is at rest, each followed by a relaxation. They must be legal (block/flip.hpp),
     /// and the plan one of the whole cloth where it has several repeats.
     std::vector<Flip> flips;
@@ -40,7 +45,7 @@ struct SimulationOptions {
 /// `weave simulate --json`; whether it converged, and whether every crossing kept its order, is in it. What the report
 /// says is measured on the last state, whatever the ending. Of flips the report lists which are done, and the yarns are those
 /// of the design with these; one that does not end with the crossing asked for, or that costs another crossing its order,
-/// is undone.
+/// is undone. Where a coarser plan is what time, or whoever watches, ended, the yarns are those in its points.
 Yarns simulate(const Design& design, const Plan& plan, const SimulationOptions& options);
 
 }  // namespace weave::sim

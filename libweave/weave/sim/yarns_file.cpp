@@ -1,5 +1,6 @@
 #include <weave/core/json_reader.hpp>
 #include <weave/core/text.hpp>
+#include <weave/sim/plan.hpp>
 #include <weave/sim/yarns_file.hpp>
 
 #include <algorithm>
@@ -138,6 +139,10 @@ bool is_deviation(const Json& json) {
     return json.is_object() && std::ranges::all_of(json, fits);
 }
 
+bool is_fidelity(const Json& json) {
+    return json.is_string() && sim::parse_fidelity(json.get<std::string>());
+}
+
 /// A member of a report that people are told, and what it can be.
 struct ReportMember {
     const char* name;
@@ -159,6 +164,7 @@ constexpr ReportMember report_members[]{
     {"iterations", is_count, wish_count},
     {"lost_crossings", is_count, wish_count},
     {"slid_crossings", is_count, wish_count},
+    {"goes_on", is_fidelity, "must be \"draft\", \"standard\" or \"reference\""},
     {"smallest_curvature", is_curvature, "must be \"positive\", \"negative\" or \"not looked\""},
     {"strain_deviation", is_deviation, "must be an object of numbers from 0 on"},
 };
