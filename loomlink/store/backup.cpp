@@ -1,8 +1,9 @@
+#include <cerrno>
+#include <cstring>
 #include <fcntl.h>
 #include <loomlink/store/backup.hpp>
 #include <loomlink/store/database.hpp>
 #include <loomlink/store/store.hpp>
-#include <sys/stat.h>
 #include <unistd.h>
 
 namespace weave::loomlink {
@@ -58,17 +59,21 @@ Status copy_pages(sql::Connection& source, sql::Connection& target) {
     return {};
 }
 
+/// An empty file for its owner alone, since a store holds password hashes and sealed keys.
+Status make_empty(const fs::path& path) {
+    const int file = ::open(path.c_str(), O_WRONLY | O_CREAT | O_EXCL | O_CLOEXEC, 0600);
+    if (file < 0) return system_fault(std::string("cannot be made: ") + std::strerror(errno), path.string());
+    ::close(file);
+    return {};
+}
+
 /// A copy as one closed file, flushed.
-Status make_copy(const std::string& from, const fs::path& to) {
+Status make_copy(const std::string& from, const std::string& to) {
     WEAVE_TRY(auto source, sql::Connection::open(from, sql::Access::read));
-    WEAVE_TRY(auto target, sql::Connection::open(to.string(), sql::Access::create));
-    ::chmod(to.c_str(), 0600);  // as the store's own
+    WEAVE_TRY(auto target, sql::Connection::open(to, sql::Access::create));
     // One view for all pages, so that writes meanwhile neither show nor start the copy anew.
     WEAVE_CHECK_OK(source->script("BEGIN; SELECT count(*) FROM sqlite_schema"));
-    WEAVE_CHECK_OK(copy_pages(*source, *target));
-    source.reset();
-    target.reset();
-    return flush(to, O_RDWR);
+    return copy_pages(*source, *target);
 }
 
 /// Closes the way to a store for all others for as long as the connection lives; refused while anybody has it
@@ -85,14 +90,20 @@ Result<std::unique_ptr<sql::Connection>> shut(const fs::path& path) {
 
 }  // namespace
 
-Status copy_database(const std::string& from, const fs::path& to) {
+Status make_database(const fs::path& to, const std::function<Status(const std::string&)>& fill) {
     std::error_code code;
     if (fs::exists(to, code)) return Error{ErrorCode::refused, "exists already", to.string()};
     const Temporary temporary{beside(to)};
-    WEAVE_CHECK_OK(make_copy(from, temporary.path));
+    WEAVE_CHECK_OK(make_empty(temporary.path));
+    WEAVE_CHECK_OK(fill(temporary.path.string()));
+    WEAVE_CHECK_OK(flush(temporary.path, O_RDWR));
     fs::create_hard_link(temporary.path, to, code);  // unlike a rename, it replaces nothing
     if (code) return system_fault("cannot be put into place: " + code.message(), to.string());
     return flush(folder_of(to), O_RDONLY | O_DIRECTORY);
+}
+
+Status copy_database(const std::string& from, const fs::path& to) {
+    return make_database(to, [&](const std::string& temporary) { return make_copy(from, temporary); });
 }
 
 Status restore_store(const fs::path& backup, const fs::path& to) {
@@ -102,7 +113,9 @@ Status restore_store(const fs::path& backup, const fs::path& to) {
     std::unique_ptr<sql::Connection> held;
     std::error_code code;
     const Temporary temporary{beside(to)};
-    WEAVE_CHECK_OK(make_copy(backup.string(), temporary.path));
+    WEAVE_CHECK_OK(make_empty(temporary.path));
+    WEAVE_CHECK_OK(make_copy(backup.string(), temporary.path.string()));
+    WEAVE_CHECK_OK(flush(temporary.path, O_RDWR));
     if (fs::exists(to, code)) {
         WEAVE_TRY(held, shut(to));
     }

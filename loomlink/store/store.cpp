@@ -5,7 +5,6 @@
 #include <loomlink/store/migrations.hpp>
 #include <loomlink/store/store.hpp>
 #include <mutex>
-#include <sys/stat.h>
 
 namespace weave::loomlink {
 
@@ -102,13 +101,12 @@ Store::Store(Store&&) noexcept = default;
 Store& Store::operator=(Store&&) noexcept = default;
 
 Result<Store> Store::create(const fs::path& path, const std::string& site) {
-    std::error_code code;
-    if (fs::exists(path, code)) return Error{ErrorCode::refused, "exists already", path.string()};
-    WEAVE_TRY(auto connection, sql::Connection::open(path.string(), sql::Access::create));
-    ::chmod(path.c_str(), 0600);  // it holds sealed keys and password hashes
-    WEAVE_CHECK_OK(sql::migrate(*connection, sql::migrations()));
-    WEAVE_CHECK_OK(connection->run("INSERT INTO site (one, name) VALUES (1, ?)", site));
-    return Store(std::make_unique<Core>(path.string(), std::move(connection)));
+    WEAVE_CHECK_OK(make_database(path, [&](const std::string& temporary) -> Status {
+        WEAVE_TRY(auto connection, sql::Connection::open(temporary, sql::Access::create));
+        WEAVE_CHECK_OK(sql::migrate(*connection, sql::migrations()));
+        return connection->run("INSERT INTO site (one, name) VALUES (1, ?)", site);
+    }));
+    return open(path);
 }
 
 Result<Store> Store::open(const fs::path& path) {

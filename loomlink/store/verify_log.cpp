@@ -25,7 +25,7 @@ EventRow event_row(const sql::Row& row) {
             row.is_null(5) ? std::nullopt : std::optional(row.bytes(5))};
 }
 
-/// The leaves by their number, recomputed from the records, and a zero hash for a missing one.
+/// The leaves by their number, recomputed from the records, up to the first that is missing.
 struct Leaves {
     std::vector<Hash> hashes;
     bool whole = true;
@@ -52,9 +52,12 @@ Result<Leaves> inspect_records(Inspection& inspection, const std::string& site) 
     Hash prev{};
     const auto look = [&](const sql::Row& sql_row) {
         const EventRow row = event_row(sql_row);
-        for (; leaves.hashes.size() < row.seq && leaves.whole; leaves.whole = false)
+        if (leaves.whole && row.seq != leaves.hashes.size()) {
             inspection.find_in(leaves.hashes.size(), "is missing");
-        if (leaves.whole) inspect_record(inspection, row, prev, site);
+            leaves.whole = false;
+        }
+        if (!leaves.whole) return;
+        inspect_record(inspection, row, prev, site);
         prev = leaf_hash(row.record);
         leaves.hashes.push_back(prev);
     };
@@ -135,6 +138,7 @@ Status inspect_heads(Inspection& inspection, const std::string& site, const Leav
 Status inspect_log(Inspection& inspection) {
     WEAVE_TRY(const std::string site, Reader(inspection.connection).site());
     WEAVE_TRY(const Leaves leaves, inspect_records(inspection, site));
+    if (!leaves.whole) return {};  // without the missing record no root can be made again
     WEAVE_CHECK_OK(inspect_tree(inspection, leaves));
     return inspect_heads(inspection, site, leaves);
 }
