@@ -222,13 +222,15 @@ TEST_CASE("a full disk, an I/O error or a short write at any write is a clean er
     for (const DiskFault fault : {DiskFault::full, DiskFault::io_error, DiskFault::short_write}) {
         const Folder folder;
         FaultDisk disk;
-        std::vector<Promise> promises;
-        static_cast<void>(Store::create(folder / "s.db", "mill").value());
+        static_cast<void>(Store::create(folder / "empty.db", "mill").value());
         for (std::uint64_t n = 1;; ++n) {
+            std::filesystem::copy_file(folder / "empty.db", folder / "s.db",
+                                       std::filesystem::copy_options::overwrite_existing);
+            std::vector<Promise> promises;
             Store store = Store::open(folder / "s.db").value();
             disk.plan(fault, n);
             std::size_t failed = 0;
-            for (std::uint64_t k = 0; k < 3; ++k) {
+            for (std::uint64_t k = 0; k < 2; ++k) {
                 const auto promise = write_one(store, n * 10 + k);
                 if (promise) {
                     promises.push_back(*promise);

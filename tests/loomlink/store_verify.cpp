@@ -182,8 +182,8 @@ TEST_CASE("tree nodes, heads, schema, links and revisions are looked at as well"
     found("DROP TRIGGER tree_node_no_delete; DELETE FROM tree_node WHERE level = 1 AND position = 1",
           "tree above records 2 to 3");
     found(
-        "DROP TRIGGER tree_head_no_update; UPDATE tree_head SET head = replace(CAST(head AS TEXT), 'T10', "
-        "'T11')",
+        "DROP TRIGGER tree_head_no_update; UPDATE tree_head SET head = CAST(replace(CAST(head AS TEXT), "
+        "'T10', 'T11') AS BLOB)",
         "not signed");
     found("DROP TRIGGER revision_no_update; UPDATE revision SET message = 'other'", "revision 1 of shoe");
     found("DROP TRIGGER revision_no_update; UPDATE revision SET event = 4711", "points at a row of event");
