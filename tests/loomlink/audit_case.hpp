@@ -69,8 +69,8 @@ inline Statement statement_of(std::uint64_t number, const std::string& site = "m
 class TestTree {
   public:
     void add(const Hash& leaf) {
-        for (const auto& [place, hash] : append_leaf(m_leaves.size(), leaf, reader()).value())
-            m_nodes[place] = hash;
+        const auto complete = append_leaf(m_leaves.size(), leaf, reader()).value();
+        for (const auto& [place, hash] : complete) m_nodes[place] = hash;
         m_leaves.push_back(leaf);
     }
     [[nodiscard]] NodeReader reader() const {
