@@ -101,11 +101,12 @@ Store::Store(Store&&) noexcept = default;
 Store& Store::operator=(Store&&) noexcept = default;
 
 Result<Store> Store::create(const fs::path& path, const std::string& site) {
-    WEAVE_CHECK_OK(make_database(path, [&](const std::string& temporary) -> Status {
+    const auto fill = [&](const std::string& temporary) -> Status {
         WEAVE_TRY(auto connection, sql::Connection::open(temporary, sql::Access::create));
         WEAVE_CHECK_OK(sql::migrate(*connection, sql::migrations()));
         return connection->run("INSERT INTO site (one, name) VALUES (1, ?)", site);
-    }));
+    };
+    WEAVE_CHECK_OK(make_database(path, fill));
     return open(path);
 }
 
