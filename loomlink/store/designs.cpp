@@ -227,6 +227,7 @@ Result<Revision> Writer::add_revision(const Revision& given) {
                              position++, parent));
     WEAVE_CHECK_OK(set_state(id, RevisionState::draft, given.event));
     WEAVE_TRY(auto made, revision(id));
+    if (!made) return system_fault("the revision that was just made is not there");
     return *std::move(made);
 }
 

@@ -186,6 +186,7 @@ Result<Release> Writer::add_release(const Release& given) {
     }
     WEAVE_CHECK_OK(set_release_state(id, ReleaseState::prepared, given.event));
     WEAVE_TRY(auto made, release(id));
+    if (!made) return system_fault("the release that was just made is not there");
     return *std::move(made);
 }
 

@@ -1,5 +1,7 @@
 #include "store_case.hpp"
 
+#include <catch2/catch.hpp>
+
 #include <array>
 #include <fstream>
 #include <loomlink/store/migrations.hpp>
