@@ -47,7 +47,8 @@ ArgonPlace::~ArgonPlace() {
     places().release();
 }
 
-SecretBytes key_from_password(std::string_view password, std::span<const unsigned char> salt, GuessCost cost) {
+SecretBytes key_from_password(std::string_view password, std::span<const unsigned char> salt,
+                              GuessCost cost) {
     need_sodium();
     assert(salt.size() == argon_salt_bytes && is_affordable(cost));
     SecretBytes key(sealing_key_bytes);

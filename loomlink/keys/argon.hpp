@@ -27,8 +27,9 @@ bool is_affordable(GuessCost cost);
 
 inline constexpr std::size_t argon_salt_bytes = 16;
 
-/// A key of 32 bytes from a password and a salt of `argon_salt_bytes`. No more than two such computations run at once in
-/// a process, so that many log-ins at a time take long and not all memory. Throws std::bad_alloc without memory.
+/// A key of 32 bytes from a password and a salt of `argon_salt_bytes`. No more than two such computations run
+/// at once in a process, so that many log-ins at a time take long and not all memory. Throws std::bad_alloc
+/// without memory.
 SecretBytes key_from_password(std::string_view password, std::span<const unsigned char> salt, GuessCost cost);
 
 /// Holds one of the two places for as long as it lives.

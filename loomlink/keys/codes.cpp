@@ -34,7 +34,8 @@ Result<std::string> code_hash(std::string_view typed) {
             plain.push_back(static_cast<char>(std::tolower(static_cast<unsigned char>(c))));
     if (typed.size() > most_typed || plain.size() != groups * group_length ||
         plain.find_first_not_of(alphabet) != std::string::npos)
-        return bad_input("is no code: a code has six groups of four, of digits and letters without 0, 1, i, l and o");
+        return bad_input(
+            "is no code: a code has six groups of four, of digits and letters without 0, 1, i, l and o");
     return sha256_hex(plain);
 }
 

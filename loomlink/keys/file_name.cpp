@@ -16,8 +16,8 @@ Error refused(std::string_view name, const std::string& why) {
 }
 
 bool is_plain(char c) {
-    return (c >= 'a' && c <= 'z') || (c >= 'A' && c <= 'Z') || (c >= '0' && c <= '9') || c == '.' || c == '-' ||
-           c == '_';
+    return (c >= 'a' && c <= 'z') || (c >= 'A' && c <= 'Z') || (c >= '0' && c <= '9') || c == '.' ||
+           c == '-' || c == '_';
 }
 
 /// CON, PRN, AUX, NUL, COM0 to COM9, LPT0 to LPT9, with any ending.

@@ -7,9 +7,9 @@
 
 namespace weave::loomlink {
 
-/// Whether a name may name a file of a release, on every system of a mill: 1 to 100 ASCII letters, digits, points, hyphens and
-/// underscores; no folder, nothing that starts with a point or a hyphen or ends with a point, no name that Windows
-/// keeps for a device. The error says which rule it breaks.
+/// Whether a name may name a file of a release, on every system of a mill: 1 to 100 ASCII letters, digits,
+/// points, hyphens and underscores; no folder, nothing that starts with a point or a hyphen or ends with a
+/// point, no name that Windows keeps for a device. The error says which rule it breaks.
 Status check_file_name(std::string_view name);
 
 /// A name as systems compare it that see no difference between small and capital letters.

@@ -1,6 +1,5 @@
-#include <loomlink/keys/hex.hpp>
-
 #include <algorithm>
+#include <loomlink/keys/hex.hpp>
 
 namespace weave::loomlink {
 

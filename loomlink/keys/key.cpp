@@ -3,7 +3,6 @@
 #include <loomlink/keys/hex.hpp>
 #include <loomlink/keys/key.hpp>
 #include <loomlink/keys/sodium.hpp>
-
 #include <sodium.h>
 
 namespace weave::loomlink {

@@ -12,8 +12,9 @@ namespace weave::loomlink {
 
 using PublicKey = std::array<unsigned char, 32>;
 
-/// What a signature is for. Each purpose has a domain of its own in front of the signed bytes, so that a signature made
-/// for one can never be shown for another. The texts are part of the formats: do not change them.
+/// What a signature is for. Each purpose has a domain of its own in front of the signed bytes, so that a
+/// signature made for one can never be shown for another. The texts are part of the formats: do not change
+/// them.
 enum class Purpose : std::uint8_t {
     statement,         ///< who did what in the log: "weave statement v1"
     tree_head,         ///< size and root of the log: "weave tree head v1"
@@ -26,12 +27,12 @@ enum class Purpose : std::uint8_t {
 /// The bytes that are signed: the domain of the purpose, a line feed, the message.
 std::string signing_bytes(Purpose purpose, std::string_view message);
 
-/// The SHA-256 of the public key, 64 lower-case hexadecimal characters. All of it, since half could be met by a
-/// foreign key that somebody searched for; programs may show a person the first 16.
+/// The SHA-256 of the public key, 64 lower-case hexadecimal characters. All of it, since half could be met by
+/// a foreign key that somebody searched for; programs may show a person the first 16.
 std::string key_id(const PublicKey& key);
 
-/// A public key from 64 hexadecimal characters. Refused: what is not a point of the curve's main group, the points of small
-/// order above all, under which one signature fits many messages.
+/// A public key from 64 hexadecimal characters. Refused: what is not a point of the curve's main group, the
+/// points of small order above all, under which one signature fits many messages.
 Result<PublicKey> parse_public_key(std::string_view hex);
 
 /// A signature (Ed25519, RFC 8032) and the key that it is said to be of.
@@ -41,8 +42,8 @@ struct Signature {
     friend bool operator==(const Signature&, const Signature&) = default;
 };
 
-/// Whether the signature is of this key over the message for this purpose. Strict: no S beyond the group's order,
-/// no points of small order, the key id must be that of `key`.
+/// Whether the signature is of this key over the message for this purpose. Strict: no S beyond the group's
+/// order, no points of small order, the key id must be that of `key`.
 [[nodiscard]] bool verify(const PublicKey& key, Purpose purpose, std::string_view message,
                           const Signature& signature);
 

@@ -9,7 +9,8 @@ void read_heading(JsonReader& reader, const std::string& format) {
     if (reader.text("format", {}, 64) != format) reader.fail("must be " + format, "format");
     const auto version = reader.integer("version", 1, most_count);
     if (version > 1)
-        reader.fail("is " + std::to_string(version) + ", newer than this program, which reads version 1", "version");
+        reader.fail("is " + std::to_string(version) + ", newer than this program, which reads version 1",
+                    "version");
 }
 
 std::string hex_member(JsonReader& reader, const std::string& key, std::size_t characters) {

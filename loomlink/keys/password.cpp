@@ -53,7 +53,8 @@ Status check_password(std::string_view password, std::string_view login, std::st
     if (password.size() > most_bytes)
         return no_password("has more than " + std::to_string(most_bytes) + " bytes; take a shorter one");
     if (!is_utf8(password) || has_control(password))
-        return no_password("has characters that cannot be typed everywhere; take letters, digits, signs and spaces");
+        return no_password(
+            "has characters that cannot be typed everywhere; take letters, digits, signs and spaces");
     const auto [count, all_same] = characters_of(password);
     if (count < least_characters)
         return no_password("is too short: it takes " + std::to_string(least_characters) +
@@ -70,8 +71,8 @@ std::string PasswordHasher::hash(std::string_view password) const {
     need_sodium();
     std::array<char, crypto_pwhash_STRBYTES> text{};
     const ArgonPlace place;
-    if (crypto_pwhash_str_alg(text.data(), password.data(), password.size(), m_cost.passes, m_cost.memory_bytes,
-                              crypto_pwhash_ALG_ARGON2ID13) != 0)
+    if (crypto_pwhash_str_alg(text.data(), password.data(), password.size(), m_cost.passes,
+                              m_cost.memory_bytes, crypto_pwhash_ALG_ARGON2ID13) != 0)
         throw std::bad_alloc();
     return text.data();
 }

@@ -89,7 +89,8 @@ Status check_facts(const struct stat& facts, const fs::path& path) {
 Result<int> open_private(const fs::path& path, struct stat& facts) {
     Descriptor file(::open(path.c_str(), O_RDONLY | O_CLOEXEC | O_NOFOLLOW | O_NONBLOCK));
     if (file.number() < 0 && errno == ELOOP) return refused(path, "is a symbolic link");
-    if (file.number() < 0) return bad_input(std::string("cannot open: ") + std::strerror(errno), path.string());
+    if (file.number() < 0)
+        return bad_input(std::string("cannot open: ") + std::strerror(errno), path.string());
     if (::fstat(file.number(), &facts) != 0) return fault(path, "examine");
     WEAVE_CHECK_OK(check_facts(facts, path));
     return file.release();

@@ -98,11 +98,14 @@ Result<ReleaseIndex> open_index(std::string_view bytes, const TrustDocument& tru
     read_releases(reader, index);
     reader.no_others();
     WEAVE_CHECK_OK(reader.status());
-    auto parsed = signed_from_json(head);
+    auto parsed = head_from_json(head);
     if (!parsed) return std::move(parsed).error().under("body.tree_head");
     index.tree_head = std::move(*parsed);
+    if (Status signed_well = check_head(index.tree_head, trust); !signed_well)
+        return std::move(signed_well).error().under("body.tree_head");
     if (index.site != trust.site)
-        return Error{ErrorCode::refused, "is an index of the site '" + index.site + "', not of '" + trust.site + "'",
+        return Error{ErrorCode::refused,
+                     "is an index of the site '" + index.site + "', not of '" + trust.site + "'",
                      "body.site"};
     return index;
 }

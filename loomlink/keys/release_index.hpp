@@ -3,7 +3,7 @@
 #include <weave/core/json_reader.hpp>
 
 #include <cstdint>
-#include <loomlink/keys/tree_head.hpp>
+#include <loomlink/keys/log_head.hpp>
 #include <string>
 #include <string_view>
 #include <vector>
@@ -30,11 +30,11 @@ struct IndexEntry {
 struct ReleaseIndex {
     std::string site, loom;
     std::uint64_t trust = 1;  ///< number of the trust document under which it was stamped
-    /// How many records the log had when the last one that concerns this loom's releases was in it. So it never falls, is never
-    /// more than the size of the log, and two indexes of one epoch list the same.
+    /// How many records the log had when the last one that concerns this loom's releases was in it. So it
+    /// never falls, is never more than the size of the log, and two indexes of one epoch list the same.
     std::uint64_t epoch = 0;
     Instant issued, expires;
-    SignedDocument tree_head;          ///< the log's newest head
+    SignedLogHead tree_head;           ///< the log's newest head
     std::vector<IndexEntry> releases;  ///< every release for this loom so far, by number
 
     /// The entry of a release, or nullptr.
@@ -43,7 +43,8 @@ struct ReleaseIndex {
 
 inline constexpr std::size_t most_index_bytes = std::size_t{4} << 20, most_releases = 10000;
 
-/// No index may hold for longer than this, whatever it says: a stamp key that was stolen for an hour must not stamp for a year.
+/// No index may hold for longer than this, whatever it says: a stamp key that was stolen for an hour must not
+/// stamp for a year.
 inline constexpr std::chrono::hours longest_validity{7 * 24};
 
 /// The body to sign with the stamp key.
@@ -51,8 +52,9 @@ Json index_body(const ReleaseIndex& index);
 /// SHA-256 of the list of releases alone: equal for two indexes that list the same.
 std::string releases_sha256(const ReleaseIndex& index);
 
-/// An index as a key with the role `stamp` signed it for the site of `trust`, in sound form: numbers ascending, valid for no longer
-/// than `longest_validity`. Whether it is fresh and the right one is for check_index() in loomlink/terminal.
+/// An index as a key with the role `stamp` signed it for the site of `trust`, in sound form: numbers
+/// ascending, valid for no longer than `longest_validity`, with a head that the log's key signed. Whether it
+/// is fresh and the right one is for check_index() in loomlink/terminal.
 Result<ReleaseIndex> open_index(std::string_view bytes, const TrustDocument& trust);
 
 }  // namespace weave::loomlink

@@ -36,7 +36,8 @@ ReleasedFile read_file_entry(JsonReader& entry) {
 void read_files(JsonReader& reader, ReleaseManifest& manifest) {
     auto entries = reader.objects("files");
     if (entries.empty() || entries.size() > most_released_files)
-        return reader.fail("must be a list of 1 to " + std::to_string(most_released_files) + " files", "files");
+        return reader.fail("must be a list of 1 to " + std::to_string(most_released_files) + " files",
+                           "files");
     std::set<std::string> names{manifest_name};
     std::uint64_t bytes = 0;
     for (auto& entry : entries) {
@@ -44,7 +45,8 @@ void read_files(JsonReader& reader, ReleaseManifest& manifest) {
         if (!names.insert(folded_name(file.path)).second) entry.fail("is the name of another file", "path");
         bytes += file.size;
         if (bytes > most_release_bytes)
-            entry.fail("makes the release larger than " + std::to_string(most_release_bytes) + " bytes", "size");
+            entry.fail("makes the release larger than " + std::to_string(most_release_bytes) + " bytes",
+                       "size");
         if (reader.failed()) return;
         manifest.files.push_back(std::move(file));
     }
@@ -108,8 +110,8 @@ Json manifest_body(const ReleaseManifest& manifest) {
 Result<ReleaseManifest> open_manifest(std::string_view bytes, const TrustDocument& trust) {
     ReleaseManifest manifest;
     WEAVE_TRY(manifest.document, read_signed(bytes, most_manifest_bytes));
-    WEAVE_CHECK_OK(
-        check_signatures(manifest.document, Purpose::release_manifest, trust, Role::release, trust.release_threshold));
+    WEAVE_CHECK_OK(check_signatures(manifest.document, Purpose::release_manifest, trust, Role::release,
+                                    trust.release_threshold));
     JsonReader reader(manifest.document.body, "body");
     read_heading(reader, format);
     manifest.site = name_member(reader, "site");
@@ -125,7 +127,8 @@ Result<ReleaseManifest> open_manifest(std::string_view bytes, const TrustDocumen
     WEAVE_CHECK_OK(reader.status());
     if (manifest.site != trust.site)
         return Error{ErrorCode::refused,
-                     "is a release of the site '" + manifest.site + "', not of '" + trust.site + "'", "body.site"};
+                     "is a release of the site '" + manifest.site + "', not of '" + trust.site + "'",
+                     "body.site"};
     return manifest;
 }
 

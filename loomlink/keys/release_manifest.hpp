@@ -17,7 +17,8 @@ struct ReleasedFile {
     std::string sha256;
     std::string format;      ///< such as `jc5`, `tiff`, `pick-table-csv`
     bool certified = false;  ///< whether the controller's maker confirmed the layout
-    std::string label;       ///< what a person must know about it, such as "layout-compatible with observed files, …"
+    std::string
+        label;  ///< what a person must know about it, such as "layout-compatible with observed files, …"
     friend bool operator==(const ReleasedFile&, const ReleasedFile&) = default;
 };
 
@@ -32,8 +33,9 @@ struct ReleaseManifest {
     std::string profile_name, profile_revision, profile_sha256;
     std::uint64_t profile_version = 0;  ///< as loomlink counts the profiles of this loom
     std::uint64_t picks = 0, ends = 0;
-    /// How the bytes are to be read (which bit lifts, which row is pick 1, which column is end 1, bit order, seen from which face)
-    /// and which feeder each yarn of the design takes: as loomlink/export wrote them, an object and a list.
+    /// How the bytes are to be read (which bit lifts, which row is pick 1, which column is end 1, bit order,
+    /// seen from which face) and which feeder each yarn of the design takes: as loomlink/export wrote them,
+    /// an object and a list.
     Json reading = Json::object(), feeders = Json::array();
     std::vector<ReleasedFile> files;
 
@@ -51,9 +53,9 @@ inline constexpr std::uint64_t most_release_bytes = std::uint64_t{512} << 20;
 /// The body for the people to sign; all of `manifest` but `document`.
 Json manifest_body(const ReleaseManifest& manifest);
 
-/// A manifest signed by as many people with a release key as `trust` asks for, for its site, in sound form: file names that
-/// harm nobody and differ in more than case, sizes within bounds. Judged by the newest trust document always: one
-/// signature of a key that was revoked, and the release has to be signed again.
+/// A manifest signed by as many people with a release key as `trust` asks for, for its site, in sound form:
+/// file names that harm nobody and differ in more than case, sizes within bounds. Judged by the newest trust
+/// document always: one signature of a key that was revoked, and the release has to be signed again.
 Result<ReleaseManifest> open_manifest(std::string_view bytes, const TrustDocument& trust);
 
 }  // namespace weave::loomlink

@@ -12,8 +12,7 @@ constexpr const char* format = "weave-sealed-key";
 constexpr std::size_t most_text = 8192;
 
 static_assert(sizeof(SealedKey::nonce) == crypto_aead_xchacha20poly1305_ietf_NPUBBYTES);
-static_assert(sizeof(SealedKey::sealed) ==
-              KeyPair::seed_bytes + crypto_aead_xchacha20poly1305_ietf_ABYTES);
+static_assert(sizeof(SealedKey::sealed) == KeyPair::seed_bytes + crypto_aead_xchacha20poly1305_ietf_ABYTES);
 
 /// All but the sealed secret, which it is bound to.
 Json open_part(const SealedKey& key) {
@@ -38,8 +37,9 @@ SealedKey seal(const std::string& person, const KeyPair& pair, std::string_view 
     randombytes_buf(key.nonce.data(), key.nonce.size());
     const SecretBytes seed = pair.seed(), lock = key_from_password(password, key.salt, cost);
     const std::string bound = canonical_json(open_part(key));
-    crypto_aead_xchacha20poly1305_ietf_encrypt(key.sealed.data(), nullptr, seed.data(), seed.size(), raw(bound),
-                                               bound.size(), nullptr, key.nonce.data(), lock.data());
+    crypto_aead_xchacha20poly1305_ietf_encrypt(key.sealed.data(), nullptr, seed.data(), seed.size(),
+                                               raw(bound), bound.size(), nullptr, key.nonce.data(),
+                                               lock.data());
     return key;
 }
 
@@ -53,8 +53,8 @@ Result<KeyPair> open(const SealedKey& key, std::string_view password) {
     const std::string bound = canonical_json(open_part(key));
     SecretBytes seed(KeyPair::seed_bytes);
     if (crypto_aead_xchacha20poly1305_ietf_decrypt(seed.data(), nullptr, nullptr, key.sealed.data(),
-                                                   key.sealed.size(), raw(bound), bound.size(), key.nonce.data(),
-                                                   lock.data()) != 0)
+                                                   key.sealed.size(), raw(bound), bound.size(),
+                                                   key.nonce.data(), lock.data()) != 0)
         return stays_shut();
     KeyPair pair = KeyPair::from_seed(seed);
     if (pair.public_key() != key.public_key) return stays_shut();
@@ -103,7 +103,8 @@ Result<SealedKey> read_sealed_key(std::string_view text) {
     read_hex(reader, "nonce", key.nonce);
     read_hex(reader, "sealed", key.sealed);
     reader.no_others();
-    if (!reader.failed() && !is_affordable(key.cost)) reader.fail("is no cost that this program spends", "passes");
+    if (!reader.failed() && !is_affordable(key.cost))
+        reader.fail("is no cost that this program spends", "passes");
     WEAVE_CHECK_OK(reader.status());
     auto parsed = parse_public_key(public_key);
     if (!parsed) return std::move(parsed).error().under("public");

@@ -11,9 +11,9 @@
 
 namespace weave::loomlink {
 
-/// A person's signing key as the server keeps it: the secret sealed under a key that only the password gives (Argon2id, then
-/// XChaCha20-Poly1305). Everything beside the secret is bound to it as associated data, so that no sealed
-/// key can be given to another person or be made cheaper to guess.
+/// A person's signing key as the server keeps it: the secret sealed under a key that only the password gives
+/// (Argon2id, then XChaCha20-Poly1305). Everything beside the secret is bound to it as associated data, so
+/// that no sealed key can be given to another person or be made cheaper to guess.
 struct SealedKey {
     std::string person;  ///< the login name
     PublicKey public_key{};
@@ -28,8 +28,8 @@ struct SealedKey {
 /// A new key pair of a person, sealed. The password must have been checked with check_password().
 SealedKey make_sealed_key(const std::string& person, std::string_view password, GuessCost cost);
 
-/// Opens the key for one signature and wipes it again. Refused, in the same words, where the password is wrong or the sealed
-/// key was altered: which of the two it is would help only who guesses.
+/// Opens the key for one signature and wipes it again. Refused, in the same words, where the password is
+/// wrong or the sealed key was altered: which of the two it is would help only who guesses.
 Result<Signature> sign_with(const SealedKey& key, std::string_view password, Purpose purpose,
                             std::string_view message);
 

@@ -1,6 +1,5 @@
 #include <loomlink/keys/secret_bytes.hpp>
 #include <loomlink/keys/sodium.hpp>
-
 #include <new>
 #include <sodium.h>
 #include <utility>

@@ -6,8 +6,8 @@
 
 namespace weave::loomlink {
 
-/// Bytes that nobody else may see: kept out of swap and core dumps where the system allows it, between guard pages,
-/// and wiped when they go. Zero at first. Throws std::bad_alloc where there is no memory.
+/// Bytes that nobody else may see: kept out of swap and core dumps where the system allows it, between guard
+/// pages, and wiped when they go. Zero at first. Throws std::bad_alloc where there is no memory.
 class SecretBytes {
   public:
     explicit SecretBytes(std::size_t size);
@@ -29,7 +29,8 @@ class SecretBytes {
 /// Overwrites a text that held a secret, such as a password that a request brought, and empties it.
 void wipe(std::string& secret);
 
-/// Whether two secrets are equal, in a time that does not tell where they differ (their lengths are no secret).
+/// Whether two secrets are equal, in a time that does not tell where they differ (their lengths are no
+/// secret).
 bool equal_secrets(std::string_view one, std::string_view other);
 
 }  // namespace weave::loomlink

@@ -10,7 +10,8 @@ namespace weave::loomlink {
 
 namespace {
 
-// A key file is a line that says what it is, a line with the seed, and a line with the key's id, which shows damage.
+// A key file is a line that says what it is, a line with the seed, and a line with the key's id, which shows
+// damage.
 constexpr std::size_t seed_characters = 2 * KeyPair::seed_bytes, id_characters = 64;
 
 std::string_view heading_of(ServerKeyRole role) {

@@ -36,10 +36,12 @@ Result<SignedDocument> signed_from_json(const Json& json) {
     document.body = reader.object("body").json();
     auto signatures = reader.objects("signatures");
     if (signatures.empty() || signatures.size() > most_signatures)
-        reader.fail("must be a list of 1 to " + std::to_string(most_signatures) + " signatures", "signatures");
+        reader.fail("must be a list of 1 to " + std::to_string(most_signatures) + " signatures",
+                    "signatures");
     for (auto& entry : signatures) {
         if (reader.failed()) break;
-        Signature signature{hex_member(entry, "key", key_characters), hex_member(entry, "value", value_characters)};
+        Signature signature{hex_member(entry, "key", key_characters),
+                            hex_member(entry, "value", value_characters)};
         entry.no_others();
         if (!document.signatures.empty() && signature.key == document.signatures.back().key)
             entry.fail("is of a key that has signed already: a key counts once", "key");
@@ -54,10 +56,12 @@ Result<SignedDocument> signed_from_json(const Json& json) {
 
 Result<SignedDocument> read_signed(std::string_view bytes, std::size_t limit) {
     if (bytes.size() > limit)
-        return bad_input("is too large: a document of this kind has at most " + std::to_string(limit) + " bytes");
+        return bad_input("is too large: a document of this kind has at most " + std::to_string(limit) +
+                         " bytes");
     WEAVE_TRY(const Json json, parse_json(bytes));
     if (canonical_json(json) != bytes)
-        return bad_input("is not in canonical form (RFC 8785), so that its bytes could mean more than was signed");
+        return bad_input(
+            "is not in canonical form (RFC 8785), so that its bytes could mean more than was signed");
     return signed_from_json(json);
 }
 

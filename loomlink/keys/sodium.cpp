@@ -1,8 +1,7 @@
 #include <weave/core/log.hpp>
 
-#include <loomlink/keys/sodium.hpp>
-
 #include <cstdlib>
+#include <loomlink/keys/sodium.hpp>
 #include <sodium.h>
 
 namespace weave::loomlink {

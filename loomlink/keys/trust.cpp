@@ -24,7 +24,8 @@ Error too_few(const std::string& what, std::size_t needed, std::size_t have) {
                    (have == 1 ? " is" : " are"));
 }
 
-/// Different people among the keys of a role that have signed; an error where one of their signatures does not fit.
+/// Different people among the keys of a role that have signed; an error where one of their signatures does
+/// not fit.
 Result<std::size_t> people_who_signed(const SignedDocument& document, const TrustDocument& trust, Role role) {
     std::set<std::string> people;
     for (const Signature& signature : document.signatures) {
@@ -52,7 +53,8 @@ bool is_root(const TrustDocument& trust, const std::string& id) {
 }  // namespace
 
 const TrustedKey* TrustDocument::find(std::string_view id) const {
-    const auto found = std::find_if(keys.begin(), keys.end(), [&](const TrustedKey& key) { return key.id() == id; });
+    const auto found =
+        std::find_if(keys.begin(), keys.end(), [&](const TrustedKey& key) { return key.id() == id; });
     return found == keys.end() ? nullptr : &*found;
 }
 
@@ -82,22 +84,23 @@ Result<TrustDocument> follow_trust(TrustDocument pinned, std::span<const std::st
     return pinned;
 }
 
-Status check_signatures(const SignedDocument& document, Purpose purpose, const TrustDocument& trust, Role role,
-                        std::size_t people) {
+Status check_signatures(const SignedDocument& document, Purpose purpose, const TrustDocument& trust,
+                        Role role, std::size_t people) {
     std::set<std::string> keys, signers;
     for (const Signature& signature : document.signatures) {
         const std::string name = "key " + short_id(signature.key);
         const TrustedKey* key = trust.find(signature.key);
         if (key == nullptr)
-            return refused("is signed with " + name + ", which trust document " + std::to_string(trust.version) +
-                           " does not know: unknown or revoked");
+            return refused("is signed with " + name + ", which trust document " +
+                           std::to_string(trust.version) + " does not know: unknown or revoked");
         if (!key->has(role))
-            return refused("is signed with " + name + " of " + key->person + ", which does not have the role " +
-                           name_of(role));
+            return refused("is signed with " + name + " of " + key->person +
+                           ", which does not have the role " + name_of(role));
         if (!keys.insert(signature.key).second)
             return refused("is signed twice with " + name + ": a key counts once");
         if (!verify_body(key->public_key, purpose, document.body, signature))
-            return refused("the signature of " + name + " of " + key->person + " does not fit: forged or altered");
+            return refused("the signature of " + name + " of " + key->person +
+                           " does not fit: forged or altered");
         signers.insert(key->person);
     }
     if (signers.size() < people) return too_few("this", people, signers.size());

@@ -33,8 +33,9 @@ struct TrustedKey {
     [[nodiscard]] bool has(Role role) const;
 };
 
-/// Whose keys count for what at one site: version n of a chain in which each version is signed by enough roots of the
-/// one before and of itself (as The Update Framework's root role). A key that is in the newest version no more is revoked.
+/// Whose keys count for what at one site: version n of a chain in which each version is signed by enough
+/// roots of the one before and of itself (as The Update Framework's root role). A key that is in the newest
+/// version no more is revoked.
 struct TrustDocument {
     std::uint64_t version = 1;
     std::string site;
@@ -58,22 +59,23 @@ inline constexpr std::size_t most_trust_bytes = std::size_t{256} << 10, most_tru
 /// The body to sign; all of `trust` but `document`.
 Json trust_body(const TrustDocument& trust);
 
-/// Reads one document that stands by itself: its form, and enough signatures of its own roots. That it is the right one is for the
-/// caller to know, by its fingerprint. Signatures of keys that are no roots of this document (roots of the version
-/// before) cannot be judged here and do not count. Refused in form: a key twice, a key of the server
-/// with a person's role, thresholds that the people in it cannot reach, no stamp or log key.
+/// Reads one document that stands by itself: its form, and enough signatures of its own roots. That it is the
+/// right one is for the caller to know, by its fingerprint. Signatures of keys that are no roots of this
+/// document (roots of the version before) cannot be judged here and do not count. Refused in form: a key
+/// twice, a key of the server with a person's role, thresholds that the people in it cannot reach, no stamp
+/// or log key.
 Result<TrustDocument> read_trust(std::string_view bytes);
 
-/// Reads the version that follows `now`. Refused, each in words: another site, any version but the next, a signature of a key
-/// that is root in neither or does not fit, too few roots of `now` or of itself.
+/// Reads the version that follows `now`. Refused, each in words: another site, any version but the next, a
+/// signature of a key that is root in neither or does not fit, too few roots of `now` or of itself.
 Result<TrustDocument> next_trust(const TrustDocument& now, std::string_view bytes);
 
 /// Follows a chain of documents, each the next of the one before; the last. An error says which.
 Result<TrustDocument> follow_trust(TrustDocument pinned, std::span<const std::string> documents);
 
-/// Whether a document is signed by `people` different people whose keys have `role`. Every signature has to be such a
-/// one and fit: nothing is passed over. Errors name the key.
-Status check_signatures(const SignedDocument& document, Purpose purpose, const TrustDocument& trust, Role role,
-                        std::size_t people);
+/// Whether a document is signed by `people` different people whose keys have `role`. Every signature has to
+/// be such a one and fit: nothing is passed over. Errors name the key.
+Status check_signatures(const SignedDocument& document, Purpose purpose, const TrustDocument& trust,
+                        Role role, std::size_t people);
 
 }  // namespace weave::loomlink

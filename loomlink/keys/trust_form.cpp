@@ -29,7 +29,8 @@ std::vector<Role> read_roles(JsonReader& entry) {
     for (const Json& item : list) {
         const auto name = std::find_if(role_names.begin(), role_names.end(),
                                        [&](const std::string& known) { return item == known; });
-        if (name == role_names.end()) return wrong("has a role that is none of root, release, stamp, log, evidence");
+        if (name == role_names.end())
+            return wrong("has a role that is none of root, release, stamp, log, evidence");
         const auto role = static_cast<Role>(name - role_names.begin());
         if (!roles.empty() && roles.back() >= role)
             return wrong("must be in the order root, release, stamp, log, evidence, none twice");
@@ -127,7 +128,8 @@ Result<TrustDocument> read_trust_form(std::string_view bytes) {
     read_keys(reader, trust);
     JsonReader thresholds = reader.object("thresholds");
     trust.root_threshold = static_cast<std::size_t>(count_member(thresholds, "root", 1, most_threshold));
-    trust.release_threshold = static_cast<std::size_t>(count_member(thresholds, "release", 1, most_threshold));
+    trust.release_threshold =
+        static_cast<std::size_t>(count_member(thresholds, "release", 1, most_threshold));
     thresholds.no_others();
     reader.no_others();
     if (!reader.failed()) check_reach(reader, trust);

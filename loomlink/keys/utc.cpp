@@ -1,8 +1,7 @@
 #include <weave/core/text.hpp>
 
-#include <loomlink/keys/utc.hpp>
-
 #include <cstdio>
+#include <loomlink/keys/utc.hpp>
 
 namespace weave::loomlink {
 
@@ -37,11 +36,11 @@ std::string utc_text(Instant instant) {
     const chrono::year_month_day date(day);
     const chrono::hh_mm_ss clock(instant - day);
     char text[64];
-    const int length =
-        std::snprintf(text, sizeof text, "%04d-%02u-%02uT%02d:%02d:%02d.%03dZ", static_cast<int>(date.year()),
-                      static_cast<unsigned>(date.month()), static_cast<unsigned>(date.day()),
-                      static_cast<int>(clock.hours().count()), static_cast<int>(clock.minutes().count()),
-                      static_cast<int>(clock.seconds().count()), static_cast<int>(clock.subseconds().count()));
+    const int length = std::snprintf(
+        text, sizeof text, "%04d-%02u-%02uT%02d:%02d:%02d.%03dZ", static_cast<int>(date.year()),
+        static_cast<unsigned>(date.month()), static_cast<unsigned>(date.day()),
+        static_cast<int>(clock.hours().count()), static_cast<int>(clock.minutes().count()),
+        static_cast<int>(clock.seconds().count()), static_cast<int>(clock.subseconds().count()));
     return {text, static_cast<std::size_t>(length)};
 }
 
