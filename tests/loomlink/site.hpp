@@ -54,9 +54,11 @@ struct Site {
         return sign(loomlink::Purpose::trust_document, trust_body(trust), keys);
     }
     [[nodiscard]] std::string trust_bytes() const { return sign_trust(trust_terms(), {&anna, &ben}); }
-    [[nodiscard]] loomlink::TrustDocument trust() const { return read_trust(trust_bytes()).value(); }
+    [[nodiscard]] loomlink::TrustDocument trust() const {
+        return loomlink::read_trust(trust_bytes()).value();
+    }
     [[nodiscard]] loomlink::TerminalState terminal() const {
-        return first_state(loom, trust_bytes(), trust().fingerprint()).value();
+        return loomlink::first_state(loom, trust_bytes(), trust().fingerprint()).value();
     }
 
     /// The honest log has one root a size.

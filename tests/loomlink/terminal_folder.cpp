@@ -42,7 +42,8 @@ struct Placed {
     /// What verify_files() finds, as NAME: MESSAGE.
     [[nodiscard]] std::vector<std::string> findings() const {
         std::vector<std::string> told;
-        for (const FileFinding& finding : verify_files(folder, state.trust).value().findings)
+        const FolderReport report = verify_files(folder, state.trust).value();
+        for (const FileFinding& finding : report.findings)
             told.push_back(finding.path + ": " + finding.message);
         return told;
     }

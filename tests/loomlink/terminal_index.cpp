@@ -2,6 +2,7 @@
 
 #include <catch2/catch.hpp>
 
+#include <loomlink/keys/members.hpp>
 #include <support/random.hpp>
 
 using namespace weave;

@@ -49,7 +49,7 @@ TEST_CASE("a release whose every byte is right is taken") {
     CHECK(release.manifest.design == "shoe");
     CHECK(release.manifest.profile_version == 2);
     CHECK(release.manifest.reading == Json({{"lifted_bit", 1}}));
-    CHECK(manifest_body(release.manifest) == release.manifest.document.body);
+    CHECK(canonical_json(manifest_body(release.manifest)) == canonical_json(release.manifest.document.body));
     CHECK(release.files.size() == 3);
     CHECK(release.files.back().path == "manifest.json");
     CHECK(release.folder == "release-2-" + sha256_hex(pull.manifest).substr(0, 12));
