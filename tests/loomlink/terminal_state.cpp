@@ -126,5 +126,5 @@ TEST_CASE("a damaged state is refused or still a sound one") {
             if (state) REQUIRE(read_state(write_state(*state)));
             REQUIRE_FALSE(read_state(bytes.substr(0, at)));
         },
-        testing::property_cases() / 50);
+        testing::property_cases() / 10);
 }
