@@ -4,6 +4,7 @@
 
 #include <array>
 #include <boost/asio/co_spawn.hpp>
+#include <boost/asio/detached.hpp>
 #include <boost/asio/io_context.hpp>
 #include <boost/asio/write.hpp>
 #include <boost/beast/core/flat_buffer.hpp>
@@ -56,13 +57,10 @@ class HttpClient::Connected {
     [[nodiscard]] bool was_stale() const { return m_stale; }
 
     Result<Response> send(const std::string& head, const ClientRequest& request, const Sink* sink) {
-        Result<Response> outcome = system_fault("the request did not end");
+        Result<Response> outcome = system_fault("the request failed", host_field(m_options));
+        const auto run = [&]() -> asio::awaitable<void> { outcome = co_await talk(head, request, sink); };
         m_io.restart();
-        asio::co_spawn(
-            m_io, [&] { return talk(head, request, sink); },
-            [&](const std::exception_ptr& thrown, Result<Response> answered) {
-                outcome = thrown ? Result<Response>(system_fault("the request failed")) : std::move(answered);
-            });
+        asio::co_spawn(m_io, run, asio::detached);
         m_io.run();
         return outcome;
     }
