@@ -16,6 +16,7 @@ namespace weave::net {
 
 namespace {
 
+namespace beast = boost::beast;
 namespace http = beast::http;
 
 constexpr std::size_t piece_bytes = 65536;

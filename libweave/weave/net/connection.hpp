@@ -20,6 +20,8 @@
 
 namespace weave::net {
 
+namespace beast = boost::beast;
+
 class Connection;
 
 /// What all connections of a server share.

@@ -42,7 +42,8 @@ Result<asio::ssl::context> tls_context(const ClientOptions& options) {
 bool expect_host(SSL* tls, const std::string& host) {
     X509_VERIFY_PARAM* const expected = SSL_get0_param(tls);
     if (is_address(host)) return X509_VERIFY_PARAM_set1_ip_asc(expected, host.c_str()) == 1;
-    return SSL_ctrl(tls, SSL_CTRL_SET_TLSEXT_HOSTNAME, TLSEXT_NAMETYPE_host_name, const_cast<char*>(host.c_str())) == 1 &&
+    return SSL_ctrl(tls, SSL_CTRL_SET_TLSEXT_HOSTNAME, TLSEXT_NAMETYPE_host_name,
+                    const_cast<char*>(host.c_str())) == 1 &&
            X509_VERIFY_PARAM_set1_host(expected, host.c_str(), host.size()) == 1;
 }
 

@@ -7,7 +7,6 @@
 #include <boost/asio/ssl/stream.hpp>
 #include <boost/asio/steady_timer.hpp>
 #include <boost/asio/use_awaitable.hpp>
-#include <boost/beast/core/role.hpp>
 #include <chrono>
 #include <memory>
 #include <optional>
@@ -15,7 +14,6 @@
 namespace weave::net {
 
 namespace asio = boost::asio;
-namespace beast = boost::beast;
 using boost::system::error_code;
 using Tcp = asio::ip::tcp;
 using Milliseconds = std::chrono::milliseconds;
@@ -73,18 +71,6 @@ class Stream {
     Tcp::socket m_socket;
     std::optional<asio::ssl::stream<Tcp::socket&>> m_tls;
 };
-
-/// Beast calls these when a WebSocket has ended: nothing of worth follows its closing frames.
-inline void beast_close_socket(Stream& stream) {
-    stream.close();
-}
-template <class Handler>
-void async_teardown(beast::role_type, Stream& stream, Handler&& handler) {
-    error_code ignored;
-    stream.socket().shutdown(Tcp::socket::shutdown_both, ignored);
-    asio::post(stream.get_executor(),
-               [done = std::forward<Handler>(handler)]() mutable { done(error_code()); });
-}
 
 /// Closes a stream when a time is over. Lives on the stream's executor; its owner must keep `owner` alive as
 /// long as the stream.

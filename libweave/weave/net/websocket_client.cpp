@@ -1,4 +1,5 @@
 #include <weave/net/dial.hpp>
+#include <weave/net/teardown.hpp>
 #include <weave/net/websocket_client.hpp>
 
 #include <boost/asio/co_spawn.hpp>
@@ -16,6 +17,7 @@ namespace weave::net {
 
 namespace {
 
+namespace beast = boost::beast;
 namespace websocket = beast::websocket;
 
 constexpr std::size_t most_ahead = 16;

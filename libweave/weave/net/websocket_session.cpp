@@ -13,7 +13,7 @@ namespace {
 namespace websocket = beast::websocket;
 
 constexpr int send_buffer_bytes = 256 << 10;  // what the kernel holds back is old by the time it is read
-constexpr Milliseconds parting_time{5'000};   // beside what the size of the queue asks
+constexpr Milliseconds parting_time{2'000};   // beside what the size of the queue asks
 
 }  // namespace
 

@@ -2,6 +2,7 @@
 
 #include <weave/net/connection.hpp>
 #include <weave/net/outbox.hpp>
+#include <weave/net/teardown.hpp>
 
 #include <boost/beast/websocket/stream.hpp>
 
