@@ -61,6 +61,11 @@ std::optional<std::size_t> Outbox::bytes_before_farewell() const {
     return m_control_bytes + (m_frame ? m_frame->size() : 0);
 }
 
+std::optional<WebSocketEnd> Outbox::farewell() const {
+    const std::lock_guard lock(m_mutex);
+    return m_farewell;
+}
+
 void Outbox::end() {
     const std::lock_guard lock(m_mutex);
     m_wake = nullptr;

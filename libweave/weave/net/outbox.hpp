@@ -32,6 +32,8 @@ class Outbox final : public WebSocket {
     Next take();
     /// Whether, and behind how many bytes, a farewell waits.
     [[nodiscard]] std::optional<std::size_t> bytes_before_farewell() const;
+    /// The farewell, if one was said.
+    [[nodiscard]] std::optional<WebSocketEnd> farewell() const;
     /// The connection is gone: nothing more is taken in, and `wake` is let go.
     void end();
 

@@ -15,10 +15,10 @@ struct WebSocketMessage {
     bool binary = false;  ///< otherwise UTF-8 text
 };
 
-/// Why a WebSocket ended.
+/// Why a WebSocket ended: by the service's own close, as it gave it, or by the other side's.
 struct WebSocketEnd {
     std::uint16_t code = 1006;  ///< as RFC 6455 numbers them; 1006: the connection broke
-    std::string reason;         ///< as the other side gave it: hostile, at most 123 bytes
+    std::string reason;         ///< the other side's is hostile, at most 123 bytes
 };
 
 /// The server's end of an open WebSocket. Safe to use from any thread, and after the end, when sending does

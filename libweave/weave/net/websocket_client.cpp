@@ -147,6 +147,7 @@ class WebSocketClient::Running {
         const bool said = reason.code != websocket::close_code::none;
         finish(said ? WebSocketEnd{reason.code, {reason.reason.data(), reason.reason.size()}}
                     : WebSocketEnd{});
+        leave();
     }
 
     asio::awaitable<void> write_all() {
@@ -163,6 +164,7 @@ class WebSocketClient::Running {
             ++m_sent;
             m_changed.notify_all();
         }
+        leave();
     }
 
     bool is_ahead() {
@@ -186,6 +188,11 @@ class WebSocketClient::Running {
         m_changed.notify_all();
     }
 
+    /// The last of the two loops lets the WebSocket go: its timer would keep the thread for half a minute.
+    void leave() {
+        if (--m_loops == 0) m_socket.reset();
+    }
+
     void shut() {
         if (!m_line) return;
         m_line->deadline.clear();
@@ -203,6 +210,7 @@ class WebSocketClient::Running {
     asio::io_context m_io{1};
     std::shared_ptr<Dialled> m_line;
     std::optional<Socket> m_socket;
+    int m_loops = 2;  ///< that use m_socket
     std::optional<asio::steady_timer> m_wake_reader, m_wake_writer;
     std::thread m_thread;
 

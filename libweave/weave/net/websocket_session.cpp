@@ -125,12 +125,12 @@ asio::awaitable<void> WebSocketSession::write_all() {
 }
 
 WebSocketEnd WebSocketSession::end_of(const error_code& error) const {
-    if (error == websocket::error::closed)
-        return {m_socket.reason().code,
-                std::string(m_socket.reason().reason.data(), m_socket.reason().reason.size())};
+    if (const auto ours = m_outbox->farewell()) return *ours;  // whatever the other side made of it
     if (error == websocket::error::message_too_big || error == websocket::error::buffer_overflow)
         return {1009, {}};
-    return {1006, {}};
+    if (error != websocket::error::closed) return {};
+    const websocket::close_reason& reason = m_socket.reason();
+    return {reason.code, std::string(reason.reason.data(), reason.reason.size())};
 }
 
 }  // namespace weave::net
