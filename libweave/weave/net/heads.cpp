@@ -19,6 +19,9 @@ Status check_request_line(std::string_view line) {
     const std::size_t first = line.find(' ');
     const std::size_t second = first == std::string_view::npos ? first : line.find(' ', first + 1);
     if (second == std::string_view::npos) return bad_input("the request line is no METHOD TARGET VERSION");
+    const std::string_view target = line.substr(first + 1, second - first - 1);
+    if (!std::all_of(target.begin(), target.end(), [](char c) { return c > 0x20 && c < 0x7f; }))
+        return bad_input("the target has a character that must be encoded");
     const std::string_view version = line.substr(second + 1);
     if (!is_sendable(line.substr(0, first), {}) || second == first + 1 || version.size() != 8 ||
         !version.starts_with("HTTP/1."))
