@@ -24,7 +24,7 @@ Status check_request_line(std::string_view line) {
         return bad_input("the target has a character that must be encoded");
     const std::string_view version = line.substr(second + 1);
     if (!is_sendable(line.substr(0, first), {}) || second == first + 1 || version.size() != 8 ||
-        !version.starts_with("HTTP/1."))
+        !version.starts_with("HTTP/1.") || !all_digits(version.substr(7)))
         return bad_input("the request line is no METHOD TARGET VERSION");
     return {};
 }
