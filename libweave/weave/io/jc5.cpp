@@ -172,7 +172,7 @@ Result<HookArea> read_area(const Field& field, const std::string& what, Oddities
     }
     WEAVE_CHECK_OK(check_whole_bytes(area.hooks, field.offset + 4));
     const std::string_view name = field.value.substr(area_numbers);
-    if (!name.ends_with('\0')) oddities.add(field.offset, "the name of " + what + " does not end with NUL");
+    if (!name.ends_with('\0')) oddities.add(field.offset + area_numbers, "the name of " + what + " does not end with NUL");
     area.name = text_of(name, field.offset + area_numbers, "the name of " + what, oddities);
     return area;
 }
