@@ -230,6 +230,8 @@ TEST_CASE("what is not as observed in a JC5 file is told with its byte, and read
     p = {};
     p.comment = bytes_of("00 00 00 08  00 00 00 02  68 69");
     check_warned(p.all(), profile, at(comment_at + 8), "comment does not end with NUL");
+    p.comment = bytes_of("00 00 00 08  00 00 00 04  68 69 00 00");
+    check_warned(p.all(), profile, at(comment_at + 8), "more than one NUL");
     p.comment = bytes_of("00 00 00 08  00 00 00 02  E4 00");
     check_warned(p.all(), profile, at(comment_at + 8), "'\\xe4'");
     p = {};

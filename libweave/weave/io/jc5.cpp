@@ -111,9 +111,15 @@ std::string read_name(const Field& field, Oddities& oddities) {
     return text_of(field.value, field.offset, "the name", oddities);
 }
 
-std::string read_comment(const Field& field, Oddities& oddities) {
-    if (!field.value.ends_with('\0')) oddities.add(field.offset, "the comment does not end with NUL");
-    return text_of(field.value, field.offset, "the comment", oddities);
+/// A text that ends with one NUL.
+std::string ended_text(std::string_view value, std::size_t offset, const std::string& what,
+                       Oddities& oddities) {
+    if (!value.ends_with('\0')) {
+        oddities.add(offset, what + " does not end with NUL");
+    } else if (value.size() > 1 && value[value.size() - 2] == '\0') {
+        oddities.add(offset, what + " ends with more than one NUL");
+    }
+    return text_of(value, offset, what, oddities);
 }
 
 /// The number of picks, and into `file` what else the attributes say.
@@ -134,7 +140,7 @@ Result<std::size_t> apply(const Attributes& attributes, std::size_t attributes_e
         } else if (tag == zero_tag) {
             check_zero(field, oddities);
         } else if (tag == comment_tag) {
-            file.comment = read_comment(field, oddities);
+            file.comment = ended_text(field.value, field.offset, "the comment", oddities);
         } else {
             oddities.add(field.tag_offset, tag_name(tag) +
                                                " is not known: " + counted(field.value.size(), "byte") +
@@ -171,9 +177,8 @@ Result<HookArea> read_area(const Field& field, const std::string& what, Oddities
                          at_byte(field.offset + 4));
     }
     WEAVE_CHECK_OK(check_whole_bytes(area.hooks, field.offset + 4));
-    const std::string_view name = field.value.substr(area_numbers);
-    if (!name.ends_with('\0')) oddities.add(field.offset + area_numbers, "the name of " + what + " does not end with NUL");
-    area.name = text_of(name, field.offset + area_numbers, "the name of " + what, oddities);
+    area.name = ended_text(field.value.substr(area_numbers), field.offset + area_numbers,
+                           "the name of " + what, oddities);
     return area;
 }
 
