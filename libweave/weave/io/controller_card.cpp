@@ -126,11 +126,12 @@ void read_fixed_hooks(Reading& reading) {
     });
 }
 
-/// Regulator hooks stop the take-up while they are lifted; the first one decides.
+/// Regulator hooks stop the take-up while they are lifted; the first one that the profile lists decides.
 void read_take_up(Reading& reading) {
-    const std::vector<std::size_t> hooks = hooks_of(reading.profile, HookUse::regulator);
-    if (hooks.empty()) return;
     const HookLifts& lifts = reading.file.lifts;
+    std::vector<std::size_t> hooks = reading.profile.regulator_hooks;
+    std::erase_if(hooks, [&](std::size_t hook) { return hook >= lifts.hooks(); });
+    if (hooks.empty()) return;
     for (std::size_t pick = reading.first_pick(); pick < lifts.picks(); ++pick)
         reading.made.take_up.push_back(!lifts.lifted(pick, hooks.front()));
     reading.hold(hooks, HookUse::regulator, reading.first_pick(),
