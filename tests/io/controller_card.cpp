@@ -159,7 +159,7 @@ TEST_CASE("regulator hooks say which picks take up") {
     profile.regulator_hooks = {7, 6};
     const ControllerCard read = card({"......XX", "X.......", "X......X"}, profile);
     CHECK(read.take_up == std::vector<bool>{false, true, false});
-    CHECK(told(read) == Lines{"pick 3: hook 8 is lifted, but the first hook of the take-up does otherwise"});
+    CHECK(told(read) == Lines{"pick 3: hook 7 is down, but the first hook of the take-up does otherwise"});
     const Shed shed{"X.....XX", "X.......", "X.....XX", "X......."};
     const auto design = design_from_controller_file(raw_bytes(shed, profile), profile, 6);
     REQUIRE(design);
