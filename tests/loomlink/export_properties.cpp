@@ -21,7 +21,7 @@ struct Drawn {
 /// Hands out hooks in random order, each once.
 class Pool {
   public:
-    Pool(Random& random, std::size_t hooks) : m_random(random) {
+    Pool(Random& random, std::size_t hooks) {
         for (std::size_t k = 0; k < hooks; ++k) m_left.push_back(k);
         random.shuffle(m_left);
     }
@@ -35,10 +35,8 @@ class Pool {
         for (const std::size_t hook : take(count)) found.push_back({hook, hook});
         return found;
     }
-    std::size_t some(std::size_t most) { return m_random.between(0, std::min(most, m_left.size())); }
 
   private:
-    Random& m_random;
     std::vector<std::size_t> m_left;
 };
 
@@ -142,21 +140,18 @@ TEST_CASE("any controller file decodes to the card, the lifts, the feeders and t
 }
 
 TEST_CASE("a lift that is turned over anywhere in the records is found on reading back") {
-    for_all(
-        [](Random& random) {
-            Drawn drawn = draw(random);
-            const auto plan = plan_of(drawn.design, drawn.profile, drawn.map);
-            REQUIRE(plan);
-            HookPlan other = *plan;
-            const std::size_t pick = random.between(0, plan->lifts.picks() - 1);
-            const std::size_t hook = random.between(0, plan->lifts.hooks() - 1);
-            if (other.lifts.lifted(pick, hook)) return;
-            other.lifts.lift(pick, hook);
-            const auto file = write_controller_file(other, drawn.profile, {"n", ""});
-            REQUIRE(file);
-            const CardImage& card = *std::get<CardLeaf>(drawn.design.blocks.at("cloth")->source).card;
-            CHECK_FALSE(
-                check_controller_file(file->bytes, file->name, *plan, card, drawn.profile, test_decoder));
-        },
-        property_cases() / 10);
+    for_all([](Random& random) {
+        Drawn drawn = draw(random);
+        const auto plan = plan_of(drawn.design, drawn.profile, drawn.map);
+        REQUIRE(plan);
+        HookPlan other = *plan;
+        const std::size_t pick = random.between(0, plan->lifts.picks() - 1);
+        const std::size_t hook = random.between(0, plan->lifts.hooks() - 1);
+        if (other.lifts.lifted(pick, hook)) return;
+        other.lifts.lift(pick, hook);
+        const auto file = write_controller_file(other, drawn.profile, {"n", ""});
+        REQUIRE(file);
+        const CardImage& card = *std::get<CardLeaf>(drawn.design.blocks.at("cloth")->source).card;
+        CHECK_FALSE(check_controller_file(file->bytes, file->name, *plan, card, drawn.profile, test_decoder));
+    });
 }
