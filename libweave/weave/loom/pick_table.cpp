@@ -77,8 +77,10 @@ std::vector<Pick> pick_table(const Design& design, const Block& block, std::size
     return picks;
 }
 
-std::string pick_table_csv(const Design& design, const std::vector<Pick>& picks) {
-    std::string csv = "pick,row,feeder,feeder name,direction,take-up,yarn,colour\r\n";
+std::string pick_table_csv(const Design& design, const std::vector<Pick>& picks,
+                           const FeederMap* loom_feeders) {
+    std::string csv = "pick,row,feeder,feeder name,direction,take-up,yarn,colour";
+    csv += loom_feeders == nullptr ? "\r\n" : ",loom feeder\r\n";
     for (std::size_t k = 0; k < picks.size(); ++k) {
         const Pick& pick = picks[k];
         const bool no_weft = pick.feeders.empty();
@@ -90,8 +92,11 @@ std::string pick_table_csv(const Design& design, const std::vector<Pick>& picks)
                                                             : "right to left,";
         csv += pick.take_up ? "yes," : "no,";
         csv += field(of_feeders(pick, [&](std::uint32_t f) { return yarn_of_feeder(design, f).name; })) + ',';
-        csv += of_feeders(pick, [&](std::uint32_t f) { return to_text(yarn_of_feeder(design, f).colour); }) +
-               "\r\n";
+        csv += of_feeders(pick, [&](std::uint32_t f) { return to_text(yarn_of_feeder(design, f).colour); });
+        if (loom_feeders != nullptr)
+            csv += ',' +
+                   of_feeders(pick, [&](std::uint32_t f) { return std::to_string(loom_feeders->at(f) + 1); });
+        csv += "\r\n";
     }
     return csv;
 }
