@@ -40,5 +40,5 @@ TEST_CASE("weave diff draws the cards laid on each other, and overwrites no desi
         CHECK(shop.get(out).find(out == "p.png" ? "PNG" : "<svg") != std::string::npos);
     }
     shop.refused({"diff", "a.weave", "b.weave", "-o", "p.gif"}, 2, {".png or .svg"});
-    shop.refused({"diff", "a.weave", "missing.weave"}, 5, {"missing.weave"});
+    shop.refused({"diff", "a.weave", "missing.weave"}, 3, {"missing.weave"});
 }
