@@ -22,6 +22,7 @@ const std::map<std::string, std::vector<std::string>> commands{
     {"card", {"FILE", "--out", ".png", ".tif", ".bmp", "--pick-1", "--end-1", "--lifted"}},
     {"check", {"FILE", "--loom"}},
     {"render", {"FILE", "--out", "--view", "--trim", "--from-pick", "--from-end", "floats", "weft:N", "warp:N", "block"}},
+    {"diff", {"BEFORE", "AFTER", "--out"}},
     {"flip", {"FILE", "--pick", "--end", "--out"}},
     {"export", {"FILE", "--loom", "--out"}},
 };

@@ -1,7 +1,6 @@
 #pragma once
 
-#include <weave/block/block.hpp>
-#include <weave/design/design.hpp>
+#include <weave/design/picks.hpp>
 
 #include <cstddef>
 #include <map>
@@ -10,19 +9,6 @@
 #include <vector>
 
 namespace weave {
-
-/// One weft insertion, resolved from the repeating plans of the design.
-struct Pick {
-    std::vector<std::uint32_t> feeders;  ///< indices into WeftPlan::feeders; none, one or two
-    Direction direction = Direction::left_to_right;
-    bool take_up = true;  ///< the cloth advances after this pick
-    std::size_t row = 0;  ///< of the block, from 0; counts on through repeats
-};
-
-/// The weft insertion order: one entry per pick, from the first, of so many repeats of the cloth. Every
-/// repeat starts the plans of the design anew; only shuttles that go back and forth go on from where they
-/// stand.
-std::vector<Pick> pick_table(const Design& design, const Block& block, std::size_t repeats = 1);
 
 /// The loom's feeder (from 0) for each feeder of a design (an index into WeftPlan::feeders) that its picks
 /// take.
@@ -34,10 +20,5 @@ using FeederMap = std::map<std::uint32_t, std::size_t>;
 /// feeders of the loom.
 std::string pick_table_csv(const Design& design, const std::vector<Pick>& picks,
                            const FeederMap* loom_feeders = nullptr);
-
-/// Yarn type and colour of one end or pick (the first feeder's; absent for a pick without weft).
-const YarnType& yarn_of_end(const Design& design, std::size_t end);
-Colour colour_of_end(const Design& design, std::size_t end);
-const YarnType* yarn_of_pick(const Design& design, const Pick& pick);
 
 }  // namespace weave
