@@ -52,7 +52,7 @@ Json ranges_of(const std::vector<HookUse>& uses, HookUse wanted) {
 
 }  // namespace
 
-Json file_entry(const ReleaseFile& file) {
+Json file_entry(const PackageFile& file) {
     return {{"path", file.path},     {"size", file.bytes.size()}, {"sha256", sha256_hex(file.bytes)},
             {"format", file.format}, {"certified", false},        {"label", layout_label},
             {"read_back", "equal"}};

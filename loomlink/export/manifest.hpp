@@ -11,7 +11,7 @@ inline constexpr const char* layout_label =
     "layout-compatible with observed files, not certified by the maker";
 
 /// One entry of `files`: path, size, sha256, format, certified, label.
-Json file_entry(const ReleaseFile& file);
+Json file_entry(const PackageFile& file);
 
 /// `reading` of a controller's file: polarity, order of records, bits and hooks, the places of pick 1 and end
 /// 1, face.

@@ -25,7 +25,7 @@ struct Task {
 /// Collects files with their entries.
 class Packer {
   public:
-    void add(ReleaseFile file, const Json& more) {
+    void add(PackageFile file, const Json& more) {
         Json entry = file_entry(file);
         entry.update(more);
         m_entries.push_back(std::move(entry));

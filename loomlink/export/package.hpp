@@ -20,7 +20,7 @@ struct ReleaseNames {
 /// Files that are handed out beside those that the loom needs.
 enum class ExtraFile : std::uint8_t { png, tiff, bmp, wif };
 
-struct ReleaseFile {
+struct PackageFile {
     std::string path;    ///< a name without folders
     std::string format;  ///< jc5, ep, raw, png, tiff, bmp, wif or pick-table-csv
     std::string bytes;
@@ -28,7 +28,7 @@ struct ReleaseFile {
 
 /// All that a release of one revision to one loom hands out.
 struct ReleasePackage {
-    std::vector<ReleaseFile> files;  ///< first the loom's own, then the pick table, then the rest
+    std::vector<PackageFile> files;  ///< first the loom's own, then the pick table, then the rest
     Json manifest;                   ///< the body that is signed; README.md beside this file has its members
     std::vector<std::string> notes;  ///< for the person who releases, such as a name that was cut
 };

@@ -34,7 +34,7 @@ Release release_of(const sql::Row& row) {
     release.feeders = row.bytes(5);
     release.manifest = row.hash(6);
     release.event = seq_of(row, 7);
-    release.state = words::value_of<ReleaseState>(words::release_states, row.bytes(8));
+    release.state = words::value_of<ReleaseStage>(words::release_states, row.bytes(8));
     return release;
 }
 
@@ -105,11 +105,11 @@ Reader::List<Release> Reader::releases_of(Id revision) const {
                                                  release_of, revision));
 }
 
-Reader::List<Step<ReleaseState>> Reader::release_steps(Id release) const {
+Reader::List<Step<ReleaseStage>> Reader::release_steps(Id release) const {
     return connection().all(
         "SELECT state, event FROM release_state WHERE release = ? ORDER BY event",
         [](const sql::Row& row) {
-            return Step<ReleaseState>{words::value_of<ReleaseState>(words::release_states, row.bytes(0)),
+            return Step<ReleaseStage>{words::value_of<ReleaseStage>(words::release_states, row.bytes(0)),
                                       seq_of(row, 1)};
         },
         release);
@@ -184,7 +184,7 @@ Result<Release> Writer::add_release(const Release& given) {
         WEAVE_CHECK_OK(connection().run("INSERT INTO release_file (release, name, object) VALUES (?, ?, ?)",
                                         id, file.name, object));
     }
-    WEAVE_CHECK_OK(set_release_state(id, ReleaseState::prepared, given.event));
+    WEAVE_CHECK_OK(set_release_state(id, ReleaseStage::prepared, given.event));
     WEAVE_TRY(auto made, release(id));
     if (!made) return system_fault("the release that was just made is not there");
     return *std::move(made);
@@ -195,7 +195,7 @@ Status Writer::sign_release(Id release, const ReleaseSignature& signature) {
                             release, signature.key, signature.value, number_of(signature.event));
 }
 
-Status Writer::set_release_state(Id release, ReleaseState state, Seq event) {
+Status Writer::set_release_state(Id release, ReleaseStage state, Seq event) {
     return connection().run("INSERT INTO release_state (release, event, state) VALUES (?, ?, ?)", release,
                             number_of(event), std::string(word(state)));
 }

@@ -89,7 +89,7 @@ class Reader {
     /// All of a loom, newest first, with files, signatures and state.
     [[nodiscard]] List<Release> releases(Id loom) const;
     [[nodiscard]] List<Release> releases_of(Id revision) const;
-    [[nodiscard]] List<Step<ReleaseState>> release_steps(Id release) const;
+    [[nodiscard]] List<Step<ReleaseStage>> release_steps(Id release) const;
     [[nodiscard]] Maybe<Bookmark> bookmark(Id release) const;
     [[nodiscard]] List<FaultReport> faults(Id release) const;
     [[nodiscard]] List<Loaded> loaded(Id release) const;

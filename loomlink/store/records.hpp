@@ -143,7 +143,7 @@ struct LoomProfileVersion {
     Seq event = 0;
 };
 
-enum class ReleaseState : std::uint8_t { prepared, released, superseded, withdrawn };
+enum class ReleaseStage : std::uint8_t { prepared, released, superseded, withdrawn };
 
 struct ReleaseFile {
     std::string name;
@@ -168,7 +168,7 @@ struct Release {
     Hash manifest{};      ///< an object
     std::vector<ReleaseFile> files;
     std::vector<ReleaseSignature> signatures;
-    ReleaseState state = ReleaseState::prepared;
+    ReleaseStage state = ReleaseStage::prepared;
     Seq event = 0;
 };
 
@@ -204,6 +204,6 @@ struct Step {
 const char* word(PersonRole role);
 const char* word(RevisionState state);
 const char* word(DecisionKind kind);
-const char* word(ReleaseState state);
+const char* word(ReleaseStage state);
 
 }  // namespace weave::loomlink

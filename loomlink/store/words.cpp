@@ -11,7 +11,7 @@ const char* word(RevisionState state) {
 const char* word(DecisionKind kind) {
     return words::decisions.at(static_cast<std::size_t>(kind));
 }
-const char* word(ReleaseState state) {
+const char* word(ReleaseStage state) {
     return words::release_states.at(static_cast<std::size_t>(state));
 }
 

@@ -67,7 +67,7 @@ class Writer : public Reader {
     /// Adds a prepared release; see Release for what is given.
     Result<Release> add_release(const Release& release);
     Status sign_release(Id release, const ReleaseSignature& signature);
-    Status set_release_state(Id release, ReleaseState state, Seq event);
+    Status set_release_state(Id release, ReleaseStage state, Seq event);
     Status set_bookmark(const Bookmark& bookmark);
     Status add_fault(const FaultReport& fault);
     Status add_loaded(const Loaded& loaded);

@@ -34,7 +34,7 @@ Result<ReleasePackage> package_of(const Design& design, const LoomProfile& profi
 
 std::vector<std::string> paths(const ReleasePackage& package) {
     std::vector<std::string> found;
-    for (const ReleaseFile& file : package.files) found.push_back(file.path);
+    for (const PackageFile& file : package.files) found.push_back(file.path);
     return found;
 }
 

@@ -250,23 +250,23 @@ TEST_CASE("only what is approved and signed is released, and its files stay") {
             }).empty());
     REQUIRE(release.number == 1);
     REQUIRE(release.files.front().size == 10);
-    const auto go = [&](ReleaseState state) {
+    const auto go = [&](ReleaseStage state) {
         return outcome(mill, [&](Writer& writer) -> Status {
             WEAVE_TRY(const Seq event, note(writer));
             return writer.set_release_state(release.id, state, event);
         });
     };
-    REQUIRE_THAT(go(ReleaseState::released), Catch::Contains("nobody has signed"));
-    REQUIRE_THAT(go(ReleaseState::superseded), Catch::Contains("cannot go"));
+    REQUIRE_THAT(go(ReleaseStage::released), Catch::Contains("nobody has signed"));
+    REQUIRE_THAT(go(ReleaseStage::superseded), Catch::Contains("cannot go"));
     const ReleaseSignature signature{Mill::key_id(), std::string(128, 'b'), 1};
     REQUIRE(
         outcome(mill, [&](Writer& writer) { return writer.sign_release(release.id, signature); }).empty());
-    REQUIRE(go(ReleaseState::released).empty());
-    REQUIRE(go(ReleaseState::withdrawn).empty());
-    REQUIRE_THAT(go(ReleaseState::released), Catch::Contains("cannot go"));
+    REQUIRE(go(ReleaseStage::released).empty());
+    REQUIRE(go(ReleaseStage::withdrawn).empty());
+    REQUIRE_THAT(go(ReleaseStage::released), Catch::Contains("cannot go"));
     const auto found =
         mill.store.read([&](const Reader& reader) { return reader.releases(mill.loom); }).value();
-    REQUIRE(found.front().state == ReleaseState::withdrawn);
+    REQUIRE(found.front().state == ReleaseStage::withdrawn);
     REQUIRE(found.front().signatures.size() == 1);
     REQUIRE(mill.store.read([&](const Reader& reader) { return reader.release_steps(release.id); })
                 .value()
