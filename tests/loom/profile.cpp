@@ -26,7 +26,7 @@ Json full() {
             "constant_on":[[11,11]],"selvedge":[[12,13]],"selvedge_weave":["01","10"],"regulator":[14]},
         "feeders":{"count":2,"encoding":"hooks","places":[15,16],"per_pick":2},
         "file":{"output":"raw","lifted_is_one":false,"least_bit_first":false,"pick_1_at_bottom":false,"end_1_at_left":false,
-            "name_limit":5,"lead_in_picks":4,"hook_permutation":[19,18,17,16,15,14,13,12,11,10,9,8,7,6,5,4,3,2,1,0]},
+            "name_limit":5,"lead_in_picks":4,"function_bytes":2,"areas_on_bytes":false,"converts_to":"","hook_permutation":[19,18,17,16,15,14,13,12,11,10,9,8,7,6,5,4,3,2,1,0]},
         "limits":{"float_face":1,"float_back":2,"lift_difference":0.5,"lift_share":0.6,"picks":7,"take_up_difference":0.1,
             "reed_width_mm":900},
         "severities":{"float.face":"error"}})");
@@ -41,6 +41,10 @@ TEST_CASE("the shipped profiles load and carry the ends that were observed") {
     REQUIRE(small);
     REQUIRE(large);
     REQUIRE(jc5);
+    const auto raw = load_profile(shipped("raw-14x192"));
+    REQUIRE(raw);
+    CHECK(most_ends(*raw) == 2400);
+    CHECK_FALSE(raw->lifted_is_one);
     CHECK(most_ends(*tc2) == 1320);
     CHECK(most_ends(*small) == 2400);
     CHECK(most_ends(*large) == 4800);
@@ -84,6 +88,8 @@ TEST_CASE("a full profile is read to the last member") {
     CHECK(profile->feeder_hooks == std::vector<std::size_t>{15, 16});
     CHECK_FALSE(profile->lifted_is_one);
     CHECK(profile->hook_permutation.size() == 20);
+    CHECK(profile->function_bytes == 2);
+    CHECK_FALSE(profile->areas_on_bytes);
     CHECK(profile->limits.picks == 7);
     CHECK(profile->severities.at("float.face") == Severity::error);
 }
@@ -136,6 +142,10 @@ TEST_CASE("values out of range or at odds with each other are refused") {
                                                                  {"/file/output", "\"jc6\""},
                                                                  {"/file/hook_permutation", "[0,1]"},
                                                                  {"/file/name_limit", "-1"},
+                                                                 {"/file/function_bytes", "9"},
+                                                                 {"/file/converts_to", "\"JC6\""},
+                                                                 {"/file/output", "\"jc5\""},
+                                                                 {"/file/output", "\"png\""},
                                                                  {"/limits/lift_share", "1.5"},
                                                                  {"/limits/reed_width_mm", "0"},
                                                                  {"/severities/float.face", "\"fatal\""}};
@@ -145,6 +155,56 @@ TEST_CASE("values out of range or at odds with each other are refused") {
         INFO(place << " = " << value);
         CHECK_FALSE(read_profile(broken.dump()));
     }
+}
+
+TEST_CASE("function bits must be in the file; pictures have none, but may be for a mill's CAD") {
+    Json profile = full();
+    profile["feeders"] = {{"count", 17}, {"encoding", "one-hot"}};
+    const auto refused = read_profile(profile.dump());
+    REQUIRE_FALSE(refused);
+    CHECK(refused.error().text().find("function bit 16, but the file has 2 function bytes") !=
+          std::string::npos);
+    profile["file"]["function_bytes"] = 3;
+    CHECK(read_profile(profile.dump()));
+    profile["file"]["output"] = "ep";
+    profile["file"].erase("function_bytes");
+    CHECK(read_profile(profile.dump())->function_bytes == 4);
+    profile["file"]["output"] = "tiff";
+    CHECK_FALSE(read_profile(profile.dump()));  // lead-in picks
+    profile["file"]["lead_in_picks"] = 0;
+    profile["file"]["converts_to"] = "JC6";
+    const auto read = read_profile(profile.dump());
+    REQUIRE(read);
+    CHECK(read->converts_to == "JC6");
+    CHECK(read->function_bytes == 0);
+    CHECK(takes_picture(read->output));
+}
+
+TEST_CASE("feeders as a number among the hooks take as many hooks as the number has digits") {
+    Json profile = full();
+    profile["feeders"] = {{"count", 3}, {"encoding", "binary-hooks"}, {"places", {15, 16}}};
+    const auto read = read_profile(profile.dump());
+    REQUIRE(read);
+    CHECK(feeders_in_hooks(*read));
+    CHECK(hook_uses(*read)[16] == HookUse::feeder);
+    profile["feeders"]["places"] = {14, 16};
+    CHECK_FALSE(read_profile(profile.dump()));  // 14 stops the take-up
+    profile["feeders"]["count"] = 4;
+    profile["feeders"]["places"] = {15, 16};
+    CHECK_FALSE(read_profile(profile.dump()));
+}
+
+TEST_CASE("where end 1 is not at the left the ends count down through the body") {
+    LoomProfile profile;
+    profile.total_hooks = 12;
+    profile.body = {{1, 3}, {6, 8}};
+    profile.end_1_at_left = false;
+    CHECK(hooks_of_end(profile, 0, 4) == std::vector<std::size_t>{8});
+    CHECK(hooks_of_end(profile, 3, 4) == std::vector<std::size_t>{3});
+    CHECK(hooks_of_end(profile, 0, 7).empty());
+    profile.hook_rule = HookRule::list;
+    profile.hook_of_end = {9, 4};
+    CHECK(hooks_of_end(profile, 0, 2) == std::vector<std::size_t>{9});
 }
 
 TEST_CASE("garbage is refused, never more") {

@@ -17,11 +17,12 @@ const std::map<std::string, std::vector<std::string>> commands{
     {"attach", {"A", "B", "--face", "+x,-x,+y,-y,+z,-z", "--out"}},
     {"stencil", {"IMAGE", "--map", "--out"}},
     {"renumber", {"FILE", "--row", "--column", "--order", "--out"}},
-    {"import", {"IN", "--out", "--t", "--p", "--infer", "--grouping", "--pick-1", "--end-1", "--lifted"}},
+    {"import", {"IN", "--out", "--t", "--p", "--infer", "--grouping", "--pick-1", "--end-1", "--lifted", "--loom", "--ends", "JC5"}},
     {"info", {"FILE"}},
     {"card", {"FILE", "--out", ".png", ".tif", ".bmp", "--pick-1", "--end-1", "--lifted"}},
     {"check", {"FILE", "--loom"}},
     {"render", {"FILE", "--out", "--view", "--trim", "--from-pick", "--from-end", "floats", "weft:N", "warp:N", "block"}},
+    {"diff", {"BEFORE", "AFTER", "--out"}},
     {"flip", {"FILE", "--pick", "--end", "--out"}},
     {"export", {"FILE", "--loom", "--out"}},
 };

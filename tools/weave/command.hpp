@@ -5,6 +5,7 @@
 #include <weave/design/design.hpp>
 #include <weave/design/evaluate.hpp>
 #include <weave/io/bitmap.hpp>
+#include <weave/picture/picture.hpp>
 #include <weave/sim/yarns.hpp>
 
 #include <CLI/CLI.hpp>
@@ -126,6 +127,9 @@ Status save_cloth(Program& program, const Design& design, const std::string& fil
 /// Relaxed yarns from a file.
 Result<Yarns> load_yarns(const std::string& file);
 
+/// What the name of a picture ends in; an error (usage) where that is neither .png nor .svg.
+Result<PictureFormat> picture_format_of(const std::string& file);
+
 /// The first of the options below that was given, such as `--lifted`; empty if none was.
 std::string given_reading_option(const CLI::App* command);
 
@@ -137,6 +141,7 @@ void add_make_commands(CLI::App& app,
                        Program& program);  // samples, preset, tile, attach, stencil, renumber, flip
 void add_import_command(CLI::App& app, Program& program);       // import
 void add_look_commands(CLI::App& app, Program& program);        // info, card, render
+void add_diff_command(CLI::App& app, Program& program);         // diff
 void add_loom_commands(CLI::App& app, Program& program);        // check, export
 void add_simulation_commands(CLI::App& app, Program& program);  // simulate, export-yarns
 void add_inspection_commands(CLI::App& app, Program& program);  // inspect, compare

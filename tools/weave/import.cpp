@@ -1,4 +1,4 @@
-// `weave import`: a bare card image or a WIF file becomes a design.
+// `weave import`: a bare card image, a WIF file or a loom controller's file becomes a design.
 
 #include "command.hpp"
 #include "progress.hpp"
@@ -8,10 +8,13 @@
 #include <weave/core/text.hpp>
 #include <weave/design/document.hpp>
 #include <weave/io/bitmap.hpp>
+#include <weave/io/controller_file.hpp>
 #include <weave/io/wif.hpp>
+#include <weave/loom/profile.hpp>
 
 #include <algorithm>
 #include <memory>
+#include <optional>
 
 namespace weave::program {
 
@@ -21,6 +24,8 @@ using Counts = std::vector<std::uint32_t>;
 
 struct ImportRequest {
     std::string in, out;
+    std::string loom;                 ///< the profile, or empty
+    std::optional<std::size_t> ends;  ///< of a controller file's design
     Counts t, p;
     bool infer = false;
     std::size_t grouping = 1;
@@ -35,13 +40,99 @@ std::string in_short(const Counts& counts) {
     return text + (counts.size() > 8 ? ",…" : "");
 }
 
-Result<DesignFromWif> design_from_bitmap(const ImportRequest& request, const std::string& bytes) {
+/// What was read, whatever the file was.
+struct Imported {
+    Design design;
+    std::vector<std::string> warnings;
+};
+
+Result<Imported> design_from_bitmap(const ImportRequest& request, const std::string& bytes) {
     WEAVE_TRY(CardFromBitmap read, read_bitmap(bytes, request.reading));
-    DesignFromWif result{{}, std::move(read.warnings)};
+    Imported result{{}, std::move(read.warnings)};
     result.design.root = "card";
     const CardLeaf leaf{std::make_shared<const CardImage>(std::move(read.card)), {1}, {1}};
     result.design.blocks["card"] = std::make_shared<const Node>(Node{leaf, {}});
     return result;
+}
+
+/// A kind of file as people write it.
+std::string in_words(OutputFormat format) {
+    switch (format) {
+        case OutputFormat::jc5:
+            return "JC5";
+        case OutputFormat::ep:
+            return "EP";
+        case OutputFormat::raw:
+            return "raw";
+        case OutputFormat::tiff:
+        case OutputFormat::png:
+        case OutputFormat::bmp:
+            break;
+    }
+    return "picture";
+}
+
+Error usage_fault(const std::string& message, const std::string& where) {
+    return {ErrorCode::usage, message, where};
+}
+
+/// The kind that the file shows must be the one that the profile describes; raw files show none, so that raw
+/// is what the profile says, except of a file whose name says otherwise.
+Status check_kind(const ImportRequest& request, const LoomProfile& profile, const std::string& bytes) {
+    const std::string extension = lower_extension(request.in);
+    const bool by_name = extension == ".jc5" || extension == ".ep";
+    if (profile.output == OutputFormat::raw && !by_name) return {};
+    const auto kind = recognise_controller_file(bytes, extension);
+    if (!kind)
+        return bad_input("is neither a JC5 nor an EP file, and the loom's profile does not say raw",
+                         request.in);
+    if (*kind == profile.output) return {};
+    return bad_input("is a " + in_words(*kind) + " file, but the profile " + request.loom +
+                         " describes a loom that takes " + in_words(profile.output) + " files",
+                     request.in);
+}
+
+Result<Imported> design_from_controller(const ImportRequest& request, const std::string& bytes) {
+    WEAVE_TRY(const LoomProfile profile, load_profile(request.loom));
+    WEAVE_CHECK_OK(check_kind(request, profile, bytes));
+    Result<DesignFromController> read = design_from_controller_file(bytes, profile, request.ends);
+    if (!read) return std::move(read).error().in(request.in);
+    return Imported{std::move(read->design), std::move(read->warnings)};
+}
+
+Result<Imported> read_import(const ImportRequest& request) {
+    WEAVE_TRY(const std::string bytes, read_file(request.in));
+    const std::string extension = lower_extension(request.in);
+    if (!request.loom.empty()) {
+        if (!request.given_option.empty())
+            return usage_fault(request.given_option + " is for pictures; the loom's profile says how to read",
+                               request.in);
+        return design_from_controller(request, bytes);
+    }
+    const bool wif = extension == ".wif" || is_wif(bytes);
+    if (wif && !request.given_option.empty()) {
+        return usage_fault(request.given_option + " is for pictures; WIF says itself how it is to be read",
+                           request.in);
+    }
+    if (!wif && !is_bitmap(bytes)) {
+        if (const auto kind = recognise_controller_file(bytes, extension)) {
+            return usage_fault("is a " + in_words(*kind) +
+                                   " file, which is read as its loom's profile says: --loom LOOM.json",
+                               request.in);
+        }
+        return bad_input(
+            "is neither a PNG, TIFF or BMP picture nor a WIF file; for a loom controller's file give --loom "
+            "LOOM.json",
+            request.in);
+    }
+    if (wif) {
+        Result<DesignFromWif> read = read_wif(bytes);
+        if (!read) return std::move(read).error().in(request.in);
+        return Imported{std::move(read->design), std::move(read->warnings)};
+    }
+    Result<Imported> read = design_from_bitmap(request, bytes);
+    if (!read) return std::move(read).error().in(request.in);
+    return read;
 }
 
 /// The leaf of the imported card with the grouping that was asked for.
@@ -81,18 +172,10 @@ std::string in_words(const ImportRequest& request, const Block& block, const Jso
 
 Status import_design(Program& program, const ImportRequest& request) {
     WEAVE_CHECK_OK(keep_apart(request.out, request.in, "the file that is read"));
+    WEAVE_CHECK_OK(keep_apart(request.out, request.loom, "the loom's profile"));
     const Progress progress("reading " + request.in);
-    WEAVE_TRY(const std::string bytes, read_file(request.in));
-    const bool wif = lower_extension(request.in) == ".wif" || is_wif(bytes);
-    if (wif && !request.given_option.empty()) {
-        return Error{ErrorCode::usage,
-                     request.given_option + " is for pictures; WIF says itself how it is to be read",
-                     request.in};
-    }
-    if (!wif && !is_bitmap(bytes))
-        return Error{ErrorCode::bad_input, "is neither a PNG, TIFF or BMP picture nor a WIF file", request.in};
-    Result<DesignFromWif> read = wif ? read_wif(bytes) : design_from_bitmap(request, bytes);
-    if (!read) return std::move(read).error().in(request.in);
+    Result<Imported> read = read_import(request);
+    if (!read) return std::move(read).error();
     Design& design = read->design;
     if (design.title.empty()) design.title = std::filesystem::path(request.in).stem().string();
     Json groupings = Json::array();
@@ -114,14 +197,26 @@ Status import_design(Program& program, const ImportRequest& request) {
 }  // namespace
 
 void add_import_command(CLI::App& app, Program& program) {
-    CLI::App* command =
-        add_command(app, program, "import", "Make a design from a card image (PNG, TIFF, BMP) or a WIF file");
+    CLI::App* command = add_command(app, program, "import",
+                                    "Make a design from a card image (PNG, TIFF, BMP), a WIF file or a loom "
+                                    "controller's file (JC5, EP, raw)");
     const auto request = std::make_shared<ImportRequest>();
     command->add_option("IN", request->in, "the file to read")->required();
     command->add_option("-o,--out", request->out, "the .weave file to write")
         ->check(output_name())
         ->type_name("FILE")
         ->required();
+    CLI::Option* loom =
+        command
+            ->add_option("--loom", request->loom,
+                         "the profile of the loom that a controller's file (JC5, EP, raw) is for")
+            ->type_name("FILE");
+    command
+        ->add_option("--ends", request->ends,
+                     "ends of the design in a controller's file (default: as many as the loom carries)")
+        ->needs(loom)
+        ->transform(between<std::size_t>(1, most_hooks))
+        ->type_name("N");
     constexpr std::uint32_t most = 1 << 28;
     CLI::Option* t = add_list(command, "--t", request->t, std::uint32_t{0}, most,
                               "picks of each row, repeated over the card, such as 2,2");

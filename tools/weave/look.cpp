@@ -168,13 +168,6 @@ void add_card(CLI::App& app, Program& program) {
     });
 }
 
-Result<PictureFormat> picture_format_of(const std::string& file) {
-    const std::string extension = lower_extension(file);
-    if (extension == ".png") return PictureFormat::png;
-    if (extension == ".svg") return PictureFormat::svg;
-    return Error{ErrorCode::usage, "a picture's name ends in .png or .svg", file};
-}
-
 struct Rendering {
     std::string file, view, out;
     bool trim = false;
@@ -259,6 +252,13 @@ void add_render(CLI::App& app, Program& program) {
 }
 
 }  // namespace
+
+Result<PictureFormat> picture_format_of(const std::string& file) {
+    const std::string extension = lower_extension(file);
+    if (extension == ".png") return PictureFormat::png;
+    if (extension == ".svg") return PictureFormat::svg;
+    return Error{ErrorCode::usage, "a picture's name ends in .png or .svg", file};
+}
 
 void add_look_commands(CLI::App& app, Program& program) {
     add_info(app, program);

@@ -62,6 +62,7 @@ int main(int count, char** words) {
     weave::program::add_make_commands(app, program);
     weave::program::add_import_command(app, program);
     weave::program::add_look_commands(app, program);
+    weave::program::add_diff_command(app, program);
     weave::program::add_loom_commands(app, program);
     weave::program::add_simulation_commands(app, program);
     weave::program::add_inspection_commands(app, program);

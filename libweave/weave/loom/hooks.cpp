@@ -1,11 +1,14 @@
 #include <weave/loom/profile.hpp>
 
+#include <bit>
+
 namespace weave {
 
 namespace {
 
-/// The hook at a place of the body, counted through its ranges.
+/// The hook at a place of the body, counted through its ranges from the side of end 1.
 std::size_t body_hook(const LoomProfile& profile, std::size_t place) {
+    if (!profile.end_1_at_left) place = hooks_in(profile.body) - 1 - place;
     for (const auto& range : profile.body) {
         const std::size_t hooks = range.last - range.first + 1;
         if (place < hooks) return range.first + place;
@@ -28,6 +31,29 @@ void mark(std::vector<HookUse>& uses, const std::vector<std::size_t>& hooks, Hoo
 }
 
 }  // namespace
+
+bool takes_picture(OutputFormat output) {
+    return output == OutputFormat::tiff || output == OutputFormat::png || output == OutputFormat::bmp;
+}
+
+bool feeders_in_hooks(const LoomProfile& profile) {
+    return profile.feeder_encoding == FeederEncoding::hooks ||
+           profile.feeder_encoding == FeederEncoding::binary_hooks;
+}
+
+std::size_t feeder_places(const LoomProfile& profile) {
+    switch (profile.feeder_encoding) {
+        case FeederEncoding::none:
+            return 0;
+        case FeederEncoding::one_hot:
+        case FeederEncoding::hooks:
+            return profile.feeders;
+        case FeederEncoding::binary:
+        case FeederEncoding::binary_hooks:
+            return static_cast<std::size_t>(std::bit_width(profile.feeders));  // number 0 means no feeder
+    }
+    return 0;
+}
 
 std::size_t hooks_in(const std::vector<HookRange>& ranges) {
     std::size_t hooks = 0;
@@ -91,7 +117,7 @@ std::vector<HookUse> hook_uses(const LoomProfile& profile) {
     mark(uses, profile.hook_of_end, HookUse::body);
     mark(uses, profile.selvedge, HookUse::selvedge);
     mark(uses, profile.constant_on, HookUse::constant_on);
-    if (profile.feeder_encoding == FeederEncoding::hooks) mark(uses, profile.feeder_hooks, HookUse::feeder);
+    if (feeders_in_hooks(profile)) mark(uses, profile.feeder_hooks, HookUse::feeder);
     mark(uses, profile.regulator_hooks, HookUse::regulator);
     mark(uses, profile.cast_out, HookUse::cast_out);
     return uses;

@@ -15,13 +15,14 @@ namespace {
 
 constexpr std::uint64_t most_profile_bytes = std::uint64_t{4} << 20;
 constexpr std::int64_t last_hook = static_cast<std::int64_t>(most_hooks) - 1;
-constexpr std::int64_t last_function_bit = 31;  // four function bytes, as observed
+constexpr std::int64_t most_function_bytes = 8, last_function_bit = 8 * most_function_bytes - 1;
+constexpr std::int64_t ep_function_bytes = 4;  // as observed
 constexpr std::size_t most_ranges = 4096, most_selvedge_rows = 4096;
 constexpr std::int64_t most_limit = 1'000'000'000;
 
 const std::vector<std::string> rule_names{"straight", "point", "repeats", "list"};
 const std::vector<std::string> output_names{"tiff", "png", "bmp", "jc5", "ep", "raw"};
-const std::vector<std::string> encoding_names{"none", "one-hot", "binary", "hooks"};
+const std::vector<std::string> encoding_names{"none", "one-hot", "binary", "hooks", "binary-hooks"};
 const std::vector<std::string> severity_names{"off", "info", "warning", "error"};
 
 template <class Choice>
@@ -144,23 +145,14 @@ void read_harness(JsonReader& hooks, LoomProfile& profile) {
     }
 }
 
-/// How many places a feeder encoding needs.
-std::size_t places_needed(const LoomProfile& profile) {
-    if (profile.feeder_encoding == FeederEncoding::none) return 0;
-    if (profile.feeder_encoding != FeederEncoding::binary) return profile.feeders;
-    std::size_t bits = 0;
-    while (profile.feeders >> bits != 0) ++bits;  // number 0 means no feeder
-    return bits;
-}
-
 void read_feeders(JsonReader feeders, LoomProfile& profile) {
     profile.feeders = count(feeders, "count", 1, 64);
     profile.feeder_encoding = choice<FeederEncoding>(feeders, "encoding", encoding_names);
     profile.feeders_per_pick = count(feeders, "per_pick", 1, 2, 1);
-    const bool in_hooks = profile.feeder_encoding == FeederEncoding::hooks;
+    const bool in_hooks = feeders_in_hooks(profile);
     profile.feeder_hooks = numbers(feeders, "places", in_hooks ? last_hook : last_function_bit);
     feeders.no_others();
-    const std::size_t needed = places_needed(profile);
+    const std::size_t needed = feeder_places(profile);
     if (profile.feeder_hooks.empty() && !in_hooks && needed <= last_function_bit + 1) {
         for (std::size_t k = 0; k < needed; ++k) profile.feeder_hooks.push_back(k);
     }
@@ -174,6 +166,27 @@ void read_feeders(JsonReader feeders, LoomProfile& profile) {
         feeders.fail("names a place twice", "places");
 }
 
+void check_permutation(JsonReader& file, const LoomProfile& profile) {
+    if (profile.hook_permutation.empty()) return;
+    std::vector<bool> taken(profile.total_hooks);
+    bool sound = profile.hook_permutation.size() == taken.size();
+    for (const std::size_t place : profile.hook_permutation) {
+        sound = sound && place < taken.size() && !taken[place];
+        if (sound) taken[place] = true;
+    }
+    if (!sound) file.fail("must name every place from 0 to the last hook exactly once", "hook_permutation");
+}
+
+/// What a picture cannot say, and what only a picture can.
+void check_output(JsonReader& file, const LoomProfile& profile) {
+    if (takes_picture(profile.output)) {
+        if (profile.lead_in_picks > 0)
+            file.fail("needs jc5, ep or raw: a picture has the design's picks alone", "lead_in_picks");
+    } else if (!profile.converts_to.empty()) {
+        file.fail("needs a picture: tiff, png or bmp", "converts_to");
+    }
+}
+
 void read_file_part(JsonReader file, LoomProfile& profile) {
     profile.output = choice<OutputFormat>(file, "output", output_names);
     profile.lifted_is_one = file.boolean("lifted_is_one", true);
@@ -182,16 +195,16 @@ void read_file_part(JsonReader file, LoomProfile& profile) {
     profile.end_1_at_left = file.boolean("end_1_at_left", true);
     profile.name_limit = count(file, "name_limit", 0, 255, 8);
     profile.lead_in_picks = count(file, "lead_in_picks", 0, 1'000'000, 0);
+    const bool is_ep = profile.output == OutputFormat::ep, is_raw = profile.output == OutputFormat::raw;
+    profile.function_bytes = count(file, "function_bytes", 0, is_ep || is_raw ? most_function_bytes : 0,
+                                   is_ep ? ep_function_bytes : 0);
+    profile.areas_on_bytes = file.boolean("areas_on_bytes", true);
+    profile.converts_to = file.text("converts_to", "", 64);
     profile.hook_permutation = numbers(file, "hook_permutation", last_hook);
     file.no_others();
-    if (profile.hook_permutation.empty() || file.failed()) return;
-    std::vector<bool> taken(profile.total_hooks);
-    bool sound = profile.hook_permutation.size() == taken.size();
-    for (const std::size_t place : profile.hook_permutation) {
-        sound = sound && place < taken.size() && !taken[place];
-        if (sound) taken[place] = true;
-    }
-    if (!sound) file.fail("must name every place from 0 to the last hook exactly once", "hook_permutation");
+    if (file.failed()) return;
+    check_output(file, profile);
+    check_permutation(file, profile);
 }
 
 void read_limits(JsonReader limits, LoomProfile& profile) {
@@ -215,6 +228,20 @@ void read_severities(JsonReader& reader, LoomProfile& profile) {
             std::any_of(rules().begin(), rules().end(), [&](const Rule& r) { return r.id == rule; });
         if (!known) return severities.fail("is not a rule", rule);
         profile.severities[rule] = choice<Severity>(severities, rule, severity_names);
+    }
+}
+
+/// A controller's file has a bit for every place that a feeder is selected by; a picture has none, and the
+/// pick table tells.
+void check_function_bits(JsonReader& reader, const LoomProfile& profile) {
+    const bool in_bits = profile.feeder_encoding == FeederEncoding::one_hot ||
+                         profile.feeder_encoding == FeederEncoding::binary;
+    if (!in_bits || takes_picture(profile.output) || reader.failed()) return;
+    for (const std::size_t bit : profile.feeder_hooks) {
+        if (bit < 8 * profile.function_bytes) continue;
+        return reader.fail("names function bit " + std::to_string(bit) + ", but the file has " +
+                               counted(profile.function_bytes, "function byte"),
+                           "feeders.places");
     }
 }
 
@@ -265,8 +292,7 @@ void check_claims(JsonReader& reader, const LoomProfile& profile) {
     claims.claim("hooks.constant_on", profile.constant_on);
     claims.claim("hooks.selvedge", profile.selvedge);
     claims.claim("hooks.regulator", profile.regulator_hooks);
-    if (profile.feeder_encoding == FeederEncoding::hooks)
-        claims.claim("feeders.places", profile.feeder_hooks);
+    if (feeders_in_hooks(profile)) claims.claim("feeders.places", profile.feeder_hooks);
 }
 
 void read_heading(JsonReader& reader, LoomProfile& profile) {
@@ -287,6 +313,10 @@ void read_heading(JsonReader& reader, LoomProfile& profile) {
 
 }  // namespace
 
+const std::string& name_of(OutputFormat output) {
+    return output_names[static_cast<std::size_t>(output)];
+}
+
 Result<LoomProfile> read_profile(std::string_view text) {
     if (text.size() > most_profile_bytes) {
         return bad_input("a loom profile may have at most " + std::to_string(most_profile_bytes) + " bytes");
@@ -303,6 +333,7 @@ Result<LoomProfile> read_profile(std::string_view text) {
     read_limits(reader.object("limits", true), profile);
     read_severities(reader, profile);
     reader.no_others();
+    check_function_bits(reader, profile);
     check_claims(reader, profile);
     WEAVE_CHECK_OK(reader.status());
     profile.sha256 = sha256_hex(canonical_json(json));

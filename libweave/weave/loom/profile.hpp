@@ -35,8 +35,9 @@ enum class HookRule : std::uint8_t { straight, point, repeats, list };
 enum class OutputFormat : std::uint8_t { tiff, png, bmp, jc5, ep, raw };
 
 /// How the file tells the loom which feeder a pick takes: not at all (a hand picks it), one function bit a
-/// feeder, the feeder's number in function bits, or one hook a feeder among the hooks.
-enum class FeederEncoding : std::uint8_t { none, one_hot, binary, hooks };
+/// feeder, the feeder's number in function bits, one hook a feeder among the hooks, or the feeder's number in
+/// hooks.
+enum class FeederEncoding : std::uint8_t { none, one_hot, binary, hooks, binary_hooks };
 
 /// What a hook does on this loom.
 enum class HookUse : std::uint8_t { cast_out, body, selvedge, constant_on, feeder, regulator };
@@ -77,19 +78,26 @@ struct LoomProfile {
 
     std::size_t feeders = 1;
     FeederEncoding feeder_encoding = FeederEncoding::none;
-    std::vector<std::size_t>
-        feeder_hooks;  ///< hooks: the hook of each feeder; one_hot, binary: the function bits
+    /// The hook of each feeder (hooks) or of each digit (binary_hooks); one_hot and binary: the function
+    /// bits.
+    std::vector<std::size_t> feeder_hooks;
     std::size_t feeders_per_pick = 1;
     std::vector<std::size_t> regulator_hooks;  ///< hooks that stop the take-up when lifted
 
     OutputFormat output = OutputFormat::tiff;
-    bool lifted_is_one = true;  ///< polarity of a bit in the file
-    bool least_bit_first = true;
-    bool pick_1_at_bottom = true, end_1_at_left = true;
+    bool lifted_is_one = true;     ///< polarity of a hook's bit in the file; in pictures: black is lifted
+    bool least_bit_first = true;   ///< of the hooks in a byte
+    bool pick_1_at_bottom = true;  ///< in controller files: pick 1 is the first record
+    bool end_1_at_left = true;     ///< with rules other than list: end 1 takes the first body hook
     std::size_t name_limit = 8;
-    std::size_t lead_in_picks = 0;
-    std::vector<std::size_t>
-        hook_permutation;  ///< for raw files: place in the file of each hook; empty: as counted
+    std::size_t lead_in_picks = 0;   ///< empty picks before pick 1
+    std::size_t function_bytes = 0;  ///< before the hooks of each pick
+    bool areas_on_bytes = true;      ///< each area starts with a byte of its own
+    /// Place in the file of each hook; empty: as counted.
+    std::vector<std::size_t> hook_permutation;
+    /// The format without public bytes, such as JC6, that the mill's CAD makes of the picture; empty: the
+    /// loom takes the file as it is.
+    std::string converts_to;
 
     std::optional<double> density_ends_per_cm;  ///< of the harness
     LoomLimits limits;
@@ -103,6 +111,18 @@ struct LoomProfile {
 Result<LoomProfile> read_profile(std::string_view text);
 Result<LoomProfile> load_profile(const std::filesystem::path& path);
 
+/// Whether the loom's controller takes a picture, or the mill's CAD does, and not a file of hooks.
+bool takes_picture(OutputFormat output);
+
+/// The name of a format in a profile, such as `jc5`.
+const std::string& name_of(OutputFormat output);
+
+/// How many function bits or hooks the feeders of this loom need for their encoding.
+std::size_t feeder_places(const LoomProfile& profile);
+
+/// Whether hooks, not function bits, select the feeders.
+bool feeders_in_hooks(const LoomProfile& profile);
+
 std::size_t hooks_in(const std::vector<HookRange>& ranges);
 
 /// How many ends this loom can carry: all body hooks (straight), half of them and the tip (point), their
@@ -113,9 +133,10 @@ std::size_t most_ends(const LoomProfile& profile);
 /// mirror image (point), or in every repeat (repeats).
 std::size_t ends_on_loom(const LoomProfile& profile, std::size_t ends);
 
-/// The hooks (from 0) that lift end `end` of a design with `ends` ends, none where it does not fit. Straight
-/// and list: one. Point: the end's own and its mirror image's; the last end is the tip and stands once.
-/// Repeats: one in each repeat.
+/// The hooks (from 0) that lift end `end` of a design with `ends` ends, none where it does not fit. Where end
+/// 1 is not at the left, ends count through the body from its last hook (but with list). Straight and list:
+/// one. Point: the end's own and its mirror image's; the last end is the tip and stands once. Repeats: one in
+/// each repeat.
 std::vector<std::size_t> hooks_of_end(const LoomProfile& profile, std::size_t end, std::size_t ends);
 
 /// What each hook is for; whatever the profile does not name is cast out.

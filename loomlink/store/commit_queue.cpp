@@ -1,0 +1,101 @@
+#include <weave/core/log.hpp>
+
+#include <algorithm>
+#include <exception>
+#include <loomlink/store/commit_queue.hpp>
+#include <utility>
+
+namespace weave::loomlink {
+
+namespace {
+
+constexpr std::size_t most_together = 256;
+
+/// A change is the caller's code: what it throws must not end the writer.
+Status call(const std::function<Status(Writer&)>& change, Writer& writer) {
+    try {
+        return change(writer);
+    } catch (const std::exception& trouble) {
+        return system_fault(std::string("a change of the store failed: ") + trouble.what());
+    } catch (...) {
+        return system_fault("a change of the store failed");
+    }
+}
+
+}  // namespace
+
+CommitQueue::CommitQueue(std::string path, std::unique_ptr<sql::Connection> connection)
+    : m_path(std::move(path)), m_connection(std::move(connection)), m_thread([this] { work(); }) {}
+
+CommitQueue::~CommitQueue() {
+    {
+        const std::lock_guard lock(m_mutex);
+        m_ending = true;
+    }
+    m_wake.notify_one();
+    m_thread.join();
+}
+
+Status CommitQueue::commit(const std::function<Status(Writer&)>& change) {
+    Job job{&change, {}, false};
+    std::unique_lock lock(m_mutex);
+    m_waiting.push_back(&job);
+    m_wake.notify_one();
+    m_done.wait(lock, [&] { return job.done; });
+    return std::move(job.outcome);
+}
+
+void CommitQueue::work() {
+    std::unique_lock lock(m_mutex);
+    while (true) {
+        m_wake.wait(lock, [this] { return m_ending || !m_waiting.empty(); });
+        if (m_waiting.empty()) return;
+        const auto count = static_cast<std::ptrdiff_t>(std::min(m_waiting.size(), most_together));
+        const std::deque<Job*> jobs(m_waiting.begin(), m_waiting.begin() + count);
+        m_waiting.erase(m_waiting.begin(), m_waiting.begin() + count);
+        lock.unlock();
+        commit_all(jobs);
+        lock.lock();
+        for (Job* job : jobs) job->done = true;
+        m_done.notify_all();
+    }
+}
+
+void CommitQueue::commit_all(const std::deque<Job*>& jobs) {
+    Status status = m_connection ? Status() : reopen();
+    if (status) status = run_all(jobs);
+    if (status) return;
+    // Nothing of the batch was stored, so nobody of it may believe so. Whose change was refused anyway keeps
+    // the reason.
+    for (Job* job : jobs)
+        if (job->outcome) job->outcome = status;
+    if (m_connection && m_connection->in_transaction()) static_cast<void>(m_connection->script("ROLLBACK"));
+    log(LogLevel::warning, "the store could not write: " + status.error().text());
+    m_connection.reset();  // what a failed disk left in its cache is not to be trusted
+}
+
+Status CommitQueue::run_all(const std::deque<Job*>& jobs) {
+    WEAVE_CHECK_OK(m_connection->script("BEGIN IMMEDIATE"));
+    for (Job* job : jobs) WEAVE_CHECK_OK(run_one(*job));
+    return m_connection->script("COMMIT");
+}
+
+/// Runs one change in a savepoint. An error is one that ends the whole batch; the change's own goes into its
+/// outcome.
+Status CommitQueue::run_one(Job& job) {
+    WEAVE_CHECK_OK(m_connection->script("SAVEPOINT change"));
+    Writer writer(*m_connection);
+    job.outcome = call(*job.change, writer);
+    if (!m_connection
+             ->in_transaction())  // a full disk may roll back everything, this change's neighbours with it
+        return job.outcome ? system_fault("the transaction was ended", m_path) : Status(job.outcome.error());
+    if (!job.outcome) WEAVE_CHECK_OK(m_connection->script("ROLLBACK TO change"));
+    return m_connection->script("RELEASE change");
+}
+
+Status CommitQueue::reopen() {
+    WEAVE_TRY(m_connection, sql::Connection::open(m_path, sql::Access::write));
+    return {};
+}
+
+}  // namespace weave::loomlink

@@ -1,0 +1,53 @@
+#pragma once
+
+#include <weave/core/result.hpp>
+
+#include <condition_variable>
+#include <deque>
+#include <functional>
+#include <loomlink/store/database.hpp>
+#include <loomlink/store/writer.hpp>
+#include <memory>
+#include <mutex>
+#include <string>
+#include <thread>
+
+namespace weave::loomlink {
+
+/// The one thread that writes. Changes that wait while the disk works are committed together, each in a
+/// savepoint of its own, so that one that is refused takes no other with it.
+class CommitQueue {
+  public:
+    CommitQueue(std::string path, std::unique_ptr<sql::Connection> connection);
+    /// Finishes what waits.
+    ~CommitQueue();
+    CommitQueue(const CommitQueue&) = delete;
+    CommitQueue& operator=(const CommitQueue&) = delete;
+
+    /// Answers once the change is on the disk, or is not stored at all.
+    Status commit(const std::function<Status(Writer&)>& change);
+
+  private:
+    struct Job {
+        const std::function<Status(Writer&)>* change;
+        Status outcome;
+        bool done = false;
+    };
+
+    void work();
+    void commit_all(const std::deque<Job*>& jobs);
+    Status run_all(const std::deque<Job*>& jobs);
+    Status run_one(Job& job);
+    Status reopen();
+
+    std::string m_path;
+    std::unique_ptr<sql::Connection> m_connection;
+    std::mutex m_mutex;
+    std::condition_variable m_wake;  ///< the writer: there is work, or an end
+    std::condition_variable m_done;  ///< those who wait for an answer
+    std::deque<Job*> m_waiting;
+    bool m_ending = false;
+    std::thread m_thread;
+};
+
+}  // namespace weave::loomlink

@@ -1,0 +1,94 @@
+#pragma once
+
+#include <weave/core/result.hpp>
+
+#include <filesystem>
+#include <functional>
+#include <loomlink/audit/bundle.hpp>
+#include <loomlink/store/reader.hpp>
+#include <loomlink/store/writer.hpp>
+#include <memory>
+#include <optional>
+#include <string>
+#include <type_traits>
+#include <utility>
+#include <vector>
+
+namespace weave::loomlink {
+
+/// The one way to what loomlink keeps. One file of SQLite; a server database can stand in behind the same
+/// face. Any thread may call. What a write() has answered well survives kill -9 and power loss.
+class Store {
+  public:
+    /// Makes a store for a site. Refused where the file exists.
+    static Result<Store> create(const std::filesystem::path& path, const std::string& site);
+    /// Opens a store, and brings one of an older version up to date. Refused: a newer one, another program's
+    /// file.
+    static Result<Store> open(const std::filesystem::path& path);
+    /// Waits for the writes under way.
+    ~Store();
+    Store(Store&&) noexcept;
+    Store& operator=(Store&&) noexcept;
+
+    /// Runs `change` in the one writer thread and answers once it is on the disk: all of it, or nothing where
+    /// `change` or the disk fails. Changes that wait together share one commit. `change` must not call the
+    /// store itself.
+    Status commit(const std::function<Status(Writer&)>& change);
+    /// The same with an answer: `change` gives a Status or a Result.
+    template <class Change>
+    std::invoke_result_t<Change, Writer&> write(Change change) {
+        return answer_of<std::invoke_result_t<Change, Writer&>, Writer>(
+            change, [this](const std::function<Status(Writer&)>& run) { return commit(run); });
+    }
+
+    /// Runs `ask` on one unchanging view of the store, beside writes and other readers.
+    Status view(const std::function<Status(const Reader&)>& ask) const;
+    template <class Ask>
+    std::invoke_result_t<Ask, const Reader&> read(Ask ask) const {
+        return answer_of<std::invoke_result_t<Ask, const Reader&>, const Reader>(
+            ask, [this](const std::function<Status(const Reader&)>& run) { return view(run); });
+    }
+
+    /// A copy of the store as it is now, while it is in use. Refused where the file exists.
+    Status backup(const std::filesystem::path& to) const;
+
+  private:
+    class Core;
+    explicit Store(std::unique_ptr<Core> core);
+
+    template <class Answer, class Access, class Call, class Run>
+    static Answer answer_of(Call& call, Run run) {
+        if constexpr (std::is_same_v<Answer, Status>) {
+            return run(call);
+        } else {
+            std::optional<Answer> answer;
+            WEAVE_CHECK_OK(run([&](Access& access) -> Status {
+                answer.emplace(call(access));
+                if (*answer) return {};
+                return answer->error();
+            }));
+            return *std::move(answer);
+        }
+    }
+
+    std::unique_ptr<Core> m_core;
+};
+
+/// Puts a backup into place, whole or not at all, after verifying it. Refused: a backup with findings, and a
+/// target that a program has open.
+Status restore_store(const std::filesystem::path& backup, const std::filesystem::path& to);
+
+/// What verify_store() trusts beforehand. What is missing is not checked.
+struct StoreTrust {
+    SignatureCheck log;
+    SignatureCheck statements;
+    std::optional<SignedTreeHead> retained;
+};
+
+/// Everything that a store holds, looked at once more: pages and links by SQLite, every object's hash, every
+/// record, its leaf and chain, the tree, the heads, every revision's hash, and that rows and records agree.
+/// Empty: all well. An error only where the store cannot be read at all.
+Result<std::vector<AuditFinding>> verify_store(const std::filesystem::path& path,
+                                               const StoreTrust& trust = {});
+
+}  // namespace weave::loomlink

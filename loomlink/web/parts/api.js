@@ -1,0 +1,49 @@
+// Talks to /api/v1. A failure is an ApiError whose text can be shown as it is.
+
+export class ApiError extends Error {
+    constructor(status, error) {
+        super(error?.message ?? `The server answered ${status}`);
+        this.status = status;
+        this.where = error?.where ?? '';
+    }
+}
+
+let csrf = sessionStorage.getItem('csrf') ?? '';
+let leave = () => {};
+
+/** What to do when the server no longer knows us. */
+export const on_signed_out = action => { leave = action; };
+
+export function remember(signed_in) {
+    csrf = signed_in?.csrf ?? '';
+    if (csrf) sessionStorage.setItem('csrf', csrf);
+    else sessionStorage.removeItem('csrf');
+}
+
+/** Every call that changes something has an id of its own, so that a repeated one changes nothing twice. */
+export function request_id() {
+    return [...crypto.getRandomValues(new Uint8Array(16))].map(byte => byte.toString(16).padStart(2, '0')).join('');
+}
+
+export const get = path => call('GET', path);
+export const post = (path, body = {}) => call('POST', path, { request: request_id(), ...body });
+export const put = (path, body = {}) => call('PUT', path, { request: request_id(), ...body });
+
+async function call(method, path, body) {
+    const headers = { Accept: 'application/json' };
+    if (body) headers['Content-Type'] = 'application/json';
+    if (method !== 'GET') headers['X-CSRF-Token'] = csrf;
+    let answer;
+    try {
+        answer = await fetch('/api/v1' + path, { method, headers, body: body && JSON.stringify(body), credentials: 'same-origin' });
+    } catch {
+        throw new ApiError(0, { message: 'The server cannot be reached' });
+    }
+    const content = await answer.json().catch(() => ({}));
+    if (answer.ok) return content;
+    const error = new ApiError(answer.status, content.error);
+    if (answer.status === 401 && !path.startsWith('/login')) leave();
+    throw error;
+}
+
+export const at = (...parts) => '/' + parts.map(encodeURIComponent).join('/');

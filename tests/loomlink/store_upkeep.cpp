@@ -1,0 +1,136 @@
+#include "store_case.hpp"
+
+#include <catch2/catch.hpp>
+
+#include <array>
+#include <fstream>
+#include <loomlink/store/migrations.hpp>
+#include <thread>
+
+using namespace weave;
+using namespace weave::loomlink;
+using namespace weave::loomlink::testing;
+
+namespace {
+
+std::unique_ptr<sql::Connection> connect(const std::filesystem::path& path) {
+    return sql::Connection::open(path.string(), sql::Access::create).value();
+}
+
+std::int64_t version_of(sql::Connection& connection) {
+    return connection.number("PRAGMA user_version").value();
+}
+
+/// Steps to tell migrations by; they stand for those to come.
+constexpr std::array<sql::Migration, 3> steps{
+    {{1, "CREATE TABLE thread (id INTEGER PRIMARY KEY) STRICT; INSERT INTO thread VALUES (7)"},
+     {2, "ALTER TABLE thread ADD COLUMN colour TEXT NOT NULL DEFAULT 'red'"},
+     {3,
+      "CREATE TABLE cone (thread INTEGER NOT NULL REFERENCES thread (id)) STRICT;"
+      "INSERT INTO cone VALUES (7)"}}};
+
+}  // namespace
+
+TEST_CASE("a database of every older version is brought up to date with what it holds") {
+    for (std::size_t from = 0; from <= steps.size(); ++from) {
+        const Folder folder;
+        const auto connection = connect(folder / "d.db");
+        if (from > 0) REQUIRE(sql::migrate(*connection, std::span(steps).first(from)));
+        REQUIRE(sql::migrate(*connection, steps));
+        REQUIRE(version_of(*connection) == 3);
+        REQUIRE(
+            connection
+                ->number(
+                    "SELECT count(*) FROM thread JOIN cone ON cone.thread = thread.id WHERE colour = 'red'")
+                .value() == 1);
+    }
+}
+
+TEST_CASE("a migration is done whole or not at all, and never backwards") {
+    const Folder folder;
+    const auto connection = connect(folder / "d.db");
+    auto broken = steps;
+    broken[1].script = "ALTER TABLE thread ADD COLUMN colour TEXT; SELECT nonsense";
+    REQUIRE_FALSE(sql::migrate(*connection, broken));
+    REQUIRE(version_of(*connection) == 1);
+    REQUIRE(connection->number("SELECT count(*) FROM pragma_table_info('thread')").value() == 1);
+    broken = steps;
+    broken[2].script =
+        "PRAGMA defer_foreign_keys = ON; CREATE TABLE cone (thread INTEGER REFERENCES thread (id)) STRICT; "
+        "INSERT INTO cone VALUES (8)";
+    REQUIRE_THAT(text_of(sql::migrate(*connection, broken)), Catch::Contains("dangling"));
+    REQUIRE(version_of(*connection) == 2);
+    REQUIRE(sql::migrate(*connection, steps));
+    REQUIRE_THAT(text_of(sql::migrate(*connection, std::span(steps).first(2))), Catch::Contains("version 3"));
+}
+
+TEST_CASE("a store of version 1, filled as that version did, opens and verifies") {
+    const Folder folder;
+    {
+        const auto connection = connect(folder / "v1.db");
+        REQUIRE(sql::migrate(*connection, sql::migrations().first(1)));
+        // a site and its first record, as version 1 wrote them
+        REQUIRE(connection->script("INSERT INTO site (one, name) VALUES (1, 'mill')"));
+        const std::string record = record_bytes({0, {}, statement_of(1), {}}).value();
+        REQUIRE(connection->run(
+            "INSERT INTO event (seq, record, leaf, kind, actor, subject) VALUES (0, ?, ?, ?, ?, ?)",
+            sql::Blob{record}, leaf_hash(record), statement_of(1).kind, statement_of(1).actor,
+            statement_of(1).subject));
+        REQUIRE(
+            connection->script("INSERT INTO person (id, login, full_name, active, password, event) VALUES "
+                               "(1, 'anna', 'Anna', 1, 'x', 0);"
+                               "INSERT INTO person_role (person, role) VALUES (1, 'designer')"));
+    }
+    const Store store = Store::open(folder / "v1.db").value();
+    REQUIRE(store.read([](const Reader& reader) { return reader.person("anna"); }).value()->roles.size() ==
+            1);
+    REQUIRE(all_text(verify_store(folder / "v1.db").value()).empty());
+}
+
+TEST_CASE("a backup of a store in use is a store as of one moment") {
+    Mill mill;
+    std::atomic<bool> stop = false;
+    std::thread writer([&] {
+        while (!stop) static_cast<void>(mill.store.write([](Writer& w) { return note(w); }));
+    });
+    for (int k = 0; k < 3; ++k) {
+        const auto copy = mill.folder / ("copy" + std::to_string(k) + ".db");
+        REQUIRE(text_of(mill.store.backup(copy)).empty());
+        REQUIRE(all_text(verify_store(copy).value()).empty());
+    }
+    stop = true;
+    writer.join();
+    REQUIRE_THAT(text_of(mill.store.backup(mill.folder / "copy0.db")), Catch::Contains("exists already"));
+}
+
+TEST_CASE("a restore is whole or not at all, and never under a running store") {
+    const Folder folder;
+    const auto path = folder / "s.db", copy = folder / "copy.db";
+    const auto size = [&] {
+        return Store::open(path).value().read([](const Reader& reader) { return reader.log_size(); }).value();
+    };
+    {
+        Store store = Store::create(path, "mill").value();
+        REQUIRE(store.write([](Writer& writer) { return note(writer); }));
+        REQUIRE(store.backup(copy));
+        REQUIRE(store.write([](Writer& writer) { return note(writer); }));
+        REQUIRE_THAT(text_of(restore_store(copy, path)), Catch::Contains("in use"));
+        REQUIRE(store.write([](Writer& writer) { return note(writer); }));
+    }
+    REQUIRE(size() == 3);
+    REQUIRE(text_of(restore_store(copy, path)).empty());
+    REQUIRE(size() == 1);
+    REQUIRE(text_of(restore_store(copy, folder / "new.db")).empty());
+
+    tamper_with(copy, "DROP TRIGGER event_no_update; UPDATE event SET actor = 'mallory'");
+    REQUIRE_THAT(text_of(restore_store(copy, path)), Catch::Contains("is not whole"));
+    REQUIRE(size() == 1);
+    std::ofstream(folder / "text.db")
+        << "no database, but long enough to be read as one, a hundred bytes and more: "
+        << std::string(200, '.');
+    REQUIRE_FALSE(restore_store(folder / "text.db", path));
+    REQUIRE_FALSE(restore_store(folder / "missing.db", path));
+    REQUIRE(size() == 1);
+    for (const auto& entry : std::filesystem::directory_iterator(path.parent_path()))
+        REQUIRE(entry.path().string().find(".part-") == std::string::npos);
+}
