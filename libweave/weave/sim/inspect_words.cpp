@@ -113,7 +113,7 @@ std::string run_text(const Yarns& yarns, const Inspection& inspection) {
         text = converged->get<bool>() ? "At rest" : "NOT at rest, so that all below may still change";
     if (residual) text += format(" (residual %.1e)", *residual);
     if (const Json goes_on = sim::part_of(yarns.report, "goes_on"); goes_on.is_string())
-        text = "ON THE WAY to " + goes_on.get<std::string>() + ": shown until finer yarns have relaxed. " + text;
+        text = "ON THE WAY to " + goes_on.get<std::string>() + ": these are yarns in fewer points, from before the others have relaxed. " + text;
     const auto such = [](const std::vector<ChangedCrossing>& crossings, const char* what) {
         return counted(crossings.size(), "crossing") + what + ", such as pick " + std::to_string(crossings.front().pick + 1) +
                " with end " + std::to_string(crossings.front().end + 1) + "\n";
