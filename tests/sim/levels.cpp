@@ -174,3 +174,13 @@ TEST_CASE("slip against friction counts from the plan through both levels") {
           Approx(at_once.report.at("friction").at("stuck_share").get<double>()).margin(0.02));
     CHECK(crimp_of(by_levels) == Approx(crimp_of(at_once)).epsilon(2e-3));
 }
+
+TEST_CASE("plain weave at a loose residual is not called a saddle, and at a tight one it is none") {
+    const Design design = find_sample("plain")->make();
+    const Plan plan = plan_at(design, Fidelity::standard);
+    SimulationOptions options;
+    options.threads = 1;
+    CHECK(simulate(design, plan, options).report.at("smallest_curvature") != "negative");
+    options.residual = 1e-8;
+    CHECK(simulate(design, plan, options).report.at("smallest_curvature") == "positive");
+}

@@ -539,13 +539,13 @@ class Simulation {
         return yarns;
     }
 
-    /// Sign of the least second derivative of the energy at rest. What is not at rest is not looked at.
+    /// Sign of the least second derivative of the energy at rest, where the residual does not leave it open. What is not at
+    /// rest is not looked at.
     std::string smallest_curvature() {
         if (m_last.ending != Ending::converged) return "not looked";
-        std::vector<double> gradient;
-        m_energy->evaluate(m_state, gradient);
-        const bool down = m_last.curves_down ? *m_last.curves_down : curves_down(*m_energy, m_state);
-        return down ? "negative" : "positive";
+        if (m_last.curves_down == false) return "positive";
+        const Bend bend = bend_at(*m_energy, m_state, goal() * m_last.reference_N);
+        return bend == Bend::up ? "positive" : bend == Bend::down ? "negative" : "unclear";
     }
 
     /// How far the strain of the yarns of each system is from what was asked for: S - 1 where they are fed, else 0.
