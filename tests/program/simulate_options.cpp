@@ -176,6 +176,14 @@ TEST_CASE("reference begins at standard, and a run that ends in fewer points lea
     const Json cut = shop.json({"simulate", "d.weave", "--threads", "1", "--fidelity", "reference", "--seconds", "1e-9", "-o", "f.yarns"}, 1);
     CHECK(cut.at("fidelity") == "standard");
     CHECK(cut.at("ending") == "time");
+    CHECK(cut.at("goes_on") == "reference");
+    CHECK(cut.at("left_undone") == Json::array({"the fidelity asked for, reference"}));
+    const std::string words = shop.run({"simulate", "d.weave", "--threads", "1", "--start-from", "draft", "--steps", "2", "-o", "g.yarns"}).out;
+    INFO(words);
+    CHECK(words.find("standard, which was asked for, was not begun; these are the yarns in the fewer points of draft") != std::string::npos);
+    CHECK(words.find("(goal 1e-02)") != std::string::npos);
+    CHECK(words.find("CUT SHORT, left undone: the fidelity asked for, standard") != std::string::npos);
+    CHECK(shop.run({"inspect", "g.yarns"}).out.find("ON THE WAY to standard") != std::string::npos);
 }
 
 TEST_CASE("a tiled cloth resumes as its smallest repeat") {
@@ -289,6 +297,24 @@ TEST_CASE("a flip in the relaxed cloth saves the design that its yarns are of") 
     CHECK(again.at("iterations").get<int>() <= 3);
 }
 
+TEST_CASE("flips on a cloth with repeats count both runs, and one that there is no time for writes no design") {
+    const Workshop shop;
+    shop.must({"samples", "plain", "-o", "p.weave"});
+    shop.must({"tile", "p.weave", "--x", "2", "--y", "2", "-o", "d.weave"});
+    const Json said = shop.json({"simulate", "d.weave", "--threads", "1", "--start-from", "draft", "--flip", "2,3", "-o", "g.yarns"});
+    CHECK(said.at("coarser").at("fidelity") == "draft");
+    CHECK(said.at("iterations").get<int>() > said.at("coarser").at("iterations").get<int>());
+    const std::vector<std::string> hasty{"simulate", "d.weave", "--threads", "1", "--seconds", "1e-9", "--flip", "2,3", "--save-design", "h.weave", "-o", "h.yarns"};
+    const Json cut = shop.json(hasty, 1);
+    CHECK(cut.at("left_undone") == Json::array({"coming to rest", "1 of 1 flip"}));
+    CHECK(cut.at("flips").at(0).at("tried") == false);
+    CHECK(cut.at("saved_design").is_null());
+    CHECK(shop.names().count("h.weave") == 0);
+    const std::string words = shop.run(hasty).out;
+    CHECK(words.find("stay as they were: not begun, as the time was up") != std::string::npos);
+    CHECK(words.find("h.weave is NOT written") != std::string::npos);
+}
+
 TEST_CASE("a part of a cloth has frozen rims, says what it covers, and takes flips") {
     const Workshop shop;
     shop.must({"samples", "twill-2-2", "-o", "p.weave"});
@@ -308,9 +334,11 @@ TEST_CASE("a part of a cloth has frozen rims, says what it covers, and takes fli
                                     "--flip", "6,5", "--save-design", "g.weave", "-o", "f.yarns"});
     CHECK(flipped.at("flips").at(0).at("done") == true);
     CHECK(flipped.at("order_kept") == true);
-    const Json outside = shop.json({"simulate", "d.weave", "--threads", "1", "--region", "picks:3-10,ends:2-9", "--resume", "r.yarns",
-                                    "--flip", "1,1", "-o", "o.yarns"}, 1);
-    CHECK(outside.at("flips").at(0).at("done") == false);
+    const Ended outside = shop.run({"simulate", "d.weave", "--threads", "1", "--region", "picks:3-10,ends:2-9", "--resume", "r.yarns",
+                                    "--flip", "1,1", "-o", "o.yarns"});
+    CHECK(outside.exit == 2);
+    CHECK(outside.err.find("--flip 1,1") != std::string::npos);
+    CHECK(shop.names().count("o.yarns") == 0);
 }
 
 TEST_CASE("a free period shrinks to where no force is left on its rim") {

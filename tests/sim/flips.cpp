@@ -172,3 +172,28 @@ TEST_CASE("a crossing that is held where it is does not flip, and all stays as i
     for (std::size_t y = 0; y < plain.yarns.size(); ++y)
         CHECK(plain.yarns[y].spline.control == yarns.yarns[y].spline.control);
 }
+
+TEST_CASE("a flip that is broken off or not begun is listed as not tried, with why") {
+    const Relaxed of = relaxed("plain");
+    SimulationOptions options;
+    options.threads = 1;
+    options.flips = {{0, 0, !of.block->weft_over(0, 0)}, {1, 1, !of.block->weft_over(1, 1)}};
+    const auto reason = [](const Yarns& yarns, std::size_t flip) {
+        CHECK(yarns.report.at("flips").at(flip).at("done") == false);
+        CHECK(yarns.report.at("flips").at(flip).at("tried") == false);
+        return yarns.report.at("flips").at(flip).at("reason").get<std::string>();
+    };
+    options.most_seconds = 1e-9;
+    const Yarns late = simulate(of.design, of.plan, options);
+    CHECK(reason(late, 0) == "not begun, as the time was up");
+    options.most_seconds = 1e30;
+    options.most_iterations = 1;
+    CHECK(reason(simulate(of.design, of.plan, options), 1) == "not begun, as the steps were used up");
+    options.most_iterations = 20000;
+    options.watch = [](const Progress& progress) { return progress.residual > 0; };  // a flip tells of none
+    const Yarns stopped = simulate(of.design, of.plan, options);
+    CHECK(stopped.report.at("converged") == true);
+    CHECK(reason(stopped, 0) == "broken off, as it was stopped");
+    CHECK(reason(stopped, 1) == "not begun, as it was stopped");
+    CHECK(stopped.design_sha256 == design_sha256(of.design));
+}

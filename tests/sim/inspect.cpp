@@ -174,6 +174,9 @@ TEST_CASE(
     yarns.report["smallest_curvature"] = "positive";
     CHECK(carried() == "positive");
     CHECK(says("The energy curves up in every direction looked at"));
+    yarns.report["smallest_curvature"] = "unclear";
+    CHECK(says("not clear at this residual"));
+    CHECK_FALSE(says("SADDLE"));
     yarns.report["smallest_curvature"] = "not looked";
     CHECK(says("Nobody looked whether the rest holds"));
     yarns.report["strain_deviation"] = {{"warp", 0.0003}, {"weft", nullptr}};
@@ -478,4 +481,21 @@ TEST_CASE("TL013: the wrong version leans in its upper section, the corrected on
         CHECK(worst.mm > 0.6);
         CHECK(worst.same_way == 1);
     }
+}
+
+TEST_CASE("a cloth of one layer has no distance of layers, and ends that lie loose are counted") {
+    const auto words_of = [](std::size_t layers) {
+        StraightCloth wish;
+        wish.layers = layers;
+        wish.over = plain_over;
+        Yarns yarns = straight_cloth(wish);
+        for (SimulatedYarn& yarn : yarns.yarns) {
+            for (Vec3& place : yarn.spline.control) place.z() *= 0.5;
+        }
+        yarns.report["coverage"] = {{"of", {{"picks", 4 * layers}, {"ends", 4 * layers + 3}}}};
+        return inspection_text(yarns, looked_over(yarns));
+    };
+    CHECK(words_of(1).find("of their planned distance") == std::string::npos);
+    CHECK(words_of(1).find("4 picks and 7 ends (4 of them cross others)") != std::string::npos);
+    CHECK(words_of(3).find("its layers at 50 % of their planned distance") != std::string::npos);
 }

@@ -114,12 +114,48 @@ TEST_CASE("whoever is shown the coarser yarns may end there") {
     options.threads = 1;
     options.coarser = &coarse;
     options.after_coarser = [](const Yarns&) { return false; };
-    CHECK(simulate(design, fine, options).report.at("fidelity") == "draft");
+    options.residual = 1e-7;
+    options.flips = {{0, 0, false}};
+    const auto ends_in_draft = [&](const char* ending) {
+        const Json report = simulate(design, fine, options).report;
+        INFO(report.dump());
+        CHECK(report.at("fidelity") == "draft");
+        CHECK(report.at("goes_on") == "standard");
+        CHECK(report.at("converged") == false);
+        CHECK(report.at("ending") == ending);
+        CHECK(report.at("goal") == 1e-7);
+        CHECK(report.at("coarser").at("goal") == coarse.goal);
+        CHECK(report.at("flips").at(0).at("tried") == false);
+        return report;
+    };
+    // The coarser yarns are at rest, what was asked for is not.
+    CHECK(ends_in_draft("stopped").at("coarser").at("ending") == "converged");
     options.after_coarser = nullptr;
     options.watch = [](const Progress&) { return false; };
-    const Yarns stopped = simulate(design, fine, options);
-    CHECK(stopped.report.at("fidelity") == "draft");
-    CHECK(stopped.report.at("ending") == "stopped");
+    ends_in_draft("stopped");
+    options.watch = nullptr;
+    options.most_seconds = 1e-9;
+    ends_in_draft("time");
+    options.most_seconds = 1e30;
+    options.most_iterations = 3;
+    CHECK(ends_in_draft("iterations").at("iterations") == 3);
+}
+
+TEST_CASE("both levels have one number of steps") {
+    const Design design = find_sample("plain")->make();
+    const Plan coarse = plan_at(design, Fidelity::draft), fine = plan_at(design, Fidelity::standard);
+    SimulationOptions options;
+    options.threads = 1;
+    options.residual = 1e-30;
+    options.coarser = &coarse;
+    std::size_t first = 0;
+    options.after_coarser = [&](const Yarns& yarns) { return first = yarns.report.at("iterations"), true; };
+    options.most_iterations = 60;
+    const Json report = simulate(design, fine, options).report;
+    REQUIRE(first > 0);
+    REQUIRE(first < 60);
+    CHECK(report.at("fidelity") == "standard");
+    CHECK(report.at("iterations") == 60);
 }
 
 TEST_CASE("slip against friction counts from the plan through both levels") {
@@ -137,4 +173,14 @@ TEST_CASE("slip against friction counts from the plan through both levels") {
     CHECK(by_levels.report.at("friction").at("stuck_share").get<double>() ==
           Approx(at_once.report.at("friction").at("stuck_share").get<double>()).margin(0.02));
     CHECK(crimp_of(by_levels) == Approx(crimp_of(at_once)).epsilon(2e-3));
+}
+
+TEST_CASE("plain weave at a loose residual is not called a saddle, and at a tight one it is none") {
+    const Design design = find_sample("plain")->make();
+    const Plan plan = plan_at(design, Fidelity::standard);
+    SimulationOptions options;
+    options.threads = 1;
+    CHECK(simulate(design, plan, options).report.at("smallest_curvature") != "negative");
+    options.residual = 1e-8;
+    CHECK(simulate(design, plan, options).report.at("smallest_curvature") == "positive");
 }

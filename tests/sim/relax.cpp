@@ -1,6 +1,7 @@
 #include "scenes.hpp"
 
 #include <weave/curve/spline.hpp>
+#include <weave/sim/newton.hpp>
 #include <weave/sim/relax.hpp>
 #include <weave/sim/spread.hpp>
 
@@ -240,6 +241,11 @@ TEST_CASE("a rest that is none but a saddle is left: a straight rod that is pres
     const RelaxResult rest = relax(buckled.energy, buckled.state, {.residual = 1e-6, .watch = {}});
     CHECK(saddle.ending == Ending::converged);
     CHECK(saddle.iterations == 0);
+    const Bend bend = bend_at(straight.energy, straight.state, 1e-6 * saddle.reference_N);
+    CHECK(bend == Bend::down);
+    // A force that counts as none and explains the fall leaves it open.
+    CHECK(bend_at(straight.energy, straight.state, 1e9) == Bend::open);
+    CHECK(bend_at(buckled.energy, buckled.state, 1e-6 * rest.reference_N) == Bend::up);
     CHECK(rest.ending == Ending::converged);
     CHECK(rest.curves_down == false);
     CHECK(rest.energy < 0.5 * saddle.energy);

@@ -62,6 +62,9 @@ Result<RelaxedCloth> load_relaxed(const Program& program, const std::string& fil
     WEAVE_TRY(const Yarns yarns, load_yarns(file));
     Result<RelaxedCloth> relaxed = relaxed_cloth(yarns, cloth.design, *cloth.evaluation.block);
     if (!relaxed) return std::move(relaxed).error().in(file);
+    if (const auto goes_on = yarns.report.find("goes_on"); goes_on != yarns.report.end() && goes_on->is_string())
+        program.note(on_one_line(file) + " has the yarns in fewer points of a run to " + goes_on->get<std::string>() +
+                     " that is under way or was cut off: simulate it to its end for lengths to go by");
     if (yarns.scene_sha256 != scene_sha256(cloth.design))
         program.note(on_one_line(file) + " was simulated with another scene than the design's");
     return relaxed;

@@ -233,7 +233,7 @@ std::string friction_in_words(const Json& report) {
 
 /// Which points it began in, and whether the others went on from there.
 std::string start_in_words(const Json& report) {
-    if (!report.contains("coarser")) return "";
+    if (!report.contains("coarser") || report.contains("goes_on")) return "";
     const Json& coarser = report.at("coarser");
     char line[200];
     std::snprintf(line, sizeof line, "began in %zu points (%s): residual %.1e after %zu steps and %.2f s%s\n",
@@ -244,8 +244,8 @@ std::string start_in_words(const Json& report) {
 }
 
 std::string interruption_in_words(const Json& report) {
-    if (!report.contains("interrupted")) return "";
-    std::string text = "INTERRUPTED, left undone: ";
+    if (!report.contains("left_undone")) return "";
+    std::string text = report.contains("interrupted") ? "INTERRUPTED, left undone: " : "CUT SHORT, left undone: ";
     for (const Json& what : report.at("left_undone")) text += (text.back() == ' ' ? "" : ", ") + what.get<std::string>();
     return text + "\n";
 }
@@ -266,11 +266,18 @@ std::string periods_in_words(const Json& report) {
     return text;
 }
 
+/// Whether it is at rest, and where it never came to what was asked for, whose yarns these are.
+std::string rest_in_words(const Json& report) {
+    if (!report.contains("goes_on")) return report.at("converged").get<bool>() ? "at rest" : "NOT at rest";
+    return "NOT at rest: " + report.at("goes_on").get<std::string>() + ", which was asked for, was not begun; these are the yarns in the fewer points of " +
+           report.at("fidelity").get<std::string>();
+}
+
 std::string ending_in_words(const Json& report) {
-    char line[200];
+    const Json& goal = (report.contains("goes_on") ? report.at("coarser") : report).at("goal");
+    char line[300];
     std::snprintf(line, sizeof line, "%s: residual %.1e (goal %.0e) after %zu steps and %.2f s, %zu points, greatest overlap %.0f %%\n",
-                  report.at("converged").get<bool>() ? "at rest" : "NOT at rest", report.at("residual").get<double>(),
-                  report.at("goal").get<double>(), report.at("iterations").get<std::size_t>(), report.at("seconds").get<double>(),
+                  rest_in_words(report).c_str(), report.at("residual").get<double>(), goal.get<double>(), report.at("iterations").get<std::size_t>(), report.at("seconds").get<double>(),
                   report.at("points").get<std::size_t>(), 100 * report.at("max_overlap").get<double>());
     const auto lost = report.at("lost_crossings").get<std::size_t>();
     const auto slid = report.at("slid_crossings").get<std::size_t>();
@@ -281,15 +288,17 @@ std::string ending_in_words(const Json& report) {
            sim::starts_text(report) + sim::symmetry_text(report) + interruption_in_words(report);
 }
 
-/// What an interrupted run was asked for and has not done, in words.
+/// What a run that was interrupted, or whose time or steps were up, was asked for and has not done, in words.
 std::vector<std::string> left_undone(const Json& report, const Task& task, const Wish& wish) {
     std::vector<std::string> undone;
     const auto add = [&](std::size_t done, std::size_t asked, const char* what) {
         if (done < asked) undone.push_back(std::to_string(asked - done) + " of " + counted(asked, what));
     };
     const Json flips = report.value("flips", Json::array());
-    if (report.at("ending") == "stopped") undone.emplace_back("coming to rest");
-    add(static_cast<std::size_t>(std::ranges::count_if(flips, [](const Json& flip) { return flip.at("done").get<bool>(); })),
+    const std::string ending = report.at("ending");
+    if (report.contains("goes_on")) undone.push_back("the fidelity asked for, " + report.at("goes_on").get<std::string>());
+    else if (ending == "stopped" || ending == "time" || ending == "iterations") undone.emplace_back("coming to rest");
+    add(static_cast<std::size_t>(std::ranges::count_if(flips, [](const Json& flip) { return flip.at("tried").get<bool>(); })),
         task.flips.size(), "flip");
     add(report.value("starts", Json::object()).value("runs", std::size_t{0}), wish.starts, "more relaxation");
     if (wish.symmetry && !report.contains("symmetry")) undone.emplace_back("the whole cloth beside its smallest repeat");
@@ -312,6 +321,22 @@ Result<sim::Plan> plan_of(const Design& design, const Block& block, const sim::S
     return plan;
 }
 
+/// The ending that leaves nothing for the whole cloth after its smallest repeat; empty where it goes on.
+std::string over_after(const Json& report, const sim::SimulationOptions& options) {
+    const std::string ending = report.at("ending");
+    if (interrupted()) return "stopped";
+    if (report.contains("goes_on") || ending == "stopped" || ending == "time") return ending;
+    if (report.at("seconds").get<double>() >= options.most_seconds) return "time";
+    return report.at("iterations").get<std::size_t>() >= options.most_iterations ? "iterations" : "";
+}
+
+/// The report of the whole cloth counts what its smallest repeat took, and says in which points that began.
+void count_both(Json& whole, const Json& repeat) {
+    for (const char* name : {"iterations", "evaluations"}) whole[name] = whole.at(name).get<std::size_t>() + repeat.at(name).get<std::size_t>();
+    whole["seconds"] = whole.at("seconds").get<double>() + repeat.at("seconds").get<double>();
+    if (repeat.contains("coarser")) whole["coarser"] = repeat.at("coarser");
+}
+
 /// Relaxes; with flips first the smallest repeat, then from there the whole cloth, one of whose crossings is to change.
 Result<Yarns> relaxed(const Block& block, Task& task, const sim::Plan& plan, const Wish& wish) {
     sim::SimulationOptions& options = task.options;
@@ -323,15 +348,22 @@ Result<Yarns> relaxed(const Block& block, Task& task, const sim::Plan& plan, con
         options.flips = task.flips;
         return sim::simulate(task.design, plan, options);
     }
-    const Yarns repeat = sim::simulate(task.design, plan, options);
-    if (interrupted()) return repeat;
+    Yarns repeat = sim::simulate(task.design, plan, options);
+    if (const std::string over = over_after(repeat.report, options); !over.empty()) {
+        repeat.report["flips"] = sim::flips_not_begun(task.flips, over);
+        return repeat;
+    }
     options.coarser = nullptr;
+    options.most_iterations -= repeat.report.at("iterations").get<std::size_t>();
+    options.most_seconds -= repeat.report.at("seconds").get<double>();
     sim::SimulationRequest request = task.request;
     request.reduce = false;
     WEAVE_TRY(const sim::Plan whole, plan_of(task.design, block, request, wish.file));
     WEAVE_TRY(options.start, sim::start_from(whole, repeat, repeat.design_sha256, {repeat.scene_sha256}));
     options.flips = task.flips;
-    return sim::simulate(task.design, whole, options);
+    Yarns yarns = sim::simulate(task.design, whole, options);
+    count_both(yarns.report, repeat.report);
+    return yarns;
 }
 
 /// The smallest repeat, then the whole from a start with noise: the first of them, or with --whole the second, with what
@@ -372,8 +404,7 @@ std::string first_points(const Wish& wish) {
 }
 
 /// What the coarser yarns say of themselves while they stand for the finer ones to come.
-Status show_coarser(Yarns yarns, const sim::Plan& plan, const std::string& file) {
-    yarns.report["goes_on"] = std::string(sim::name_of(plan.fidelity));
+Status show_coarser(const Yarns& yarns, const std::string& file) {
     WEAVE_TRY(const std::string bytes, write_yarns(yarns));
     return write_file(file, bytes);
 }
@@ -395,7 +426,7 @@ Status start_coarser(const Block& block, Task& task, const sim::Plan& plan, cons
     teller.turn_to(" in the points of " + start_from, task.coarser->goal);
     task.options.after_coarser = [&, goal](const Yarns& yarns) {
         teller.turn_to(" in all points", goal);
-        shown = show_coarser(yarns, plan, wish.out);
+        shown = show_coarser(yarns, wish.out);
         return shown && !interrupted();
     };
     return {};
@@ -410,10 +441,20 @@ Result<Yarns> watched(const Block& block, Task& task, const sim::Plan& plan, con
     WEAVE_TRY(Yarns yarns, simulated(block, task, plan, wish, teller));
     WEAVE_CHECK_OK(shown);
     teller.end();
-    std::vector<std::string> undone;
-    if (interrupted()) undone = left_undone(yarns.report, task, wish);
-    if (!undone.empty()) yarns.report.update({{"interrupted", true}, {"left_undone", undone}});
+    const std::vector<std::string> undone = left_undone(yarns.report, task, wish);
+    if (!undone.empty()) yarns.report["left_undone"] = undone;
+    if (!undone.empty() && interrupted()) yarns.report["interrupted"] = true;
     return yarns;
+}
+
+/// Flips of a part of the cloth lie in it.
+Status check_flips_within(const sim::Plan& plan, const std::vector<Flip>& flips) {
+    for (const Flip& flip : flips) {
+        const bool within = std::ranges::any_of(plan.curves.crossings, [&](const Crossing& crossing) { return crossing.pick == flip.pick && crossing.end == flip.end; });
+        if (!within)
+            return usage_error("lies outside the part that is simulated (--region)", "--flip " + std::to_string(flip.pick + 1) + "," + std::to_string(flip.end + 1));
+    }
+    return {};
 }
 
 /// The design with the flips that were made, in the scene of its file.
@@ -425,10 +466,14 @@ Status save_flipped(Design design, const Task& task, const Yarns& yarns, const s
     return save_design(design, file);
 }
 
+bool is_any_flip_done(const Json& report) {
+    return std::ranges::any_of(report.at("flips"), [](const Json& flip) { return flip.at("done").get<bool>(); });
+}
+
 bool is_good(const Json& report) {
     const auto is_done = [](const Json& flip) { return flip.at("done").get<bool>(); };
     const Json flips = report.value("flips", Json::array());
-    return !report.contains("interrupted") && report.at("converged").get<bool>() && report.at("order_kept").get<bool>() &&
+    return !report.contains("left_undone") && report.at("converged").get<bool>() && report.at("order_kept").get<bool>() &&
            std::all_of(flips.begin(), flips.end(), is_done);
 }
 
@@ -444,15 +489,25 @@ Status run_simulation(Program& program, const Wish& wish) {
         program.answer({{"plan", sim::lines_json(plan)}, {"yarns", plan.scene.yarns.size()}}, in_words(plan));
         return {};
     }
+    if (task.request.region) {
+        WEAVE_CHECK_OK(check_flips_within(plan, task.flips));
+    }
     const HeldInterrupt held("the yarns are written as they lie; again to end at once, without the state");
     WEAVE_TRY(const Yarns yarns, watched(block, task, plan, wish));
     WEAVE_TRY(const std::string bytes, write_yarns(yarns));
     WEAVE_CHECK_OK(write_file(wish.out, bytes));
-    if (!wish.save_design.empty() && yarns.report.contains("flips"))
-        WEAVE_CHECK_OK(save_flipped(cloth.design, task, yarns, wish.save_design));
     Json answer = yarns.report;
     answer["file"] = wish.out;
-    program.answer(answer, on_one_line(wish.out) + ", " + ending_in_words(yarns.report));
+    std::string words = on_one_line(wish.out) + ", " + ending_in_words(yarns.report);
+    if (!wish.save_design.empty()) {
+        const bool any = is_any_flip_done(yarns.report);
+        answer["saved_design"] = any ? Json(wish.save_design) : Json(nullptr);
+        if (!any) words += on_one_line(wish.save_design) + " is NOT written: no flip was made\n";
+        if (any) {
+            WEAVE_CHECK_OK(save_flipped(cloth.design, task, yarns, wish.save_design));
+        }
+    }
+    program.answer(answer, words);
     if (!is_good(yarns.report)) program.exit_code = findings;
     return {};
 }
@@ -483,7 +538,7 @@ void add_simulate(CLI::App& app, Program& program) {
         ->type_name("FIELD")
         ->allow_extra_args(false);
     command->add_option("--flip", wish->flips, "let a pick and an end change sides in the relaxed cloth")->type_name("PICK,END")->allow_extra_args(false);
-    command->add_option("--save-design", wish->save_design, "the .weave file to write with the flips that were made")->type_name("FILE");
+    command->add_option("--save-design", wish->save_design, "the .weave file to write with the flips that were made, if any was")->type_name("FILE");
     command->add_option("--resume", wish->resume, "go on from these relaxed yarns of the same design")->type_name("FILE");
     command->add_option("--start-from", wish->start_from, "relax in the fewer points of this fidelity first, such as draft, or at once: plan; reference "
                                                           "begins at standard if nothing is said. The file has these yarns, so "
@@ -499,8 +554,8 @@ void add_simulate(CLI::App& app, Program& program) {
                                                     "(with --whole its yarns are written)");
     command->add_option("--seed", wish->seed, "of that noise; 1 if nothing is said")->transform(whole_number())->type_name("N");
     command->add_flag("--explain", wish->explain, "tell what would be simulated and why, and end");
-    command->add_option("--steps", wish->steps, "stop after so many steps")->transform(whole_number())->type_name("N");
-    command->add_option("--seconds", wish->seconds, "stop after so long")->check(positive_number())->type_name("N");
+    command->add_option("--steps", wish->steps, "stop after so many steps in all; each run of --starts and --symmetry has as many")->transform(whole_number())->type_name("N");
+    command->add_option("--seconds", wish->seconds, "stop after so long in all; each run of --starts and --symmetry has as long")->check(positive_number())->type_name("N");
     add_threads(command, wish->threads);
     command->footer("Ctrl-C writes the yarns as they lie (exit 1), for --resume to go on from; again, half a second later or more, ends at "
                     "once without them.\n" + command->get_footer());

@@ -93,6 +93,7 @@ std::string rest_text(const Json& report) {
     const Json curvature = rests ? sim::smallest_curvature(report) : Json(nullptr);
     if (curvature == "negative") text += "The rest is a SADDLE: a little push would lead on\n";
     if (curvature == "positive") text += "The energy curves up in every direction looked at: no small push was found that leads away from this rest\n";
+    if (curvature == "unclear") text += "Whether the rest holds or is a saddle is not clear at this residual: go on to a smaller one to know\n";
     if (curvature == "not looked") text += "Nobody looked whether the rest holds or is a saddle\n";
     const Json strain = sim::part_of(report, "strain_deviation");
     std::string each;
@@ -113,7 +114,7 @@ std::string run_text(const Yarns& yarns, const Inspection& inspection) {
         text = converged->get<bool>() ? "At rest" : "NOT at rest, so that all below may still change";
     if (residual) text += format(" (residual %.1e)", *residual);
     if (const Json goes_on = sim::part_of(yarns.report, "goes_on"); goes_on.is_string())
-        text = "ON THE WAY to " + goes_on.get<std::string>() + ": shown until finer yarns have relaxed. " + text;
+        text = "ON THE WAY to " + goes_on.get<std::string>() + ": these are yarns in fewer points, from before the others have relaxed. " + text;
     const auto such = [](const std::vector<ChangedCrossing>& crossings, const char* what) {
         return counted(crossings.size(), "crossing") + what + ", such as pick " + std::to_string(crossings.front().pick + 1) +
                " with end " + std::to_string(crossings.front().end + 1) + "\n";
@@ -156,10 +157,17 @@ std::string stretch_text(const char* name, const std::optional<NumberSpan>& stre
            std::to_string((*stretch)[1] + 1) + (of ? " of " + std::to_string(*of) : "");
 }
 
+/// How many the cloth has, and of these how many cross others, where some lie loose.
+std::string all_text(std::size_t crossing, const std::optional<std::size_t>& all, const char* name) {
+    if (!all || *all <= crossing) return counted(crossing, name);
+    return counted(*all, name) + " (" + std::to_string(crossing) + " of them cross others)";
+}
+
 /// Which picks and ends of the cloth these are; of a whole cloth how many.
 std::string part_text(const Inspection& inspection) {
     const InspectedPart& part = inspection.part;
-    if (part.is_whole) return counted(inspection.picks, "pick") + " and " + counted(inspection.ends, "end");
+    if (part.is_whole)
+        return all_text(inspection.picks, part.cloth_picks, "pick") + " and " + all_text(inspection.ends, part.cloth_ends, "end");
     return "only a PART of the cloth, " + stretch_text("picks", part.picks, part.cloth_picks) + " and " +
            stretch_text("ends", part.ends, part.cloth_ends) + " (" +
            stretch_text("rows", part.rows, part.cloth_rows) + ", " +
@@ -178,10 +186,16 @@ std::string rims_text(const Inspection& inspection) {
            counted(inspection.measured_ends, "end") + " are left\n";
 }
 
+/// Whether a row has several picks, or a column several ends; otherwise the cloth is one layer.
+bool is_layered(const Inspection& inspection) {
+    const auto cells = [](const NumberSpan& span) { return span[1] - span[0] + 1; };
+    return inspection.picks > cells(inspection.part.rows) || inspection.ends > cells(inspection.part.columns);
+}
+
 std::string measures_text(const Yarns& yarns, const Inspection& inspection) {
     std::string text = rims_text(inspection) + "Thickness " +
                        (inspection.thickness_mm ? mm(*inspection.thickness_mm) : "not measured");
-    if (std::abs(inspection.settled - 1) >= 0.01)
+    if (is_layered(inspection) && std::abs(inspection.settled - 1) >= 0.01)
         text += format(", its layers at %.0f %% of their planned distance", 100 * inspection.settled);
     text += "\nCrimp " + crimp_text("warp", inspection.warp_crimp) + ", " +
             crimp_text("weft", inspection.weft_crimp) + "\nTake-up" +

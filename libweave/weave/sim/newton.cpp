@@ -17,6 +17,8 @@ constexpr double exact_below = 1;
 /// A direction curves down that does so by this share of what the preconditioner holds it for; one is looked for by so
 /// many steps.
 constexpr double least_curvature = 1e-3;
+/// What a fall must be worth, as a share of that against the force that counts as none.
+constexpr double worth = 0.01;
 constexpr std::size_t most_search = 80;
 
 /// How far along `direction` from a step of which (size², step·M·direction) is known the radius is reached.
@@ -103,22 +105,42 @@ void Newton<Real>::make_matrix(const std::vector<Real>& state, Curvature curvatu
     m_preconditioner.factor(m_matrix);
 }
 
+/// Looks for a direction in which the energy curves downwards: `m_change`, from `m_before`, and how much of it is a little
+/// way; 0 if there is none.
 template <class Real>
-bool Newton<Real>::leave_saddle(std::vector<Real>& state, double& value, std::vector<Real>& gradient,
-                                double force) {
-    constexpr double worth = 0.01, far = 0.05;  // far: of the least reach
-    if (m_hessian.rows() == 0) return false;
+double Newton<Real>::look_down(const std::vector<Real>& state) {
+    constexpr double far = 0.05;  // of the least reach
+    m_curves_down = false;
+    if (m_hessian.rows() == 0) return 0;
     make_matrix(state, Curvature::exact);
     const std::vector<double> down =
         downward_direction(m_energy.executor(), m_matrix, m_preconditioner, least_curvature, most_search);
     m_curves_down = !down.empty();
-    if (down.empty()) return false;
+    if (down.empty()) return 0;
     m_hessian.to_slots(down, m_change);
     const double size = greatest_force(m_energy.executor(), m_change);
-    double share = far * m_energy.fabric().least_reach() / size;
+    const double share = far * m_energy.fabric().least_reach() / size;
     const double safe = m_energy.safe_share(state, m_change, 2 * share);
-    share = std::min(share, safe / 2);
     m_before = state;
+    return std::min(share, safe / 2);
+}
+
+template <class Real>
+Bend Newton<Real>::bend(const std::vector<Real>& state, double force) {
+    const double share = look_down(state);
+    if (!m_curves_down) return Bend::up;
+    std::vector<Real> moved = state;
+    const double there = go(moved, share), back = go(moved, -share), here = go(moved, 0);
+    const double against = worth * force * share * greatest_force(m_energy.executor(), m_change);
+    return (there + back) / 2 < here - against && std::max(there, back) < here ? Bend::down : Bend::open;
+}
+
+template <class Real>
+bool Newton<Real>::leave_saddle(std::vector<Real>& state, double& value, std::vector<Real>& gradient,
+                                double force) {
+    const double share = look_down(state);
+    if (!m_curves_down) return false;
+    const double size = greatest_force(m_energy.executor(), m_change);
     double best = 0, lowest = value - worth * force * share * size;
     for (const double way : {share, -share}) {
         const double there = go(state, way);
@@ -131,15 +153,13 @@ bool Newton<Real>::leave_saddle(std::vector<Real>& state, double& value, std::ve
 }
 
 template <class Real>
-bool curves_down(Energy<Real>& energy, const std::vector<Real>& state) {
+Bend bend_at(Energy<Real>& energy, const std::vector<Real>& state, double force) {
     Hessian<Real> hessian(energy.fabric());
-    if (hessian.rows() == 0) return false;
     BlockMatrix matrix;
     Multigrid preconditioner(energy.executor(), rows_of_yarns(energy.fabric()), places_of(energy.fabric()));
-    hessian.assemble(energy, state, Curvature::exact, matrix);
-    matrix.add_to_pivots(1e-7F);
-    preconditioner.factor(matrix);
-    return !downward_direction(energy.executor(), matrix, preconditioner, least_curvature, most_search).empty();
+    std::vector<Real> gradient;
+    energy.evaluate(state, gradient);
+    return Newton<Real>(energy, hessian, matrix, preconditioner).bend(state, force);
 }
 
 template <class Real>
@@ -210,8 +230,8 @@ bool Newton<Real>::step(std::vector<Real>& state, double& value, std::vector<Rea
     return false;
 }
 
-template bool curves_down(Energy<float>&, const std::vector<float>&);
-template bool curves_down(Energy<double>&, const std::vector<double>&);
+template Bend bend_at(Energy<float>&, const std::vector<float>&, double);
+template Bend bend_at(Energy<double>&, const std::vector<double>&, double);
 template class Newton<float>;
 template class Newton<double>;
 

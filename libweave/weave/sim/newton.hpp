@@ -6,6 +6,7 @@
 #include <weave/sim/safe_step.hpp>
 
 #include <cstddef>
+#include <cstdint>
 #include <vector>
 
 namespace weave::sim {
@@ -34,10 +35,19 @@ std::vector<double> downward_direction(const Executor& executor, const BlockMatr
                                        Preconditioner& preconditioner, double least,
                                        std::size_t most_iterations);
 
-/// Whether the energy curves downwards in some direction at a state: the sign of the least eigenvalue of its exact second
-/// derivatives, as a search of 80 conjugate gradient steps finds it. The latest evaluation must have been at that state.
+/// What can be said of a rest that is known to a force.
+enum class Bend : std::uint8_t {
+    up,    ///< no direction was found in which the energy curves downwards
+    open,  ///< one was, but so little that the rest itself, a little farther on, may well curve upwards there
+    down,  ///< a saddle: the energy falls to both sides
+};
+
+/// Whether a state of rest is a saddle, as a search of 80 conjugate gradient steps with the exact second derivatives finds
+/// it. The curvature at a state is not that of the rest it is near: a saddle is claimed only where the energy falls to both
+/// sides, on the mean (to which the gradient gives nothing) by more than against a hundredth of `force`, N, which is what
+/// counts as none.
 template <class Real>
-bool curves_down(Energy<Real>& energy, const std::vector<Real>& state);
+Bend bend_at(Energy<Real>& energy, const std::vector<Real>& state, double force);
 
 /// Newton steps by the exact second derivatives, or far from rest their convex part, no farther than these
 /// have proved to hold.
@@ -57,11 +67,15 @@ class Newton {
     /// is flat, so its fall begins with little).
     bool leave_saddle(std::vector<Real>& state, double& value, std::vector<Real>& gradient, double force);
 
+    /// Whether a state is a saddle; see bend_at().
+    Bend bend(const std::vector<Real>& state, double force);
+
     /// Whether the latest leave_saddle() found a direction in which the energy curves downwards.
     [[nodiscard]] bool curves_down() const { return m_curves_down; }
     [[nodiscard]] std::size_t cg_iterations() const { return m_cg_iterations; }
 
   private:
+    double look_down(const std::vector<Real>& state);
     void make_matrix(const std::vector<Real>& state, Curvature curvature);
     double fall_of(const SafeStep& safe);
     double go(std::vector<Real>& state, double share);

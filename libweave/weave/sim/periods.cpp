@@ -44,7 +44,8 @@ class Search {
             ++m_result.rounds;
             m_result.balanced = is_balanced();
             const Ending ending = m_result.last.ending;
-            if (m_result.balanced || ending == Ending::stopped || ending == Ending::time || m_result.rounds >= most_rounds)
+            if (m_result.balanced || ending == Ending::stopped || ending == Ending::time || m_result.rounds >= most_rounds ||
+                m_iterations >= m_options.most_iterations)
                 return std::move(m_result);
             move_on();
         }
@@ -56,6 +57,7 @@ class Search {
         Energy<double> energy(fabric, m_executor);
         std::vector<double> state = fabric.state();
         RelaxOptions options = m_options;
+        options.most_iterations -= std::min(options.most_iterations, m_iterations);
         options.most_seconds -= m_seconds;
         if (m_options.watch) {
             options.watch = [&](Progress progress) {

@@ -41,8 +41,8 @@ struct RelaxResult {
     double residual = 0, energy = 0, reference_N = 0;
     std::size_t iterations = 0, evaluations = 0, cg_iterations = 0, builds = 0;
     double seconds = 0;
-    /// At rest: whether the energy curves downwards in some direction there, so that the rest is a saddle; nothing where
-    /// that was not looked at (see curves_down()).
+    /// At rest: whether the energy curves downwards in some direction there, by too little to leave it
+    /// (bend_at() says whether the rest is a saddle); nothing where that was not looked at.
     std::optional<bool> curves_down;
     std::vector<Progress> history;
 };

@@ -253,6 +253,11 @@ Json coverage_of(const Plan& plan) {
 
 constexpr std::string_view solver_names[]{"relax", "paper"};
 
+/// Why a run ended before it was done, by the name of its ending.
+std::string why_over(std::string_view ending) {
+    return ending == "time" ? "the time was up" : ending == "iterations" ? "the steps were used up" : "it was stopped";
+}
+
 /// The plan, as it is at the end of a simulation, becomes yarns with a report.
 class Simulation {
   public:
@@ -266,10 +271,7 @@ class Simulation {
         }
         relax_scene();
         m_scene.slip_from.reset();  // what follows begins anew
-        for (const Flip& flip : m_options.flips) {
-            if (m_last.ending == Ending::stopped || m_last.ending == Ending::time) break;
-            make(flip);
-        }
+        for (const Flip& flip : m_options.flips) make(flip);
         return measured();
     }
 
@@ -282,24 +284,47 @@ class Simulation {
         options.coarser = nullptr;
         Simulation coarser(m_design, *m_options.coarser, options);
         Yarns yarns = coarser.run();
-        const Ending ending = coarser.m_last.ending;
-        if (ending == Ending::stopped || ending == Ending::time) return yarns;
-        if (m_options.after_coarser && !m_options.after_coarser(yarns)) return yarns;
+        yarns.report["goes_on"] = std::string(sim::name_of(m_plan.fidelity));
         m_seconds = coarser.m_seconds;
         m_iterations = coarser.m_iterations;
         m_evaluations = coarser.m_evaluations;
-        const std::optional<StartState> start =
-            refined_start(m_plan, *m_options.coarser, {controls_of(coarser.m_scene), coarser.m_scene.period_mm});
-        m_coarser = {{"taken", start.has_value()}};
+        m_coarser = {{"taken", false}};
         for (const char* name : {"fidelity", "points_per_key", "points", "goal", "residual", "ending", "iterations", "seconds",
                                  "energy_N_mm", "lost_crossings"})
             m_coarser[name] = yarns.report.at(name);
+        m_last.ending = coarser.m_last.ending;
+        if (const std::optional<Ending> over = cut_short()) return cut_off(std::move(yarns), *over);
+        if (m_options.after_coarser && !m_options.after_coarser(yarns)) return cut_off(std::move(yarns), Ending::stopped);
+        const std::optional<StartState> start =
+            refined_start(m_plan, *m_options.coarser, {controls_of(coarser.m_scene), coarser.m_scene.period_mm});
+        m_coarser["taken"] = start.has_value();
         if (!start) return {};
         m_scene = scene_at(m_plan, *start);
         // Both levels are one way from the plan to the rest.
         if (m_scene.friction > 0) m_scene.slip_from = SlipStart{controls_of(m_plan.scene), m_plan.scene.period_mm};
         return {};
     }
+
+    /// The coarser yarns as the end of a run: whether or not they are at rest, what was asked for is not.
+    Yarns cut_off(Yarns yarns, Ending ending) {
+        yarns.report.update({{"converged", false},
+                             {"ending", std::string(sim::name_of(ending))},
+                             {"goal", goal()},
+                             {"coarser", m_coarser}});
+        if (!m_options.flips.empty()) yarns.report["flips"] = flips_not_begun(m_options.flips, sim::name_of(ending));
+        return yarns;
+    }
+
+    /// What leaves no more to be done, if anything does: whoever watches, or the time or the steps that are used up.
+    [[nodiscard]] std::optional<Ending> cut_short() const {
+        if (m_cut) return m_cut;
+        if (m_last.ending == Ending::stopped || m_last.ending == Ending::time) return m_last.ending;
+        if (m_seconds >= m_options.most_seconds) return Ending::time;
+        if (m_iterations >= m_options.most_iterations) return Ending::iterations;
+        return {};
+    }
+
+    [[nodiscard]] double goal() const { return m_options.residual.value_or(m_plan.goal); }
 
     static std::vector<std::vector<Vec3>> controls_of(const SimScene& scene) {
         std::vector<std::vector<Vec3>> control;
@@ -309,8 +334,8 @@ class Simulation {
 
     [[nodiscard]] RelaxOptions relax_options() const {
         RelaxOptions options;
-        options.residual = m_options.residual.value_or(m_plan.goal);
-        options.most_iterations = m_options.most_iterations;
+        options.residual = goal();
+        options.most_iterations = m_options.most_iterations - std::min(m_options.most_iterations, m_iterations);
         options.most_seconds = m_options.most_seconds - m_seconds;
         options.watch = m_options.watch;
         return options;
@@ -374,16 +399,33 @@ class Simulation {
 
     /// One flip with the relaxation that follows; undone where the cloth does not take it.
     void make(const Flip& flip) {
+        if (const std::optional<Ending> over = cut_short()) {
+            m_flips.push_back(flips_not_begun({flip}, sim::name_of(*over)).at(0));
+            return;
+        }
         if (std::string reason = why_not(flip); !reason.empty()) {
             tell_of(flip, false, std::move(reason), 0, 0);
             return;
         }
+        lead(flip);
+    }
+
+    /// Whether a flip under way may go on; else `m_cut` says what broke it off.
+    bool may_go_on(double flip_seconds) {
+        if (m_options.watch && !m_options.watch({})) m_cut = Ending::stopped;
+        else if (m_seconds + flip_seconds > m_options.most_seconds) m_cut = Ending::time;
+        return !m_cut;
+    }
+
+    void lead(const Flip& flip) {
         const SimScene before = m_scene;
         const std::vector<Crossing> crossings = m_plan.curves.crossings;
         const std::size_t lost_before = lost();
-        const std::function<bool()> go_on = [&] { return !m_options.watch || m_options.watch({}); };
-        FlipResult result = flip_relaxed(m_scene, m_plan.curves, m_plan.curve_of, flip,
-                                         m_options.residual.value_or(m_plan.goal), m_executor, go_on);
+        const std::function<bool()> go_on = [&, began = std::chrono::steady_clock::now()] {
+            return may_go_on(std::chrono::duration<double>(std::chrono::steady_clock::now() - began).count());
+        };
+        FlipResult result = flip_relaxed(m_scene, m_plan.curves, m_plan.curve_of, flip, goal(), m_executor, go_on);
+        if (m_cut && !result.done) result.reason = "broken off, as " + why_over(sim::name_of(*m_cut));
         m_seconds += result.seconds;
         m_iterations += result.iterations;
         const double flip_seconds = result.seconds;
@@ -420,7 +462,7 @@ class Simulation {
 
     void tell_of(const Flip& flip, bool done, std::string reason, double flip_seconds, double settle_seconds) {
         m_flips.push_back({{"pick", flip.pick + 1}, {"end", flip.end + 1}, {"weft_over", flip.weft_over},
-                           {"done", done}, {"reason", std::move(reason)}, {"flip_seconds", flip_seconds},
+                           {"done", done}, {"tried", done || !m_cut}, {"reason", std::move(reason)}, {"flip_seconds", flip_seconds},
                            {"settle_seconds", settle_seconds}, {"settle_iterations", done ? m_last.iterations : 0}});
     }
 
@@ -462,7 +504,7 @@ class Simulation {
                         {"points_per_key", m_plan.points_per_key},
                         {"converged", m_last.ending == Ending::converged && balanced},
                         {"ending", m_last.ending == Ending::converged && !balanced ? "periods" : std::string(sim::name_of(m_last.ending))},
-                        {"goal", m_options.residual.value_or(m_plan.goal)},
+                        {"goal", goal()},
                         {"residual", m_last.residual},
                         {"reference_N", m_last.reference_N},
                         {"energy_N_mm", m_last.energy},
@@ -497,13 +539,13 @@ class Simulation {
         return yarns;
     }
 
-    /// Sign of the least second derivative of the energy at rest. What is not at rest is not looked at.
+    /// Sign of the least second derivative of the energy at rest, where the residual does not leave it open. What is not at
+    /// rest is not looked at.
     std::string smallest_curvature() {
         if (m_last.ending != Ending::converged) return "not looked";
-        std::vector<double> gradient;
-        m_energy->evaluate(m_state, gradient);
-        const bool down = m_last.curves_down ? *m_last.curves_down : curves_down(*m_energy, m_state);
-        return down ? "negative" : "positive";
+        if (m_last.curves_down == false) return "positive";
+        const Bend bend = bend_at(*m_energy, m_state, goal() * m_last.reference_N);
+        return bend == Bend::up ? "positive" : bend == Bend::down ? "negative" : "unclear";
     }
 
     /// How far the strain of the yarns of each system is from what was asked for: S - 1 where they are fed, else 0.
@@ -532,6 +574,7 @@ class Simulation {
     RelaxResult m_last;
     FrictionResult m_friction;
     std::optional<PeriodsResult> m_periods;
+    std::optional<Ending> m_cut;  ///< what broke a flip off
     Json m_flips = Json::array(), m_coarser;
     double m_seconds = 0;
     std::size_t m_iterations = 0, m_evaluations = 0;
@@ -548,6 +591,16 @@ Result<Solver> parse_solver(std::string_view text) {
 
 std::string_view name_of(Solver solver) {
     return solver_names[static_cast<std::size_t>(solver)];
+}
+
+Json flips_not_begun(const std::vector<Flip>& flips, std::string_view ending) {
+    Json list = Json::array();
+    for (const Flip& flip : flips) {
+        list.push_back({{"pick", flip.pick + 1}, {"end", flip.end + 1}, {"weft_over", flip.weft_over}, {"done", false},
+                        {"tried", false}, {"reason", "not begun, as " + why_over(ending)}, {"flip_seconds", 0.0},
+                        {"settle_seconds", 0.0}, {"settle_iterations", 0}});
+    }
+    return list;
 }
 
 Yarns simulate(const Design& design, const Plan& plan, const SimulationOptions& options) {

@@ -26,8 +26,8 @@ struct SimulationOptions {
     Solver solver = Solver::relax;
     std::size_t threads = 0;            ///< 0: one a core
     std::optional<double> residual;     ///< instead of the fidelity's
-    std::size_t most_iterations = 20000;
-    double most_seconds = 1e30;
+    std::size_t most_iterations = 20000;  ///< of both levels and all flips together
+    double most_seconds = 1e30;           ///< the same
     /// See RelaxOptions; is told of lost crossings as well, unless a period relaxes.
     std::function<bool(const Progress&)> watch;
     std::optional<StartState> start;             ///< instead of the planned curves
@@ -45,7 +45,12 @@ struct SimulationOptions {
 /// `weave simulate --json`; whether it converged, and whether every crossing kept its order, is in it. What the report
 /// says is measured on the last state, whatever the ending. Of flips the report lists which are done, and the yarns are those
 /// of the design with these; one that does not end with the crossing asked for, or that costs another crossing its order,
-/// is undone. Where a coarser plan is what time, or whoever watches, ended, the yarns are those in its points.
+/// is undone, and one that time, steps or whoever watches left no room for is listed as not `tried`. Where the run ended
+/// with the coarser plan, for whatever reason, the yarns are those in its points: their report says which fidelity was to come
+/// (`goes_on`), has the goal that was asked for, and is not `converged`.
 Yarns simulate(const Design& design, const Plan& plan, const SimulationOptions& options);
+
+/// Flips as a report lists those that a run did not begin, being over by then; `ending` is its ending by name.
+Json flips_not_begun(const std::vector<Flip>& flips, std::string_view ending);
 
 }  // namespace weave::sim

@@ -132,7 +132,7 @@ bool is_flag(const Json& json) {
     return json.is_boolean();
 }
 bool is_curvature(const Json& json) {
-    return json == "positive" || json == "negative" || json == "not looked";
+    return json == "positive" || json == "negative" || json == "unclear" || json == "not looked";
 }
 bool is_deviation(const Json& json) {
     const auto fits = [](const Json& share) { return share.is_null() || is_amount(share); };
@@ -165,7 +165,7 @@ constexpr ReportMember report_members[]{
     {"lost_crossings", is_count, wish_count},
     {"slid_crossings", is_count, wish_count},
     {"goes_on", is_fidelity, "must be \"draft\", \"standard\" or \"reference\""},
-    {"smallest_curvature", is_curvature, "must be \"positive\", \"negative\" or \"not looked\""},
+    {"smallest_curvature", is_curvature, "must be \"positive\", \"negative\", \"unclear\" or \"not looked\""},
     {"strain_deviation", is_deviation, "must be an object of numbers from 0 on"},
 };
 
