@@ -1,3 +1,5 @@
+#include <weave/core/descriptor.hpp>
+
 #include <cerrno>
 #include <cstring>
 #include <fcntl.h>
@@ -7,33 +9,12 @@
 #include <sodium.h>
 #include <sys/stat.h>
 #include <unistd.h>
-#include <utility>
 
 namespace weave::loomlink {
 
 namespace {
 
 namespace fs = std::filesystem;
-
-/// A file descriptor that closes itself.
-class Descriptor {
-  public:
-    explicit Descriptor(int number) : m_number(number) {}
-    ~Descriptor() {
-        if (m_number >= 0) ::close(m_number);
-    }
-    Descriptor(const Descriptor&) = delete;
-    Descriptor& operator=(const Descriptor&) = delete;
-    [[nodiscard]] int number() const { return m_number; }
-    int release() { return std::exchange(m_number, -1); }
-
-  private:
-    int m_number;
-};
-
-Error fault(const fs::path& path, const std::string& action) {
-    return system_fault("cannot " + action + ": " + std::strerror(errno), path.string());
-}
 
 Error refused(const fs::path& path, std::string why) {
     return {ErrorCode::refused, std::move(why), path.string()};
@@ -60,15 +41,10 @@ class Litter {
 
 Status write_new(const fs::path& temporary, std::string_view bytes) {
     Descriptor file(::open(temporary.c_str(), O_WRONLY | O_CREAT | O_EXCL | O_CLOEXEC | O_NOFOLLOW, 0600));
-    if (file.number() < 0) return fault(temporary, "create");
-    while (!bytes.empty()) {
-        const ssize_t written = ::write(file.number(), bytes.data(), bytes.size());
-        if (written < 0 && errno == EINTR) continue;
-        if (written < 0) return fault(temporary, "write");
-        bytes.remove_prefix(static_cast<std::size_t>(written));
-    }
-    if (::fsync(file.number()) != 0) return fault(temporary, "flush to disk");
-    if (::close(file.release()) != 0) return fault(temporary, "close");
+    if (file.number() < 0) return file_fault(temporary, "create");
+    WEAVE_CHECK_OK(write_all(file, bytes, temporary));
+    if (::fsync(file.number()) != 0) return file_fault(temporary, "flush to disk");
+    if (::close(file.release()) != 0) return file_fault(temporary, "close");
     return {};
 }
 
@@ -91,7 +67,7 @@ Result<int> open_private(const fs::path& path, struct stat& facts) {
     if (file.number() < 0 && errno == ELOOP) return refused(path, "is a symbolic link");
     if (file.number() < 0)
         return bad_input(std::string("cannot open: ") + std::strerror(errno), path.string());
-    if (::fstat(file.number(), &facts) != 0) return fault(path, "examine");
+    if (::fstat(file.number(), &facts) != 0) return file_fault(path, "examine");
     WEAVE_CHECK_OK(check_facts(facts, path));
     return file.release();
 }
@@ -109,7 +85,7 @@ Status create_private_file(const fs::path& path, std::string_view bytes) {
     // A link, unlike a rename, never replaces what is there.
     if (::link(temporary.c_str(), path.c_str()) != 0) {
         if (errno == EEXIST) return refused(path, "exists already");
-        return fault(path, "put into place");
+        return file_fault(path, "put into place");
     }
     flush_folder(path.parent_path());
     return {};
@@ -132,7 +108,7 @@ Result<SecretBytes> read_private_file(const fs::path& path, std::size_t limit) {
     for (std::size_t at = 0; at < bytes.size();) {
         const ssize_t got = ::read(file.number(), bytes.data() + at, bytes.size() - at);
         if (got < 0 && errno == EINTR) continue;
-        if (got < 0) return fault(path, "read");
+        if (got < 0) return file_fault(path, "read");
         if (got == 0) return system_fault("became shorter while it was read", path.string());
         at += static_cast<std::size_t>(got);
     }

@@ -133,7 +133,6 @@ TEST_CASE("whole cloth moved at once is bounded by the samples' reach alone") {
 }
 
 TEST_CASE("a shortened change is safe") {
-    std::size_t short_of_it = 0;  // rounds may run out before 0.9 of the rest is safe: seldom, and then relax cuts it
     weave::testing::for_all(
         [&](Random& random) {
             Bench bench(some_scene(random));
@@ -148,12 +147,9 @@ TEST_CASE("a shortened change is safe") {
                 CHECK(now.cross(was).norm() <= 1e-12 * was.squaredNorm());
             }
             CHECK(worst_of(bench, change, 1).pair < 1);
-            const double safe = bench.energy.safe_share(bench.state, change, 1);
-            CHECK(safe > 0);
-            short_of_it += safe < 0.9;
+            CHECK(bench.energy.safe_share(bench.state, change, 1) >= 0.9);
         },
         200);
-    CHECK(short_of_it <= 4);
 }
 
 TEST_CASE("one place where nothing may move does not hold up the rest") {

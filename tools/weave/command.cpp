@@ -33,22 +33,6 @@ int exit_of(ErrorCode code) {
     return fault;
 }
 
-const char* kind_of(ErrorCode code) {
-    switch (code) {
-        case ErrorCode::usage:
-            return "usage";
-        case ErrorCode::bad_input:
-            return "bad input";
-        case ErrorCode::invalid:
-            return "invalid";
-        case ErrorCode::refused:
-            return "refused";
-        case ErrorCode::system:
-            return "system";
-    }
-    return "";
-}
-
 namespace fs = std::filesystem;
 
 /// The place that a file of this name is written to: links are followed, to a file that is still missing too.

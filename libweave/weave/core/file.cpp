@@ -1,3 +1,4 @@
+#include <weave/core/descriptor.hpp>
 #include <weave/core/file.hpp>
 #include <weave/core/log.hpp>
 
@@ -16,36 +17,6 @@ namespace weave {
 namespace {
 
 namespace fs = std::filesystem;
-
-/// A file descriptor that closes itself.
-class Descriptor {
-  public:
-    explicit Descriptor(int number) : m_number(number) {}
-    ~Descriptor() {
-        if (m_number >= 0) ::close(m_number);
-    }
-    Descriptor(const Descriptor&) = delete;
-    Descriptor& operator=(const Descriptor&) = delete;
-    [[nodiscard]] int number() const { return m_number; }
-    int release() { return std::exchange(m_number, -1); }
-
-  private:
-    int m_number;
-};
-
-Error fault(const fs::path& path, const std::string& action) {
-    return system_fault("cannot " + action + ": " + std::strerror(errno), path.string());
-}
-
-Status write_all(const Descriptor& file, std::string_view bytes, const fs::path& path) {
-    while (!bytes.empty()) {
-        const ssize_t written = ::write(file.number(), bytes.data(), bytes.size());
-        if (written < 0 && errno == EINTR) continue;
-        if (written < 0) return fault(path, "write");
-        bytes.remove_prefix(static_cast<std::size_t>(written));
-    }
-    return {};
-}
 
 /// What is being made and would be litter if the program ended now: temporary files and folders, and folders
 /// that were made to hold them. Everything is made under the lock, so that drop_unfinished_writes() misses
@@ -108,15 +79,15 @@ Status write_new(Scaffold& scaffold, const fs::path& path, std::string_view byte
     const auto open = [&] {
         return (number = ::open(path.c_str(), O_WRONLY | O_CREAT | O_EXCL | O_CLOEXEC, mode)) >= 0;
     };
-    if (!scaffold.make(path, open)) return fault(path, "create");
+    if (!scaffold.make(path, open)) return file_fault(path, "create");
     Descriptor file(number);
     WEAVE_CHECK_OK(write_all(file, bytes, path));
     if (like != nullptr) {
         static_cast<void>(!::fchown(file.number(), like->st_uid, like->st_gid));  // told once it is in place
-        if (::fchmod(file.number(), like->st_mode & 0777) != 0) return fault(path, "set the permissions");
+        if (::fchmod(file.number(), like->st_mode & 0777) != 0) return file_fault(path, "set the permissions");
     }
-    if (::fsync(file.number()) != 0) return fault(path, "flush to disk");
-    if (::close(file.release()) != 0) return fault(path, "close");
+    if (::fsync(file.number()) != 0) return file_fault(path, "flush to disk");
+    if (::close(file.release()) != 0) return file_fault(path, "close");
     return {};
 }
 
@@ -168,7 +139,7 @@ class BrokenPipesHeld {
 
 Status write_through(const fs::path& path, std::string_view bytes) {
     const Descriptor file(::open(path.c_str(), O_WRONLY | O_CLOEXEC));
-    if (file.number() < 0) return fault(path, "open");
+    if (file.number() < 0) return file_fault(path, "open");
     const BrokenPipesHeld held;
     return write_all(file, bytes, path);
 }
@@ -256,7 +227,7 @@ Result<std::string> read_file(const fs::path& path, std::uint64_t limit) {
     if (file.number() < 0)
         return bad_input(std::string("cannot open: ") + std::strerror(errno), path.string());
     struct stat facts {};
-    if (::fstat(file.number(), &facts) != 0) return fault(path, "examine");
+    if (::fstat(file.number(), &facts) != 0) return file_fault(path, "examine");
     if (!S_ISREG(facts.st_mode)) return bad_input("is not a regular file", path.string());
     const auto too_large = [&] {
         return bad_input("is larger than the limit of " + std::to_string(limit) + " bytes", path.string());
@@ -268,7 +239,7 @@ Result<std::string> read_file(const fs::path& path, std::uint64_t limit) {
     while (true) {
         const ssize_t got = ::read(file.number(), buffer, sizeof buffer);
         if (got < 0 && errno == EINTR) continue;
-        if (got < 0) return fault(path, "read");
+        if (got < 0) return file_fault(path, "read");
         if (got == 0) return bytes;
         bytes.append(buffer, static_cast<std::size_t>(got));
         if (bytes.size() > limit) return too_large();  // it grew meanwhile, or its size is not told
@@ -286,7 +257,7 @@ Status write_file(const fs::path& path, std::string_view bytes) {
     Scaffold scaffold;
     const fs::path temporary = temporary_beside(target);
     WEAVE_CHECK_OK(seen_from(write_new(scaffold, temporary, bytes, exists ? &old : nullptr), path));
-    if (::rename(temporary.c_str(), target.c_str()) != 0) return fault(path, "put into place");
+    if (::rename(temporary.c_str(), target.c_str()) != 0) return file_fault(path, "put into place");
     scaffold.keep();
     flush_parent(target);
     if (exists) tell_changes(target, old, path);
@@ -301,7 +272,7 @@ Status write_folder(const fs::path& folder, const std::vector<std::pair<std::str
     WEAVE_CHECK_OK(seen_from(write_beside(scaffold, temporary, files), folder));
     if (::rename(temporary.c_str(), target.c_str()) != 0) {
         if (errno == ENOTEMPTY || errno == EEXIST || errno == ENOTDIR) return taken(folder);  // by now
-        if (errno != EBUSY) return fault(folder, "put into place");
+        if (errno != EBUSY) return file_fault(folder, "put into place");
         return refused(folder, "is in use or a mount point; name a folder that does not exist");
     }
     scaffold.keep();

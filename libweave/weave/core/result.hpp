@@ -17,6 +17,23 @@ enum class ErrorCode {
     system,     ///< disk, network or device failed (exit 5)
 };
 
+/// The kind as programs and services write it, `kind` in their JSON.
+inline const char* kind_of(ErrorCode code) {
+    switch (code) {
+        case ErrorCode::usage:
+            return "usage";
+        case ErrorCode::bad_input:
+            return "bad input";
+        case ErrorCode::invalid:
+            return "invalid";
+        case ErrorCode::refused:
+            return "refused";
+        case ErrorCode::system:
+            break;
+    }
+    return "system";
+}
+
 /// A failure that a user can cause and must be able to understand.
 struct Error {
     ErrorCode code = ErrorCode::bad_input;

@@ -41,22 +41,6 @@ void for_each_part(std::string_view list, char separator, Use use) {
     }
 }
 
-const char* kind_of(ErrorCode code) {
-    switch (code) {
-        case ErrorCode::usage:
-            return "usage";
-        case ErrorCode::bad_input:
-            return "bad input";
-        case ErrorCode::invalid:
-            return "invalid";
-        case ErrorCode::refused:
-            return "refused";
-        case ErrorCode::system:
-            break;
-    }
-    return "system";
-}
-
 }  // namespace
 
 Bytes make_bytes(std::string text) {

@@ -272,6 +272,11 @@ void Energy<Real>::shorten(const std::vector<Real>& state, std::vector<Real>& ch
         });
         m_fabric.follow_change(change);
     }
+    // Rounds may run out before all places agree; then all of it is shortened alike.
+    const auto whole = static_cast<Real>(safe_share(state, change, 1));
+    if (whole < Real(enough)) {
+        for (Real& part : change) part *= whole;
+    }
 }
 
 template class Energy<float>;

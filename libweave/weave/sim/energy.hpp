@@ -47,7 +47,7 @@ class Energy {
     double safe_share(const std::vector<Real>& state, const std::vector<Real>& change, double most);
 
     /// Shortens a change where it is not safe: each control point goes as far as the samples near it allow,
-    /// and not at all where they do not come to agree. At least 0.9 of what is left is safe, but for the rarest of cases.
+    /// and not at all where they do not come to agree. At least 0.9 of what is left is safe.
     void shorten(const std::vector<Real>& state, std::vector<Real>& change);
 
   private:
