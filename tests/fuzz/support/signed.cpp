@@ -1,5 +1,5 @@
-#include "support/must.hpp"
-#include "support/signed.hpp"
+#include "must.hpp"
+#include "signed.hpp"
 
 #include <cstring>
 
