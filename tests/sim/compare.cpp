@@ -53,7 +53,7 @@ MeasuredCloth scan(const Yarns& yarns, const Alignment& motion, Random& random) 
     MeasuredCloth measured;
     for (const SimulatedYarn& yarn : yarns.yarns) {
         MeasuredYarn scanned;
-        const std::size_t points = random.between(60, 120);
+        const std::size_t points = random.between(24, 48);
         const auto segments = static_cast<double>(yarn.spline.segments());
         for (std::size_t k = 0; k <= points; ++k)
             scanned.places.push_back(
@@ -84,7 +84,7 @@ TEST_CASE("yarns that were only moved, turned and mirrored are found where they 
             CHECK(found.matched_by == MatchedBy::order);
             CHECK(found.per_yarn.size() == yarns.yarns.size());
         },
-        40);
+        8);
 }
 
 TEST_CASE("a known displacement gives that deviation, yarn by yarn") {
@@ -108,7 +108,7 @@ TEST_CASE("a known displacement gives that deviation, yarn by yarn") {
                 CHECK(yarn.max_mm >= yarn.rms_mm * (1 - 1e-9));
             }
         },
-        40);
+        8);
 }
 
 TEST_CASE("without a count in common each yarn is matched with the nearest, and the rest are named") {
@@ -133,7 +133,7 @@ TEST_CASE("without a count in common each yarn is matched with the nearest, and 
             CHECK(found.simulated_alone == std::vector<std::size_t>{3});
             CHECK(found.measured_alone.empty());
         },
-        20);
+        6);
 }
 
 TEST_CASE("yarns in another order are matched by order, and it is told how much nearer the nearest lie") {
@@ -159,7 +159,7 @@ TEST_CASE("yarns in another order are matched by order, and it is told how much 
             CHECK(nearest->rms_mm < 1e-6);
             CHECK_FALSE(nearest->by_nearness);
         },
-        3);
+        2);
 }
 
 TEST_CASE("a scan in another unit is told by how well it fits there") {
