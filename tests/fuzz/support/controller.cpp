@@ -25,6 +25,7 @@ LoomProfile loom(OutputFormat format, unsigned number) {
     profile.regulator_hooks = {13, 14};
     profile.feeders = 3;
     profile.feeders_per_pick = 2;
+    profile.function_bytes = format == OutputFormat::ep ? 4 : 0;
     profile.feeder_encoding = format == OutputFormat::ep ? FeederEncoding::one_hot : FeederEncoding::hooks;
     profile.feeder_hooks = {0, 1, 2};
     profile.lifted_is_one = (number & 1) == 0;
@@ -34,6 +35,7 @@ LoomProfile loom(OutputFormat format, unsigned number) {
         profile.hook_permutation.push_back(hook * 5 % 32);
     profile.lead_in_picks = (number & 16) == 0 ? 0 : 1;
     profile.hook_rule = (number & 32) == 0 ? HookRule::straight : HookRule::point;
+    profile.end_1_at_left = (number & 32) == 0;
     return profile;
 }
 
@@ -49,7 +51,7 @@ std::string encoded(const ControllerFile& file, const LoomProfile& profile) {
         return testing::jc5_bytes(file.name, file.comment, shed, profile);
     if (profile.output == OutputFormat::ep)
         return testing::ep_bytes(file.name, shed, file.function_words, profile);
-    return testing::raw_bytes(shed, profile);
+    return testing::raw_bytes(shed, profile, file.function_words);
 }
 
 /// Blanks that fill a name or comment are read away, so that bytes come again only where there are none.
