@@ -55,7 +55,8 @@ Result<Imported> design_from_bitmap(const ImportRequest& request, const std::str
     return result;
 }
 
-const char* name_of(OutputFormat format) {
+/// A kind of file as people write it.
+std::string in_words(OutputFormat format) {
     switch (format) {
         case OutputFormat::jc5:
             return "JC5";
@@ -86,8 +87,8 @@ Status check_kind(const ImportRequest& request, const LoomProfile& profile, cons
         return bad_input("is neither a JC5 nor an EP file, and the loom's profile does not say raw",
                          request.in);
     if (*kind == profile.output) return {};
-    return bad_input(std::string("is a ") + name_of(*kind) + " file, but the profile " + request.loom +
-                         " describes a loom that takes " + name_of(profile.output) + " files",
+    return bad_input("is a " + in_words(*kind) + " file, but the profile " + request.loom +
+                         " describes a loom that takes " + in_words(profile.output) + " files",
                      request.in);
 }
 
@@ -115,7 +116,7 @@ Result<Imported> read_import(const ImportRequest& request) {
     }
     if (!wif && !is_bitmap(bytes)) {
         if (const auto kind = recognise_controller_file(bytes, extension)) {
-            return usage_fault(std::string("is a ") + name_of(*kind) +
+            return usage_fault("is a " + in_words(*kind) +
                                    " file, which is read as its loom's profile says: --loom LOOM.json",
                                request.in);
         }
