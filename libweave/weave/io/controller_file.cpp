@@ -55,8 +55,7 @@ std::string text_of(std::string_view field, std::size_t offset, const std::strin
         oddities.add(offset + more, "after the NUL that ends it " + what + " goes on with " +
                                         hexadecimal(field.substr(more)) + "; not read");
     }
-    const std::string_view filled = field.substr(0, end);
-    const std::string_view text = filled.substr(0, filled.find_last_not_of(' ') + 1);
+    const std::string_view text = field.substr(0, end);
     std::string shown = on_one_line(text);
     if (shown != text) oddities.add(offset, what + " holds what cannot be shown; read as '" + shown + "'");
     return shown;

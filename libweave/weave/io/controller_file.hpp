@@ -45,8 +45,8 @@ class HookLifts {
 /// in which they are woven, from 0; hooks are numbered as in the profile, from 0.
 struct ControllerFile {
     OutputFormat format = OutputFormat::raw;  ///< jc5, ep or raw
-    /// As the file has them, fit to be shown (on_one_line()), without the blanks and NULs that fill a field.
-    /// Raw files have neither, EP files no comment.
+    /// As the file has them, fit to be shown (on_one_line()), without the NULs that fill a field. Blanks that
+    /// do are left, since they may be meant. Raw files have neither, EP files no comment.
     std::string name, comment;
     std::vector<HookArea>
         areas;  ///< as the file names them; one without a name where the format has no areas
@@ -114,8 +114,8 @@ Result<ControllerCard> card_of(const ControllerFile& file, const LoomProfile& pr
                                std::optional<std::size_t> ends = {});
 
 /// A design whose cloth is a card leaf with that card (t = p = 1), the file's name as title and its comment
-/// as notes, and with the file's feeder order and take-up where it has them: feeders of the loom, all with
-/// the usual yarn. Warnings: those of the file and card, and each difference.
+/// as notes, without blanks at their end, and with the file's feeder order and take-up where it has them:
+/// feeders of the loom, all with the usual yarn. Warnings: those of the file and card, and each difference.
 struct DesignFromController {
     Design design;
     std::vector<std::string> warnings;

@@ -34,7 +34,7 @@ class Oddities {
     std::size_t m_left_out = 0;
 };
 
-/// Text of a field that NULs or blanks fill up, fit to be shown. What a field should not hold is told:
+/// Text of a field that NULs fill up, fit to be shown. What a field should not hold is told:
 /// anything after the first NUL, and characters that cannot be shown.
 std::string text_of(std::string_view field, std::size_t offset, const std::string& what, Oddities& oddities);
 

@@ -189,8 +189,7 @@ Status check_area(const HookArea& area, const HookArea& loom, const std::string&
                              std::to_string(loom.hooks),
                          at_byte(offset + 4));
     }
-    // Blanks at the end are no part of a name, of the file's and so of the loom's.
-    if (area.name != on_one_line(loom.name.substr(0, loom.name.find_last_not_of(' ') + 1))) {
+    if (area.name != on_one_line(loom.name)) {
         oddities.add(offset + area_numbers, what + " is called '" + area.name +
                                                 "', in the profile of the loom '" + on_one_line(loom.name) +
                                                 "'");
