@@ -24,7 +24,7 @@ TEST_CASE("ends that share a hook must work alike; what no file was written for 
 
 TEST_CASE("what came of reading the controller's file back is reported, where there is such a file") {
     Case c;
-    const auto report = [&](const std::optional<ReadBack>& read_back) {
+    const auto judged = [&](const std::optional<ReadBack>& read_back) {
         return check_for_loom(c.design, c.cloth, c.profile, {}, read_back);
     };
     const auto reason = [](const CheckReport& report) {
@@ -38,15 +38,15 @@ TEST_CASE("what came of reading the controller's file back is reported, where th
     const ReadBack equal{ReadBack::Outcome::equal, ""},
         differs{ReadBack::Outcome::differs, "hook 7 in record 2"},
         none{ReadBack::Outcome::no_file, "feeder 3 is mapped to no feeder of the loom"};
-    CHECK(reason(report(equal)) == "this loom takes a picture, no file of hooks");
+    CHECK(reason(judged(equal)) == "this loom takes a picture, no file of hooks");
     c.profile.output = OutputFormat::ep;
-    CHECK(reason(report({})) == "needs the file for the controller, which loomlink writes and reads back");
-    CHECK(reason(report(none)) ==
+    CHECK(reason(judged({})) == "needs the file for the controller, which loomlink writes and reads back");
+    CHECK(reason(judged(none)) ==
           "there is no file for the controller: feeder 3 is mapped to no feeder of the loom");
-    CHECK(passed(report(equal)));
-    CHECK_FALSE(passed(report(differs)));
-    CHECK(reason(report(differs)).empty());
-    CHECK(report(differs).count(Severity::error) == report(equal).count(Severity::error) + 1);
+    CHECK(passed(judged(equal)));
+    CHECK_FALSE(passed(judged(differs)));
+    CHECK(reason(judged(differs)).empty());
+    CHECK(judged(differs).count(Severity::error) == judged(equal).count(Severity::error) + 1);
 }
 
 TEST_CASE("errors are counted, all of them, however many are listed") {
