@@ -227,9 +227,9 @@ TEST_CASE("names: what a file cannot hold is refused, what is too long is cut, w
     expect_refusal(write_ep(plan, ep, {"a\nb", ""}), "ASCII");
     LoomProfile shorter = ep;
     shorter.name_limit = 3;
-    CHECK(write_ep(plan, shorter, {"abcdef", ""})->name == "abc");
+    CHECK(write_ep(plan, shorter, {"abcdef", ""})->names.name == "abc");
     shorter.name_limit = 0;
-    CHECK(write_ep(plan, shorter, {"abcdefghij", ""})->name == "abcdefgh");
+    CHECK(write_ep(plan, shorter, {"abcdefghij", ""})->names.name == "abcdefgh");
 }
 
 TEST_CASE("JC5: what its layout cannot hold is refused") {
