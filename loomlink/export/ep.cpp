@@ -54,12 +54,12 @@ std::string header(const Counts& counts, const LoomProfile& profile, std::string
 
 }  // namespace
 
-Result<ControllerFile> write_ep(const HookPlan& plan, const LoomProfile& profile, const InFileNames& names) {
+Result<WrittenFile> write_ep(const HookPlan& plan, const LoomProfile& profile, const InFileNames& names) {
     WEAVE_TRY(const FittedName name, fit_name(names.name, profile));
     WEAVE_TRY(const RecordLayout layout, record_layout(profile));
     WEAVE_TRY(const Counts counts, count(plan, profile, layout));
-    ControllerFile file;
-    file.name = name.name, file.name_cut = name.cut;
+    WrittenFile file;
+    file.names.name = name.name, file.name_cut = name.cut;
     file.bytes = header(counts, profile, name.name) + records(plan, profile, layout);
     file.bytes.resize(before + block * counts.blocks, '\xff');
     file.bytes.append(tail, '\0');

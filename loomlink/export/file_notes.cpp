@@ -3,13 +3,13 @@
 
 namespace weave::loomlink {
 
-void note_settings(ControllerFile& file, const HookPlan& plan, const LoomProfile& profile) {
+void note_settings(WrittenFile& file, const HookPlan& plan, const LoomProfile& profile) {
     const auto assume = [&](bool does, const char* what) {
         if (does) file.assumed.emplace_back(what);
     };
     const bool is_raw = profile.output == OutputFormat::raw;
     const auto odd = [](const HookArea& area) { return area.hooks % 8 != 0; };
-    assume(!file.name.empty() && file.name.size() < name_room,
+    assume(!file.names.name.empty() && file.names.name.size() < name_room,
            "a name of fewer than 8 characters is filled up with NUL");
     assume(std::any_of(profile.areas.begin(), profile.areas.end(), odd),
            "areas whose hooks are not a multiple of 8");

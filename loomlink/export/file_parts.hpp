@@ -14,6 +14,9 @@ inline constexpr std::size_t name_room = 8;
 
 bool is_printable(std::string_view text);
 
+/// Without the blanks at its end, which fill a field and are no part of its text.
+std::string without_filling(const std::string& text);
+
 inline void put_little(std::string& out, std::uint32_t value, std::size_t count) {
     for (std::size_t k = 0; k < count; ++k) out.push_back(static_cast<char>(value >> 8 * k & 0xff));
 }
@@ -23,6 +26,6 @@ inline void put_big32(std::string& out, std::uint32_t value) {
 }
 
 /// Ways of the profile that no observed file of this format showed.
-void note_settings(ControllerFile& file, const HookPlan& plan, const LoomProfile& profile);
+void note_settings(WrittenFile& file, const HookPlan& plan, const LoomProfile& profile);
 
 }  // namespace weave::loomlink

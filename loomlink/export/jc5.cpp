@@ -58,12 +58,12 @@ Status check_limits(const HookPlan& plan, const LoomProfile& profile, const InFi
 
 }  // namespace
 
-Result<ControllerFile> write_jc5(const HookPlan& plan, const LoomProfile& profile, const InFileNames& names) {
+Result<WrittenFile> write_jc5(const HookPlan& plan, const LoomProfile& profile, const InFileNames& names) {
     WEAVE_CHECK_OK(check_limits(plan, profile, names));
     WEAVE_TRY(const FittedName name, fit_name(names.name, profile));
     WEAVE_TRY(const RecordLayout layout, record_layout(profile));
-    ControllerFile file;
-    file.name = name.name, file.name_cut = name.cut;
+    WrittenFile file;
+    file.names = {name.name, without_filling(names.comment)}, file.name_cut = name.cut;
     std::string field = name.name;
     field.resize(name_room, '\0');
     file.bytes = magic;
@@ -71,7 +71,7 @@ Result<ControllerFile> write_jc5(const HookPlan& plan, const LoomProfile& profil
     put_attribute(file.bytes, tag_name, ended(field));
     put_attribute(file.bytes, tag_picks, number(plan.lifts.picks()));
     put_attribute(file.bytes, tag_unknown, number(0));  // unknown; 0 in every file seen
-    put_attribute(file.bytes, tag_comment, ended(names.comment));
+    put_attribute(file.bytes, tag_comment, ended(file.names.comment));
     put_big32(file.bytes, static_cast<std::uint32_t>(profile.areas.size()));
     for (const HookArea& area : profile.areas) put_attribute(file.bytes, tag_area, area_value(area));
     file.bytes += records(plan, profile, layout);

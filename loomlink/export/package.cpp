@@ -4,6 +4,7 @@
 
 #include <loomlink/export/manifest.hpp>
 #include <loomlink/export/package.hpp>
+#include <loomlink/export/read_back.hpp>
 #include <optional>
 
 namespace weave::loomlink {
@@ -56,18 +57,18 @@ Status check_map(const Design& design, const LoomProfile& profile, const FeederM
     return {};
 }
 
-Status add_controller_file(const Task& task, const HookPlan& plan, const ControllerDecoder& decoder,
-                           Packer& packer) {
-    WEAVE_TRY(ControllerFile made, write_controller_file(plan, task.profile, task.names.in_file));
-    WEAVE_CHECK_OK(check_controller_file(made.bytes, made.name, plan, task.card, task.profile, decoder));
+Status add_controller_file(const Task& task, const HookPlan& plan, Packer& packer) {
+    WEAVE_TRY(WrittenFile made, write_controller_file(plan, task.profile, task.names.in_file));
+    WEAVE_CHECK_OK(check_controller_file(made.bytes, made.names, plan, task.card, task.profile));
     if (made.name_cut)
-        packer.note("the name '" + task.names.in_file.name + "' is cut to '" + made.name + "' in the file");
+        packer.note("the name '" + task.names.in_file.name + "' is cut to '" + made.names.name +
+                    "' in the file");
     const std::string& format = name_of(task.profile.output);
     const bool named = task.profile.output != OutputFormat::raw;
     packer.add({task.stem + "." + format, format, std::move(made.bytes)},
                {{"for", "the controller"},
                 {"reading", controller_reading(plan, task.profile, task.card.ends())},
-                {"name_in_file", named ? Json(made.name) : Json()},
+                {"name_in_file", named ? Json(made.names.name) : Json()},
                 {"name_cut", made.name_cut},
                 {"unknown_fields", made.unknown_fields},
                 {"never_observed", made.assumed}});
@@ -165,8 +166,7 @@ Json body(const Task& task, const HookPlan& plan) {
 
 Result<ReleasePackage> make_release_package(const Design& design, const Evaluation& cloth,
                                             const LoomProfile& profile, const FeederMap& feeders,
-                                            const ReleaseNames& names, const std::set<ExtraFile>& extras,
-                                            const ControllerDecoder& decoder) {
+                                            const ReleaseNames& names, const std::set<ExtraFile>& extras) {
     WEAVE_CHECK_OK(check_map(design, profile, feeders));
     const Task task{design,
                     *cloth.block,
@@ -182,13 +182,26 @@ Result<ReleasePackage> make_release_package(const Design& design, const Evaluati
         const char* const use = profile.converts_to.empty() ? "the loom" : "the mill's CAD";
         WEAVE_CHECK_OK(add_picture(task, picture_format(profile), picture_reading(profile), use, packer));
     } else {
-        WEAVE_CHECK_OK(add_controller_file(task, plan, decoder, packer));
+        WEAVE_CHECK_OK(add_controller_file(task, plan, packer));
     }
     WEAVE_CHECK_OK(add_pick_table(task, packer));
     WEAVE_CHECK_OK(add_extras(task, extras, packer));
     Json manifest = body(task, plan);
     if (!manifest["conversion"].is_null()) packer.note(manifest["conversion"]["words"].get<std::string>());
     return std::move(packer).finish(std::move(manifest));
+}
+
+ReadBack read_back(const Design& design, const Evaluation& cloth, const LoomProfile& profile,
+                   const FeederMap& feeders, const InFileNames& names) {
+    const CardImage card = cloth.block->card_image();
+    const Result<HookPlan> plan =
+        plan_hooks(design, card, pick_table(design, *cloth.block), profile, feeders);
+    if (!plan) return {ReadBack::Outcome::no_file, plan.error().text()};
+    const Result<WrittenFile> made = write_controller_file(*plan, profile, names);
+    if (!made) return {ReadBack::Outcome::no_file, made.error().text()};
+    const Status proved = check_controller_file(made->bytes, made->names, *plan, card, profile);
+    if (proved) return {ReadBack::Outcome::equal, ""};
+    return {ReadBack::Outcome::differs, proved.error().text()};
 }
 
 }  // namespace weave::loomlink

@@ -2,9 +2,9 @@
 
 #include <weave/core/json.hpp>
 #include <weave/design/evaluate.hpp>
+#include <weave/loom/check.hpp>
 
 #include <loomlink/export/controller_files.hpp>
-#include <loomlink/export/read_back.hpp>
 #include <set>
 #include <string>
 #include <vector>
@@ -34,14 +34,19 @@ struct ReleasePackage {
 };
 
 /// The files of a cloth for a loom, each read back and compared before anything is handed out: the
-/// controller's file by `decoder`, pictures and WIF by the readers of libweave, the pick table by a reader of
-/// its own. For a loom that takes a controller's file a PNG of the card is among them, to look at. The caller
-/// has validated the cloth and found out that it may be released: this function signs nothing and judges no
+/// controller's file, pictures and WIF by the readers of libweave, the pick table by a reader of its own. For
+/// a loom that takes a controller's file a PNG of the card is among them, to look at. The caller has
+/// validated the cloth and found out that it may be released: this function signs nothing and judges no
 /// rights. Errors: `invalid` where the cloth does not go on the loom or a name not into the file, `system`
 /// where a file does not read back.
 Result<ReleasePackage> make_release_package(const Design& design, const Evaluation& cloth,
                                             const LoomProfile& profile, const FeederMap& feeders,
-                                            const ReleaseNames& names, const std::set<ExtraFile>& extras,
-                                            const ControllerDecoder& decoder);
+                                            const ReleaseNames& names, const std::set<ExtraFile>& extras);
+
+/// What the rule `hooks.read-back` of check_for_loom() asks for: the controller's file of the cloth, written,
+/// read again and compared. `no_file` with the reason where the cloth or the names do not go into one, or the
+/// loom takes a picture.
+ReadBack read_back(const Design& design, const Evaluation& cloth, const LoomProfile& profile,
+                   const FeederMap& feeders, const InFileNames& names);
 
 }  // namespace weave::loomlink

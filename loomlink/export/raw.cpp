@@ -5,17 +5,17 @@
 
 namespace weave::loomlink {
 
-Result<ControllerFile> write_raw(const HookPlan& plan, const LoomProfile& profile) {
+Result<WrittenFile> write_raw(const HookPlan& plan, const LoomProfile& profile) {
     WEAVE_TRY(const RecordLayout layout, record_layout(profile));
-    ControllerFile file;
+    WrittenFile file;
     file.bytes = records(plan, profile, layout);
     file.assumed = {"the file has no header: order of hooks, polarity and feeders are the profile's alone"};
     note_settings(file, plan, profile);
     return file;
 }
 
-Result<ControllerFile> write_controller_file(const HookPlan& plan, const LoomProfile& profile,
-                                             const InFileNames& names) {
+Result<WrittenFile> write_controller_file(const HookPlan& plan, const LoomProfile& profile,
+                                          const InFileNames& names) {
     switch (profile.output) {
         case OutputFormat::jc5:
             return write_jc5(plan, profile, names);

@@ -95,20 +95,23 @@ Status check_line(const std::vector<std::string>& fields, const Pick& pick, std:
 
 }  // namespace
 
-Status check_controller_file(std::string_view bytes, const std::string& name, const HookPlan& plan,
-                             const CardImage& card, const LoomProfile& profile,
-                             const ControllerDecoder& decoder) {
-    if (!decoder)
-        return system_fault("there is no decoder for " + name_of(profile.output) +
-                            " files, so that none can be proved; nothing is handed out");
-    const Result<DecodedFile> read = decoder(bytes, profile, card.ends());
-    if (!read)
-        return system_fault("the file does not read back: " + read.error().text() +
-                            "; nothing is handed out");
-    if (read->name != name) return differs("the name");
-    WEAVE_CHECK_OK(check_lifts(read->lifts, plan.lifts));
-    if (read->card != card) return differs("the card image");
-    return check_feeders(read->feeders, plan, profile);
+Status check_decoded(const DecodedFile& read, const InFileNames& names, const HookPlan& plan,
+                     const CardImage& card, const LoomProfile& profile) {
+    if (read.names.name != names.name) return differs("the name");
+    if (read.names.comment != names.comment) return differs("the comment");
+    WEAVE_CHECK_OK(check_lifts(read.lifts, plan.lifts));
+    if (read.card != card) return differs("the card image");
+    WEAVE_CHECK_OK(check_feeders(read.feeders, plan, profile));
+    if (read.oddities.empty()) return {};
+    return system_fault("the file reads back with what it should not have: " + read.oddities.front() +
+                        "; nothing is handed out");
+}
+
+Status check_controller_file(std::string_view bytes, const InFileNames& names, const HookPlan& plan,
+                             const CardImage& card, const LoomProfile& profile) {
+    const Result<DecodedFile> read = decode_controller_file(bytes, profile, card.ends());
+    if (read) return check_decoded(*read, names, plan, card, profile);
+    return system_fault("the file does not read back: " + read.error().text() + "; nothing is handed out");
 }
 
 Status check_pick_table(std::string_view csv, const std::vector<Pick>& picks, const FeederMap& feeders) {

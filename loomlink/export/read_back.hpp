@@ -2,7 +2,7 @@
 
 #include <weave/block/block.hpp>
 
-#include <functional>
+#include <loomlink/export/controller_files.hpp>
 #include <loomlink/export/hook_plan.hpp>
 #include <string>
 #include <string_view>
@@ -12,23 +12,29 @@ namespace weave::loomlink {
 
 /// What a controller's file says, as a decoder reads it that shares no code with the writer.
 struct DecodedFile {
-    std::string name;  ///< as it stands in the file; empty where the format has none
-    LiftTable lifts;   ///< every hook and record as the loom weaves them, lead-in first; hooks in the
-                       ///< controller's order
-    CardImage card;    ///< the design's picks and ends, by the decoder's own reading of the profile
+    InFileNames names;  ///< as they stand in the file; empty where the format has none
+    LiftTable lifts;    ///< every hook and record as the loom weaves them, lead-in first; hooks in the
+                        ///< controller's order
+    CardImage card;     ///< the design's picks and ends, by the decoder's own reading of the profile
     std::vector<std::vector<std::size_t>> feeders;  ///< of the loom, from 0, in rising order, for each pick
                                                     ///< of the card; without encoding: all empty
+    std::vector<std::string>
+        oddities;  ///< what is not as in files that were observed, or as the profile asks
 };
 
-/// Reads a controller's file of a cloth with `ends` ends.
-using ControllerDecoder =
-    std::function<Result<DecodedFile>(std::string_view bytes, const LoomProfile& profile, std::size_t ends)>;
+/// A controller's file of a cloth with `ends` ends, read by the readers of weave/io. Errors: what they
+/// refuse.
+Result<DecodedFile> decode_controller_file(std::string_view bytes, const LoomProfile& profile,
+                                           std::size_t ends);
 
-/// An error of the system, which names the first pick and hook, unless the decoder reads from `bytes` the
-/// name, every lift, the card and the feeders that were planned. Without a decoder: an error.
-Status check_controller_file(std::string_view bytes, const std::string& name, const HookPlan& plan,
-                             const CardImage& card, const LoomProfile& profile,
-                             const ControllerDecoder& decoder);
+/// An error of the system, which names the first pick and hook, unless the file was read with the names,
+/// every lift, the card and the feeders that were planned, and without an oddity.
+Status check_decoded(const DecodedFile& read, const InFileNames& names, const HookPlan& plan,
+                     const CardImage& card, const LoomProfile& profile);
+
+/// The same of a file that decode_controller_file() reads; an error of the system where it does not.
+Status check_controller_file(std::string_view bytes, const InFileNames& names, const HookPlan& plan,
+                             const CardImage& card, const LoomProfile& profile);
 
 /// An error of the system unless the text, read as CSV, has the picks in order with their rows, feeders of
 /// design and loom, directions and take-up.

@@ -55,7 +55,49 @@ TEST_CASE("a raw file is picks of hook bytes, and nothing else") {
     check_refused("", profile, "byte 0", "empty");
     check_refused("abc", profile, "byte 3", "1 byte into a pick of 2 bytes");
     profile.total_hooks = 12;
-    check_refused("ab", profile, "byte 0", "12 hooks fill no whole bytes");
+    check_refused("ab", profile, "", "do not add up");
+    profile.function_bytes = 9;
+    profile.total_hooks = 16;
+    check_refused("abcdefghijk", profile, "", "9 function bytes a pick, but such a file at most 8");
+}
+
+TEST_CASE("areas on bytes of their own or run together, function bytes in front, bits of no hook") {
+    LoomProfile profile = bare_loom(OutputFormat::raw, 13);
+    profile.areas = {{"a", 3}, {"b", 10}};
+    profile.function_bytes = 1;
+    const ControllerFile apart = *read_controller_file(bytes_of("05 06 01 02"), profile);
+    CHECK(apart.function_words == std::vector<std::uint64_t>{5});
+    CHECK(shed_of(apart, 0) == ".XXX........X");
+    CHECK(apart.warnings.empty());
+    check_warned(bytes_of("05 06 01 02 05 0E 01 02"), profile, "byte 5",
+                 "bits of pick 2 that belong to no hook");
+    profile.lifted_is_one = false;
+    CHECK(shed_of(*read_controller_file(bytes_of("05 F9 FE FD"), profile), 0) == ".XXX........X");
+    CHECK(read_controller_file(bytes_of("05 F9 FE FD"), profile)->warnings.empty());
+    check_warned(bytes_of("05 F9 FE 7D"), profile, "byte 1", "f9 fe 7d");
+    profile.lifted_is_one = true;
+    profile.areas_on_bytes = false;
+    const ControllerFile together = *read_controller_file(bytes_of("80 0E 10"), profile);
+    CHECK(together.function_words == std::vector<std::uint64_t>{0x80});
+    CHECK(shed_of(together, 0) == ".XXX........X");
+    check_warned(bytes_of("80 0E 30"), profile, "byte 1", "0e 30");
+    profile.least_bit_first = false;  // the function byte stays as it is
+    const ControllerFile turned = *read_controller_file(bytes_of("80 70 08"), profile);
+    CHECK(turned.function_words == std::vector<std::uint64_t>{0x80});
+    CHECK(shed_of(turned, 0) == ".XXX........X");
+}
+
+TEST_CASE("end 1 at the right takes the last body hook, and ends count down") {
+    LoomProfile profile = bare_loom(OutputFormat::raw, 8);
+    profile.body = {{0, 2}, {5, 7}};
+    profile.end_1_at_left = false;
+    CHECK(ends_of(card({"X....XX."}, profile).card, 0) == ".XX..X");
+    CHECK(ends_of(card({".....XX."}, profile, 3).card, 0) == ".XX");
+    profile.hook_rule = HookRule::repeats;
+    profile.repeats = 2;
+    CHECK(ends_of(card({".XX..XX."}, profile).card, 0) == ".XX");
+    CHECK(told(card({"XX...XX."}, profile)).empty());
+    CHECK(told(card({".XX..XX."}, profile)).size() == 2);
 }
 
 TEST_CASE("hooks in 14 planes of 192, 0 lifted, feeders in-band at the first hook of six planes") {
@@ -132,25 +174,26 @@ TEST_CASE("an end takes its first hook's word, and its other hooks must agree") 
     CHECK(told(card({".X......"}, profile)) == Lines{"pick 1: hook 2 is lifted, but is cast out"});
 }
 
-TEST_CASE("the lead-in is no part of the card, and only cast-out and constant-on hooks are judged there") {
+TEST_CASE("the lead-in is no part of the card, and nothing but what always lifts lifts there") {
     LoomProfile profile = bare_loom(OutputFormat::raw, 8);
     profile.body = {{3, 7}};
     profile.selvedge = {{0, 0}};
     profile.selvedge_weave = {"1", "0"};
     profile.constant_on = {{1, 1}};
     profile.lead_in_picks = 2;
-    const ControllerCard read = card({"..XXXXXX", ".X......", "XXX....X", ".X.XXXXX"}, profile);
+    const ControllerCard read = card({"..X....X", ".X......", "XXX....X", ".X.XXXXX"}, profile);
     CHECK(read.card.picks() == 2);
     CHECK(ends_of(read.card, 0) == "....X");
     CHECK(ends_of(read.card, 1) == "XXXXX");
-    CHECK(told(read) == Lines{"pick 1: hook 3 is lifted, but is cast out",
-                              "pick 3: hook 3 is lifted, but is cast out",
-                              "pick 1: hook 2 is down, but is to be lifted on every pick"});
+    CHECK(told(read) ==
+          Lines{"pick 1: hook 8 is lifted, but in the lead-in nothing lifts that is not always lifted",
+                "pick 1: hook 3 is lifted, but is cast out", "pick 3: hook 3 is lifted, but is cast out",
+                "pick 1: hook 2 is down, but is to be lifted on every pick"});
     CHECK_THAT(refusal({"........", "........"}, profile),
                Catch::Contains("lead-in of the loom alone has 2"));
     const auto design = design_from_controller_file(raw_bytes(Shed(3, "XX.....X"), profile), profile);
     REQUIRE(design);
-    CHECK_THAT(design->warnings.at(0), Catch::Contains("the first 2 picks of the file"));
+    CHECK_THAT(design->warnings.back(), Catch::Contains("the first 2 picks of the file"));
 }
 
 TEST_CASE("regulator hooks say which picks take up") {
@@ -184,14 +227,20 @@ TEST_CASE("feeders in hooks: none, one, two, and more than the loom inserts") {
           Lines{"byte 2: two feeders are taken on 1 pick, pick 3, but this loom inserts 1"});
     CHECK_THAT(refusal({"XXXX..X.", "XXXXXXX."}, profile),
                Catch::Contains("byte 1: pick 2 takes 3 feeders at once"));
+    profile.feeder_encoding = FeederEncoding::binary_hooks;
+    profile.feeder_hooks = {7, 4};  // digits, the lowest first
+    CHECK(card({"XXXX....", "XXXX...X", "XXXXX...", "XXXXX..X"}, profile).feeders ==
+          std::vector<FeederSet>{{}, {0}, {1}, {2}});
+    profile.feeders = 2;
+    CHECK_THAT(refusal({"XXXX....", "XXXXX..X"}, profile), Catch::Contains("byte 1: pick 2 takes feeder 3"));
     profile.feeder_encoding = FeederEncoding::one_hot;
-    CHECK_THAT(refusal({"XXXX..X."}, profile), Catch::Contains("only EP has such bits"));
+    CHECK_THAT(refusal({"XXXX..X."}, profile), Catch::Contains("but no function bytes"));
 }
 
 TEST_CASE("feeders in function bits: one-hot, binary, bits that mean nothing to the profile") {
     LoomProfile profile = bare_loom(OutputFormat::ep, 8);
     const Shed shed(4, "XXXXXXXX");
-    const auto read = [&](const std::vector<std::uint32_t>& words) {
+    const auto read = [&](const Words& words) {
         return card_of(*read_controller_file(ep_bytes("", shed, words, profile), profile), profile);
     };
     profile.feeders = 5;
@@ -208,6 +257,10 @@ TEST_CASE("feeders in function bits: one-hot, binary, bits that mean nothing to 
     CHECK(read({1, 0x80000042, 1, 32})->warnings == Lines{"byte 39: function bits that the profile does not "
                                                           "name are set on 2 picks, the first pick 2, there "
                                                           "bits 6, 31 counted from 0"});
+    profile.lead_in_picks = 1;
+    CHECK(read({0, 2, 1, 16})->warnings.empty());
+    CHECK(read({1, 2, 1, 16})->warnings.size() == 1);
+    profile.lead_in_picks = 0;
     profile.feeder_encoding = FeederEncoding::none;
     CHECK(read({0, 0, 0, 0})->warnings.empty());
     CHECK(read({0, 0, 0, 0})->feeders.empty());
@@ -226,8 +279,6 @@ TEST_CASE("ends: as many as the loom carries or as are said, and a hint where th
     CHECK(card({"X.X....."}, profile, 3).warnings.empty());
     CHECK_THAT(refusal({"X......."}, profile, 9), Catch::Contains("1 to 8 ends, not 9"));
     CHECK_THAT(refusal({"X......."}, profile, 0), Catch::Contains("not 0"));
-    profile.end_1_at_left = false;
-    CHECK_THAT(refusal({"X......."}, profile), Catch::Contains("end 1 at the right"));
 }
 
 TEST_CASE("a controller file becomes a design: title, notes, card, and the loom's feeders") {

@@ -23,6 +23,7 @@ inline LoomProfile bare_loom(OutputFormat output, std::size_t hooks) {
     profile.total_hooks = hooks;
     profile.body = {{0, hooks - 1}};
     profile.output = output;
+    profile.function_bytes = output == OutputFormat::ep ? 4 : 0;
     return profile;
 }
 

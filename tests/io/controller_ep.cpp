@@ -62,7 +62,7 @@ TEST_CASE("an EP file by hand says what its bytes say") {
     CHECK(shed_of(*file, 0) == ".X.XX..........X");
     CHECK(shed_of(*file, 1) == ".XX..X..........");
     CHECK(shed_of(*file, 2) == ".X.XXXXXXXXXXXXX");
-    CHECK(file->function_words == std::vector<std::uint32_t>{1, 2, 4});
+    CHECK(file->function_words == std::vector<std::uint64_t>{1, 2, 4});
     CHECK(file->offset_of(2) == 46);
     const Result<ControllerCard> card = card_of(*file, small_loom());
     REQUIRE(card);
@@ -79,7 +79,9 @@ TEST_CASE("an EP file by hand says what its bytes say") {
 
 TEST_CASE("a name shorter than its field ends at NUL or blanks") {
     CHECK(read_controller_file(with(6, "41 42 00 00 00 00 00 00"), small_loom())->name == "AB");
-    CHECK(read_controller_file(with(6, "41 20 42 20 20 20 20 20"), small_loom())->name == "A B");
+    const std::string filled = with(6, "41 20 42 20 20 20 20 20");
+    CHECK(read_controller_file(filled, small_loom())->name == "A B     ");
+    CHECK(design_from_controller_file(filled, small_loom())->design.title == "A B");
     CHECK(read_controller_file(with(6, "00 00 00 00 00 00 00 00"), small_loom())->name.empty());
     check_warned(with(6, "41 42 00 43 00 00 00 00"), small_loom(), "byte 9", "goes on with 43");
     check_warned(with(6, "41 07 42 00 00 00 00 00"), small_loom(), "byte 6", "'A\\x07B'");
@@ -98,7 +100,7 @@ TEST_CASE("every byte of the EP header counts") {
     check_refused(with(3, "FF FF"), profile, "byte 0", "65535 picks of 6 bytes need 97");
     check_refused(with(15, "02"), profile, "byte 15", "2 function bytes");
     check_refused(with(32, "00 00"), profile, "byte 32", "0 hooks");
-    check_refused(with(32, "11 00"), profile, "byte 32", "17 hooks fill no whole bytes");
+    check_refused(with(32, "11 00"), profile, "byte 32", "17 hooks, but the loom of the profile has 16");
     check_refused(with(32, "18 00"), profile, "byte 32", "24 hooks, but the loom of the profile has 16");
     for (std::size_t offset = 0; offset < 34; ++offset) {
         for (const int flip : {0x01, 0x80, 0xff}) {
@@ -154,7 +156,7 @@ TEST_CASE("blocks and sizes of EP files follow from picks and hooks, and nothing
                                                                                         {603, 51}}) {
         INFO(picks);
         const Shed shed(picks, pick[0]);
-        std::string bytes = ep_bytes("SIZE", shed, std::vector<std::uint32_t>(picks, 1), profile);
+        std::string bytes = ep_bytes("SIZE", shed, Words(picks, 1), profile);
         REQUIRE(bytes.size() == 1024 + 4096 * blocks);
         const Result<ControllerFile> file = read_controller_file(bytes, profile);
         REQUIRE(file);
@@ -181,7 +183,7 @@ TEST_CASE("32 header bytes and records that fill a block exactly leave no paddin
     for (const auto& [picks, blocks] :
          std::vector<std::pair<std::size_t, std::size_t>>{{507, 1}, {508, 1}, {509, 2}}) {
         const Shed shed(picks, std::string(32, 'X'));
-        const std::string bytes = ep_bytes("", shed, std::vector<std::uint32_t>(picks, 0), profile);
+        const std::string bytes = ep_bytes("", shed, Words(picks, 0), profile);
         CHECK(bytes.size() == 1024 + 4096 * blocks);
         REQUIRE(read_controller_file(bytes, profile));
         CHECK(read_controller_file(bytes, profile)->warnings.empty());
@@ -190,9 +192,9 @@ TEST_CASE("32 header bytes and records that fill a block exactly leave no paddin
 
 TEST_CASE("EP 2688: six feeders one-hot, the first twice in seven picks, on the hooks that real files use") {
     const LoomProfile profile = shipped("ep-2688");
-    const std::vector<std::uint32_t> cycle{1, 2, 1, 4, 8, 16, 32};
+    const Words cycle{1, 2, 1, 4, 8, 16, 32};
     Shed shed(14, std::string(2688, '.'));
-    std::vector<std::uint32_t> words;
+    Words words;
     for (std::size_t pick = 0; pick < 14; ++pick) {
         words.push_back(cycle[pick % 7]);
         shed[pick][54] = shed[pick][55] = 'X';               // constant on
@@ -225,6 +227,6 @@ TEST_CASE("polarity and bit order are of the hooks: function bits stay as they a
     profile.pick_1_at_bottom = false;
     const ControllerFile file = *read_controller_file(by_hand(), profile);
     CHECK(shed_of(file, 2) == "XXX..X.X.XXXXXXX");
-    CHECK(file.function_words == std::vector<std::uint32_t>{4, 2, 1});
+    CHECK(file.function_words == std::vector<std::uint64_t>{4, 2, 1});
     CHECK(file.offset_of(0) == 46);
 }

@@ -144,6 +144,23 @@ TEST_CASE("the areas of a real JC5 loom make 640 bytes a pick") {
             REQUIRE(card.card.weft_over(pick, end) == (end != 100 * pick));
 }
 
+TEST_CASE("areas of hooks that fill no whole bytes are laid out as the profile says") {
+    LoomProfile profile = small_loom();
+    profile.areas = {{"fn", 3}, {"sel", 9}, {"body", 20}};
+    for (const bool on_bytes : {true, false}) {
+        profile.areas_on_bytes = on_bytes;
+        const Shed shed{"X.XX.......XXXXXXXXXXXX........X", ".X.X.......X...................X"};
+        const std::string bytes = jc5_bytes("N", "", shed, profile);
+        const Result<ControllerFile> file = read_controller_file(bytes, profile);
+        REQUIRE(file);
+        CHECK(file->warnings.empty());
+        CHECK(file->record_bytes == (on_bytes ? 6 : 4));
+        for (std::size_t pick = 0; pick < 2; ++pick) CHECK(shed_of(*file, pick) == shed[pick]);
+    }
+    profile.function_bytes = 1;
+    check_refused(Pieces{}.all(), profile, "", "1 function byte a pick, but such a file at most 0");
+}
+
 TEST_CASE("a JC5 file that is cut anywhere, or goes on, is refused") {
     const std::string bytes = Pieces{}.all();
     const LoomProfile profile = small_loom();
@@ -190,7 +207,7 @@ TEST_CASE("each part of a JC5 file that cannot be understood is refused at its b
     p.area_1 = bytes_of("00 00 00 64  00 00 00 07  00 00 00 01  00 00 00");
     check_refused(p.all(), profile, at(area_1_at + 8), "too few");
     p.area_1 = bytes_of("00 00 00 64  00 00 00 0B  00 00 00 01  00 00 00 0C  66 6E 00");
-    check_refused(p.all(), profile, at(area_1_at + 12), "12 hooks fill no whole bytes");
+    check_refused(p.all(), profile, at(area_1_at + 12), "12 hooks, but in the profile of the loom 8");
     p.area_1 = bytes_of("00 00 00 64  00 00 00 0B  00 00 00 01  00 00 00 00  66 6E 00");
     check_refused(p.all(), profile, at(area_1_at + 12), "0 hooks");
     p.area_1 = bytes_of("00 00 00 64  00 00 00 0B  00 00 00 01  FF FF FF F8  66 6E 00");

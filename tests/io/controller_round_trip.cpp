@@ -29,30 +29,42 @@ struct Supply {
     }
 };
 
+bool is_number(FeederEncoding encoding) {
+    return encoding == FeederEncoding::binary || encoding == FeederEncoding::binary_hooks;
+}
+
 void random_feeders(Random& random, Supply& supply, LoomProfile& profile) {
     profile.feeders = random.between(1, 6);
     profile.feeders_per_pick = random.between(1, 2);
-    const bool has_words = profile.output == OutputFormat::ep;
-    const std::size_t kind = random.between(0, has_words ? 3 : 1);
-    if (kind == 0) return;
-    std::vector<std::size_t> bits(32);
-    std::iota(bits.begin(), bits.end(), std::size_t{0});
-    random.shuffle(bits);
-    if (kind == 1) {
-        profile.feeder_encoding = FeederEncoding::hooks;
-        profile.feeder_hooks = supply.take(profile.feeders);
-    } else {
-        profile.feeder_encoding = kind == 2 ? FeederEncoding::one_hot : FeederEncoding::binary;
-        bits.resize(kind == 2 ? profile.feeders : 3);
-        profile.feeder_hooks = bits;
+    std::vector<FeederEncoding> kinds{FeederEncoding::none, FeederEncoding::hooks,
+                                      FeederEncoding::binary_hooks};
+    if (profile.function_bytes > 0)
+        kinds.insert(kinds.end(), {FeederEncoding::one_hot, FeederEncoding::binary});
+    profile.feeder_encoding = kinds[random.between(0, kinds.size() - 1)];
+    if (profile.feeder_encoding == FeederEncoding::none) return;
+    const std::size_t places = is_number(profile.feeder_encoding) ? 3 : profile.feeders;
+    if (feeders_in_hooks(profile)) {
+        profile.feeder_hooks = supply.take(places);
+        return;
     }
+    profile.feeder_hooks.resize(8 * profile.function_bytes);
+    std::iota(profile.feeder_hooks.begin(), profile.feeder_hooks.end(), std::size_t{0});
+    random.shuffle(profile.feeder_hooks);
+    profile.feeder_hooks.resize(places);
 }
 
 /// 40 hooks in a few areas, each use scattered over them.
 LoomProfile random_loom(Random& random) {
     LoomProfile profile = bare_loom(formats[random.between(0, 2)], 40);
-    profile.areas = random.coin() ? std::vector<HookArea>{{"f", 8}, {"g", 16}, {"h", 16}}
-                                  : std::vector<HookArea>{{"all", 40}};
+    profile.areas =
+        std::vector<std::vector<HookArea>>{{{"all", 40}},
+                                           {{"f", 8}, {"g", 16}, {"h", 16}},
+                                           {{"f", 3}, {"g", 17}, {"h", 20}}}[random.between(0, 2)];
+    profile.areas_on_bytes = random.coin();
+    if (profile.output == OutputFormat::ep) profile.function_bytes = random.coin() ? 4 : random.between(0, 8);
+    if (profile.output == OutputFormat::raw)
+        profile.function_bytes = random.coin() ? 0 : random.between(1, 8);
+    profile.end_1_at_left = random.coin();
     profile.lifted_is_one = random.coin();
     profile.least_bit_first = random.coin();
     profile.pick_1_at_bottom = random.coin();
@@ -89,11 +101,11 @@ struct Woven {
     std::vector<FeederSet> feeders;
     std::vector<bool> take_up;
     Shed shed;
-    std::vector<std::uint32_t> words;
+    Words words;
 };
 
 FeederSet random_feeder_set(Random& random, const LoomProfile& profile) {
-    const bool one = profile.feeder_encoding == FeederEncoding::binary || profile.feeders_per_pick == 1;
+    const bool one = is_number(profile.feeder_encoding) || profile.feeders_per_pick == 1;
     std::set<std::uint32_t> set;
     for (std::size_t k = random.between(0, one ? 1 : 2); k > 0; --k)
         set.insert(static_cast<std::uint32_t>(random.between(1, profile.feeders) - 1));
@@ -101,13 +113,17 @@ FeederSet random_feeder_set(Random& random, const LoomProfile& profile) {
 }
 
 void set_feeders(const FeederSet& feeders, const LoomProfile& profile, std::string& hooks,
-                 std::uint32_t& word) {
+                 std::uint64_t& word) {
     for (const std::uint32_t feeder : feeders) {
-        if (profile.feeder_encoding == FeederEncoding::hooks) hooks[profile.feeder_hooks[feeder]] = 'X';
-        if (profile.feeder_encoding == FeederEncoding::one_hot) word |= 1U << profile.feeder_hooks[feeder];
-        if (profile.feeder_encoding == FeederEncoding::binary) {
-            for (std::size_t k = 0; k < 3; ++k)
-                if (((feeder + 1) / (1U << k)) % 2 == 1) word |= 1U << profile.feeder_hooks[k];
+        for (std::size_t k = 0; k < profile.feeder_hooks.size(); ++k) {
+            const std::size_t place = profile.feeder_hooks[k];
+            const bool set =
+                is_number(profile.feeder_encoding) ? ((feeder + 1) / (1U << k)) % 2 == 1 : feeder == k;
+            if (!set) continue;
+            if (feeders_in_hooks(profile))
+                hooks[place] = 'X';
+            else
+                word |= std::uint64_t{1} << place;
         }
     }
 }
@@ -116,6 +132,7 @@ void set_feeders(const FeederSet& feeders, const LoomProfile& profile, std::stri
 std::vector<std::size_t> places_of(const LoomProfile& profile, std::size_t end, std::size_t ends) {
     std::vector<std::size_t> body = profile.hook_of_end;
     for (const HookRange& range : profile.body) body.push_back(range.first);
+    if (!profile.end_1_at_left && profile.hook_rule != HookRule::list) std::reverse(body.begin(), body.end());
     if (profile.hook_rule == HookRule::point) return {body[end], body[2 * ends - 2 - end]};
     std::vector<std::size_t> hooks;
     const std::size_t times = profile.hook_rule == HookRule::repeats ? profile.repeats : 1;
@@ -123,34 +140,40 @@ std::vector<std::size_t> places_of(const LoomProfile& profile, std::size_t end, 
     return hooks;
 }
 
+/// The sheds of one pick of the design, from 0.
+void add_pick(Random& random, const LoomProfile& profile, std::size_t ends, std::size_t k, Woven& woven) {
+    std::string hooks(40, '.'), lifted;
+    for (std::size_t end = 0; end < ends; ++end) {
+        lifted += random.coin() ? 'X' : '.';
+        for (const std::size_t hook : places_of(profile, end, ends)) hooks[hook] = lifted.back();
+    }
+    for (const HookRange& on : profile.constant_on) hooks[on.first] = 'X';
+    for (std::size_t n = 0; n < profile.selvedge.size(); ++n) {
+        const std::string& row = profile.selvedge_weave[k % 2];
+        if (row[n % row.size()] == '1') hooks[profile.selvedge[n].first] = 'X';
+    }
+    const bool take_up = random.coin();
+    for (const std::size_t hook : profile.regulator_hooks) hooks[hook] = take_up ? '.' : 'X';
+    std::uint64_t word = 0;
+    const FeederSet feeders = random_feeder_set(random, profile);
+    set_feeders(feeders, profile, hooks, word);
+    woven.shed.push_back(hooks);
+    woven.words.push_back(word);
+    woven.ends.push_back(lifted);
+    if (!profile.regulator_hooks.empty()) woven.take_up.push_back(take_up);
+    if (profile.feeder_encoding != FeederEncoding::none) woven.feeders.push_back(feeders);
+}
+
 Woven random_woven(Random& random, const LoomProfile& profile, std::size_t ends) {
     Woven woven;
-    const std::size_t picks = random.between(1, 12);
-    for (std::size_t pick = 0; pick < profile.lead_in_picks + picks; ++pick) {
-        const bool lead_in = pick < profile.lead_in_picks;
-        const std::size_t k = pick - profile.lead_in_picks;
-        std::string hooks(40, '.'), lifted;
-        for (std::size_t end = 0; end < ends; ++end) {
-            lifted += random.coin() ? 'X' : '.';
-            for (const std::size_t hook : places_of(profile, end, ends)) hooks[hook] = lifted.back();
-        }
+    for (std::size_t pick = 0; pick < profile.lead_in_picks; ++pick) {
+        std::string hooks(40, '.');
         for (const HookRange& on : profile.constant_on) hooks[on.first] = 'X';
-        for (std::size_t n = 0; n < profile.selvedge.size() && !lead_in; ++n) {
-            const std::string& row = profile.selvedge_weave[k % 2];
-            if (row[n % row.size()] == '1') hooks[profile.selvedge[n].first] = 'X';
-        }
-        const bool take_up = random.coin();
-        for (const std::size_t hook : profile.regulator_hooks) hooks[hook] = take_up ? '.' : 'X';
-        std::uint32_t word = 0;
-        const FeederSet feeders = random_feeder_set(random, profile);
-        set_feeders(feeders, profile, hooks, word);
         woven.shed.push_back(hooks);
-        woven.words.push_back(word);
-        if (lead_in) continue;
-        woven.ends.push_back(lifted);
-        if (!profile.regulator_hooks.empty()) woven.take_up.push_back(take_up);
-        if (profile.feeder_encoding != FeederEncoding::none) woven.feeders.push_back(feeders);
+        woven.words.push_back(0);
     }
+    const std::size_t picks = random.between(1, 12);
+    for (std::size_t k = 0; k < picks; ++k) add_pick(random, profile, ends, k, woven);
     return woven;
 }
 
@@ -161,7 +184,7 @@ std::string encode(const Woven& woven, const LoomProfile& profile) {
         case OutputFormat::ep:
             return ep_bytes("NAME", woven.shed, woven.words, profile);
         default:
-            return raw_bytes(woven.shed, profile);
+            return raw_bytes(woven.shed, profile, woven.words);
     }
 }
 
@@ -206,11 +229,11 @@ TEST_CASE("one flipped hook bit changes one crossing, or is told, and nothing el
         if (!after) return;  // three feeders at once
         const HookUse use = hook_uses(profile)[hook];
         const bool in_lead_in = pick < profile.lead_in_picks;
-        const bool judged = use == HookUse::cast_out || use == HookUse::constant_on;
         const bool changed = after->card != before.card || after->feeders != before.feeders ||
                              after->take_up != before.take_up || after->difference_count > 0;
-        REQUIRE(changed == (judged || !in_lead_in));
-        if (!changed || use == HookUse::feeder) return;
+        REQUIRE(changed);
+        if (in_lead_in) REQUIRE(after->difference_count == 1);
+        if (use == HookUse::feeder && !in_lead_in) return;
         REQUIRE((after->difference_count > 0 || use == HookUse::body || use == HookUse::regulator));
         for (const HookDifference& difference : after->differences) REQUIRE(difference.pick == pick);
     });

@@ -22,6 +22,33 @@ TEST_CASE("ends that share a hook must work alike; what no file was written for 
     CHECK(c.lacks("hooks.shared"));
 }
 
+TEST_CASE("what came of reading the controller's file back is reported, where there is such a file") {
+    Case c;
+    const auto judged = [&](const std::optional<ReadBack>& read_back) {
+        return check_for_loom(c.design, c.cloth, c.profile, {}, read_back);
+    };
+    const auto reason = [](const CheckReport& report) {
+        for (const NotEvaluated& rule : report.not_evaluated)
+            if (rule.rule == "hooks.read-back") return rule.reason;
+        return std::string();
+    };
+    const auto passed = [](const CheckReport& report) {
+        return std::count(report.passed.begin(), report.passed.end(), "hooks.read-back") == 1;
+    };
+    const ReadBack equal{ReadBack::Outcome::equal, ""},
+        differs{ReadBack::Outcome::differs, "hook 7 in record 2"},
+        none{ReadBack::Outcome::no_file, "feeder 3 is mapped to no feeder of the loom"};
+    CHECK(reason(judged(equal)) == "this loom takes a picture, no file of hooks");
+    c.profile.output = OutputFormat::ep;
+    CHECK(reason(judged({})) == "needs the file for the controller, which loomlink writes and reads back");
+    CHECK(reason(judged(none)) ==
+          "there is no file for the controller: feeder 3 is mapped to no feeder of the loom");
+    CHECK(passed(judged(equal)));
+    CHECK_FALSE(passed(judged(differs)));
+    CHECK(reason(judged(differs)).empty());
+    CHECK(judged(differs).count(Severity::error) == judged(equal).count(Severity::error) + 1);
+}
+
 TEST_CASE("errors are counted, all of them, however many are listed") {
     Case c;
     c.cloth.block = block_of(std::vector<std::string>(300, "01"));

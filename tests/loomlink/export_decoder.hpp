@@ -52,7 +52,7 @@ class FileText {
 };
 
 struct DecodedHead {
-    std::string name;
+    loomlink::InFileNames names;
     std::size_t picks = 0, hooks = 0, function_bytes = 0;
     std::vector<std::size_t> areas;
 };
@@ -68,10 +68,11 @@ inline DecodedHead jc5_head(FileText& file) {
         const std::size_t tag = file.big(4), size = file.big(4);
         const std::string value = file.take(size);
         FileText text(value);
-        if (tag == 1 && size == 9) head.name = without_nul(value);
+        if (tag == 1 && size == 9) head.names.name = without_nul(value);
         if (tag == 2 && size == 4) head.picks = text.big(4);
         if (tag == 6) text.must(std::string(4, '\0'));
         if (tag == 8 && value.find('\0') != size - 1) throw std::runtime_error("the comment has no end");
+        if (tag == 8) head.names.comment = without_nul(value);
     }
     for (std::size_t left = file.big(4); left > 0; --left) {
         if (file.big(4) != 100) throw std::runtime_error("no area");
@@ -93,7 +94,7 @@ inline DecodedHead ep_head(FileText& file, std::size_t record_hook_bytes) {
     file.must(std::string(1, '\0'));
     head.picks = file.little(2);
     file.must(std::string(1, '\0'));
-    head.name = without_nul(file.take(8));
+    head.names.name = without_nul(file.take(8));
     file.must(std::string(1, '\0'));
     head.function_bytes = file.little(1);
     file.must(std::string(15, '\0') + "\x12");
@@ -206,7 +207,7 @@ inline std::vector<DecodedRecord> records_of(FileText& file, const DecodedHead& 
 inline loomlink::DecodedFile decoded(const DecodedHead& head, const std::vector<DecodedRecord>& records,
                                      const LoomProfile& profile, std::size_t ends) {
     loomlink::DecodedFile read;
-    read.name = head.name;
+    read.names = head.names;
     read.lifts = loomlink::LiftTable(records.size(), profile.total_hooks);
     const std::size_t lead = profile.lead_in_picks;
     read.card = CardImage(records.size() - lead, ends);

@@ -64,7 +64,7 @@ TEST_CASE("EP: a small design, byte by byte") {
                                   "20 00 00 00 AD 1A "
                                   "01 00 00 00 3E 23 "
                                   "FF*4046 00*1022"));
-    CHECK(file->name == "TOWEL");
+    CHECK(file->names.name == "TOWEL");
     CHECK_FALSE(file->name_cut);
     CHECK(file->unknown_fields.size() == 3);
 }
@@ -87,7 +87,7 @@ TEST_CASE("JC5: a small design of three areas, byte by byte, its name cut at eig
                                   "00 00 00 64 00 00 00 0D 00 00 00 01 00 00 00 10 'body' 00 "
                                   "01 00 00 00 0C FF 00 "
                                   "02 00 00 00 03 AA AA"));
-    CHECK(file->name == "LINENSHO");
+    CHECK(file->names.name == "LINENSHO");
     CHECK(file->name_cut);
     CHECK(file->unknown_fields.size() == 2);
 }
@@ -227,9 +227,9 @@ TEST_CASE("names: what a file cannot hold is refused, what is too long is cut, w
     expect_refusal(write_ep(plan, ep, {"a\nb", ""}), "ASCII");
     LoomProfile shorter = ep;
     shorter.name_limit = 3;
-    CHECK(write_ep(plan, shorter, {"abcdef", ""})->name == "abc");
+    CHECK(write_ep(plan, shorter, {"abcdef", ""})->names.name == "abc");
     shorter.name_limit = 0;
-    CHECK(write_ep(plan, shorter, {"abcdefghij", ""})->name == "abcdefgh");
+    CHECK(write_ep(plan, shorter, {"abcdefghij", ""})->names.name == "abcdefgh");
 }
 
 TEST_CASE("JC5: what its layout cannot hold is refused") {

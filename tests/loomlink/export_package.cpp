@@ -1,7 +1,7 @@
 // The package of a release: its files, what the manifest says of them, and that nothing unproved leaves it.
 
 #include "export_case.hpp"
-#include "export_decoder.hpp"
+#include "site.hpp"
 
 #include <weave/core/sha256.hpp>
 #include <weave/design/document.hpp>
@@ -9,7 +9,8 @@
 #include <weave/io/wif.hpp>
 
 #include <algorithm>
-#include <loomlink/export/package.hpp>
+#include <loomlink/export/read_back.hpp>
+#include <loomlink/export/signed_manifest.hpp>
 
 using namespace weave;
 using namespace weave::loomlink;
@@ -25,11 +26,9 @@ const CardImage twill = card_of({"XX..XX..", ".XX..XX.", "..XX..XX", "X..XX..X"}
 
 Result<ReleasePackage> package_of(const Design& design, const LoomProfile& profile,
                                   const std::set<ExtraFile>& extras = {},
-                                  const ControllerDecoder& decoder = test_decoder,
                                   const FeederMap& map = straight_map(1)) {
     const Evaluation cloth = Evaluator().evaluate(design).value();
-    return make_release_package(design, cloth, profile, map, {"my twill", {"TWILL-2-2", "by hand"}}, extras,
-                                decoder);
+    return make_release_package(design, cloth, profile, map, {"my twill", {"TWILL-2-2", "by hand"}}, extras);
 }
 
 std::vector<std::string> paths(const ReleasePackage& package) {
@@ -59,6 +58,11 @@ void check_manifest(const ReleasePackage& package, const Design& design, const L
         CHECK(entry.at("certified") == false);
         CHECK(entry.at("label") == said.at("label"));
     }
+}
+
+/// Whatever the order of their members.
+bool same(const Json& a, const Json& b) {
+    return canonical_json(a) == canonical_json(b);
 }
 
 }  // namespace
@@ -108,7 +112,7 @@ TEST_CASE("the EP's manifest names every hook's use, castouts counted from 0") {
 TEST_CASE("the TC2 takes the bilevel TIFF as observed, whose pixels are the card") {
     const LoomProfile profile = shipped("tc2");
     const Design design = design_of(twill, {1}, 1);
-    const auto package = package_of(design, profile, {}, {});
+    const auto package = package_of(design, profile);
     REQUIRE(package);
     check_manifest(*package, design, profile);
     CHECK(paths(*package) == std::vector<std::string>{"my-twill-card.tif", "my-twill-picks.csv"});
@@ -148,7 +152,7 @@ TEST_CASE(
     "convert") {
     LoomProfile profile = shipped("tc2");
     profile.converts_to = "JC6";
-    const auto package = package_of(design_of(twill, {1}, 1), profile, {}, {});
+    const auto package = package_of(design_of(twill, {1}, 1), profile);
     REQUIRE(package);
     CHECK(package->files.size() == 2);
     CHECK(package->manifest.at("conversion").at("to") == "JC6");
@@ -175,7 +179,7 @@ TEST_CASE("the pick table tells the loom's feeders, and foreign names cannot bre
     Design design = design_of(twill, {1, 2, 0, 3}, 3);
     design.weft.feeders[1].name = "red, \"thin\"\r\nand more";
     design.weft.yarns[2].name = "=1+1";
-    const auto package = package_of(design, shipped("ep-2688"), {}, test_decoder, {{0, 5}, {1, 0}, {2, 1}});
+    const auto package = package_of(design, shipped("ep-2688"), {}, {{0, 5}, {1, 0}, {2, 1}});
     REQUIRE(package);
     const std::string& csv = package->files[1].bytes;
     CHECK(csv.rfind("pick,row,feeder,feeder name,direction,take-up,yarn,colour,loom feeder\r\n", 0) == 0);
@@ -187,32 +191,109 @@ TEST_CASE("the pick table tells the loom's feeders, and foreign names cannot bre
     CHECK(map[1].at("loom_feeder") == 1);
 }
 
-TEST_CASE("what does not read back, or cannot be read back, is not handed out") {
+TEST_CASE(
+    "a file that does not read back as it was meant is a fault of the system, which names what differs") {
     const Design design = design_of(twill, {1}, 1);
     const LoomProfile profile = shipped("ep-2688");
+    const HookPlan plan = plan_of(design, profile, straight_map(1)).value();
+    const WrittenFile file = write_controller_file(plan, profile, {"TWILL", ""}).value();
+    const DecodedFile honest = decode_controller_file(file.bytes, profile, 8).value();
+    CHECK(check_decoded(honest, file.names, plan, twill, profile));
     const auto with = [&](const auto& spoil) {
-        return package_of(
-            design, profile, {},
-            [=](std::string_view bytes, const LoomProfile& loom, std::size_t ends) -> Result<DecodedFile> {
-                auto read = test_decoder(bytes, loom, ends);
-                spoil(*read);
-                return read;
-            });
+        DecodedFile lie = honest;
+        spoil(lie);
+        return check_decoded(lie, file.names, plan, twill, profile);
     };
-    expect_refusal(package_of(design, profile, {}, {}), "no decoder");
     expect_refusal(with([](DecodedFile& read) { read.card.set(2, 5, !read.card.weft_over(2, 5)); }),
                    "the card image");
     expect_refusal(with([](DecodedFile& read) { read.lifts.lift(3, 0); }), "hook 1 in record 4");
     expect_refusal(with([](DecodedFile& read) { read.lifts = LiftTable(4, 2680); }), "the size");
     expect_refusal(with([](DecodedFile& read) { read.feeders[1] = {1}; }), "the feeder of pick 2");
     expect_refusal(with([](DecodedFile& read) { read.feeders.pop_back(); }), "the number of picks");
-    expect_refusal(with([](DecodedFile& read) { read.name = "OTHER"; }), "the name");
-    const auto failing = [](std::string_view, const LoomProfile&, std::size_t) -> Result<DecodedFile> {
-        return bad_input("torn");
-    };
-    const auto torn = package_of(design, profile, {}, failing);
-    expect_refusal(torn, "torn");
+    expect_refusal(with([](DecodedFile& read) { read.names.name = "OTHER"; }), "the name");
+    expect_refusal(with([](DecodedFile& read) { read.names.comment = "more"; }), "the comment");
+    expect_refusal(with([](DecodedFile& read) { read.oddities = {"byte 7: is odd"}; }), "byte 7: is odd");
+    const Status torn = check_controller_file(file.bytes.substr(0, 5000), file.names, plan, twill, profile);
+    expect_refusal(torn, "byte 5000");
     CHECK(torn.error().code == ErrorCode::system);
+    std::string odd = file.bytes;
+    odd[20] = 7;
+    expect_refusal(check_controller_file(odd, file.names, plan, twill, profile), "byte 20: is 07");
+}
+
+TEST_CASE("what came of reading back is told to the check of the design, before anybody releases") {
+    const Design design = design_of(twill, {1}, 1);
+    const Evaluation cloth = Evaluator().evaluate(design).value();
+    using Outcome = ReadBack::Outcome;
+    const LoomProfile ep = shipped("ep-2688");
+    CHECK(read_back(design, cloth, ep, straight_map(1), {"N", ""}).outcome == Outcome::equal);
+    const ReadBack unmapped = read_back(design, cloth, ep, {}, {"N", ""});
+    CHECK(unmapped.outcome == Outcome::no_file);
+    CHECK(unmapped.words.find("mapped to no") != std::string::npos);
+    CHECK(read_back(design, cloth, ep, straight_map(1), {"", ""}).outcome == Outcome::no_file);
+    CHECK(read_back(design, cloth, shipped("tc2"), straight_map(1), {"N", ""}).outcome == Outcome::no_file);
+    const CheckReport report =
+        check_for_loom(design, cloth, ep, {}, read_back(design, cloth, ep, straight_map(1), {"N", ""}));
+    CHECK(std::count(report.passed.begin(), report.passed.end(), "hooks.read-back") == 1);
+}
+
+TEST_CASE("the manifest that people sign has all that the package says, and opens again") {
+    const Site site;
+    Design design = design_of(twill, {1, 2}, 2);
+    for (const std::string name : {"ep-2688", "jc5-5120", "raw-14x192", "tc2"}) {
+        INFO(name);
+        const LoomProfile profile = shipped(name);
+        const bool single = profile.feeders < 2;
+        const auto package = package_of(single ? design_of(twill, {1}, 1) : design, profile, {ExtraFile::wif},
+                                        straight_map(single ? 1 : 2));
+        INFO((package ? "" : package.error().text()));
+        REQUIRE(package);
+        const auto made = manifest_of(*package, Site::manifest_terms(3));
+        REQUIRE(made);
+        const auto opened = open_manifest(Site::sign_manifest(*made, {&site.anna, &site.carl}), site.trust());
+        INFO((opened ? "" : opened.error().text()));
+        REQUIRE(opened);
+        CHECK(opened->release == 3);
+        CHECK(opened->loom == Site::loom);
+        CHECK(opened->revision_sha256 == Site::revision(3));
+        CHECK(opened->card_sha256 == twill.sha256());
+        CHECK(opened->profile_name == profile.name);
+        CHECK(opened->profile_sha256 == profile.sha256);
+        CHECK(opened->picks == 4);
+        CHECK(opened->ends == 8);
+        CHECK(same(opened->feeders, package->manifest.at("feeders").at("map")));
+        CHECK(opened->reading.at("feeders").at("encoding") == package->manifest.at("feeders").at("encoding"));
+        CHECK(same(opened->reading.at("hooks"), package->manifest.at("hooks")));
+        REQUIRE(opened->files.size() == package->files.size());
+        for (std::size_t k = 0; k < package->files.size(); ++k) {
+            const PackageFile& file = package->files[k];
+            CHECK(opened->files[k].path == file.path);
+            CHECK(opened->files[k].size == file.bytes.size());
+            CHECK(opened->files[k].sha256 == sha256_hex(file.bytes));
+            CHECK_FALSE(opened->files[k].certified);
+            Json said = opened->reading.at("files").at(file.path);
+            CHECK(said.at("read_back") == "equal");
+            for (const auto& [member, value] : said.items())
+                CHECK(same(package->manifest.at("files")[k].at(member), value));
+        }
+    }
+}
+
+TEST_CASE("a manifest that no terminal would take is refused before anybody signs it") {
+    const auto package = package_of(design_of(twill, {1}, 1), shipped("ep-2688"));
+    REQUIRE(package);
+    const auto with = [&](const auto& spoil) {
+        ReleasePackage spoilt = *package;
+        spoil(spoilt.manifest);
+        return manifest_of(spoilt, Site::manifest_terms(1));
+    };
+    CHECK(with([](Json&) {}));
+    expect_refusal(with([](Json& said) { said["files"][0]["path"] = "CON.ep"; }), "CON.ep");
+    expect_refusal(with([](Json& said) { said["files"][0]["path"] = said["files"][1]["path"]; }),
+                   "stands twice");
+    expect_refusal(with([](Json& said) { said["files"][0]["path"] = "Manifest.json"; }), "stands twice");
+    expect_refusal(with([](Json& said) { said["files"][0]["size"] = std::uint64_t{1} << 40; }), "bytes");
+    expect_refusal(with([](Json& said) { said["title"] = std::string(1 << 20, 't'); }), "can be read again");
 }
 
 TEST_CASE("a pick table or WIF that differs anywhere is found") {
@@ -245,11 +326,10 @@ TEST_CASE("a pick table or WIF that differs anywhere is found") {
 TEST_CASE("a feeder map that names what is not there, and names that a file cannot hold, are refused") {
     const Design design = design_of(twill, {1}, 1);
     const LoomProfile profile = shipped("ep-2688");
-    expect_refusal(package_of(design, profile, {}, test_decoder, {{0, 0}, {7, 1}}), "feeder 8");
-    expect_refusal(package_of(design, profile, {}, test_decoder, {{0, 6}}), "feeder 7");
-    expect_refusal(package_of(design, profile, {}, test_decoder, {}), "mapped to no");
+    expect_refusal(package_of(design, profile, {}, {{0, 0}, {7, 1}}), "feeder 8");
+    expect_refusal(package_of(design, profile, {}, {{0, 6}}), "feeder 7");
+    expect_refusal(package_of(design, profile, {}, {}), "mapped to no");
     const Evaluation cloth = Evaluator().evaluate(design).value();
-    expect_refusal(
-        make_release_package(design, cloth, profile, straight_map(1), {"x", {"", ""}}, {}, test_decoder),
-        "needs a name");
+    expect_refusal(make_release_package(design, cloth, profile, straight_map(1), {"x", {" ", ""}}, {}),
+                   "needs a name that starts");
 }

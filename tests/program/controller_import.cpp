@@ -19,8 +19,8 @@ namespace {
 /// The shipped EP loom with a 14-pick twill over all 2,400 ends, six feeders, the first twice in seven picks.
 std::string ep_twill(const LoomProfile& profile) {
     Shed shed(14, std::string(2688, '.'));
-    const std::vector<std::uint32_t> cycle{1, 2, 1, 4, 8, 16, 32};
-    std::vector<std::uint32_t> words;
+    const std::vector<std::uint64_t> cycle{1, 2, 1, 4, 8, 16, 32};
+    std::vector<std::uint64_t> words;
     for (std::size_t pick = 0; pick < 14; ++pick) {
         words.push_back(cycle[pick % 7]);
         shed[pick][54] = shed[pick][55] = 'X';

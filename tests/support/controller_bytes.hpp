@@ -37,21 +37,33 @@ inline std::string hook_bytes(const std::string& hooks, const LoomProfile& profi
         const std::size_t place = profile.hook_permutation.empty() ? hook : profile.hook_permutation.at(hook);
         places.at(place) = (hooks[hook] == 'X') == profile.lifted_is_one ? '1' : '0';
     }
+    std::string bits;
+    std::size_t at = 0;
+    const char filling = profile.lifted_is_one ? '0' : '1';
+    const auto fill = [&] { bits.append((8 - bits.size() % 8) % 8, filling); };
+    for (const HookArea& area : profile.areas) {
+        bits += places.substr(at, area.hooks);
+        at += area.hooks;
+        if (profile.areas_on_bytes) fill();
+    }
+    fill();
     std::string bytes;
-    for (std::size_t at = 0; at < places.size(); at += 8) {
-        std::string eight = places.substr(at, 8);  // read by bitset with the highest bit in front
+    for (at = 0; at < bits.size(); at += 8) {
+        std::string eight = bits.substr(at, 8);  // read by bitset with the highest bit in front
         if (profile.least_bit_first) std::reverse(eight.begin(), eight.end());
         bytes += static_cast<char>(std::bitset<8>(eight).to_ulong());
     }
     return bytes;
 }
 
-/// The records of all picks, each with its function bytes (or none) in front.
-inline std::string record_bytes(const Shed& shed, const std::vector<std::uint32_t>& words,
-                                const LoomProfile& profile) {
+/// The function word of each pick, or none where all are 0.
+using Words = std::vector<std::uint64_t>;
+
+/// The records of all picks, each with its function bytes in front.
+inline std::string record_bytes(const Shed& shed, const Words& words, const LoomProfile& profile) {
     std::vector<std::string> records;
     for (std::size_t pick = 0; pick < shed.size(); ++pick) {
-        const std::string function = words.empty() ? "" : little_bytes(words[pick], 4);
+        const std::string function = little_bytes(words.empty() ? 0 : words[pick], profile.function_bytes);
         records.push_back(function + hook_bytes(shed[pick], profile));
     }
     if (!profile.pick_1_at_bottom) std::reverse(records.begin(), records.end());
@@ -77,23 +89,23 @@ inline std::string jc5_bytes(const std::string& name, const std::string& comment
     return bytes + record_bytes(shed, {}, profile);
 }
 
-inline std::string ep_bytes(const std::string& name, const Shed& shed,
-                            const std::vector<std::uint32_t>& words, const LoomProfile& profile) {
+inline std::string ep_bytes(const std::string& name, const Shed& shed, const Words& words,
+                            const LoomProfile& profile) {
     const std::string records = record_bytes(shed, words, profile);
     std::size_t blocks = 1;
     while (blocks * 4096 < 32 + records.size()) ++blocks;
     std::string field = name.substr(0, 8);
     field.resize(8, '\0');
     std::string bytes = little_bytes(blocks, 2) + std::string(1, '\0') + little_bytes(shed.size(), 2);
-    bytes += std::string(1, '\0') + field + std::string("\0\x04", 2);
+    bytes += std::string(1, '\0') + field + '\0' + static_cast<char>(profile.function_bytes);
     bytes.resize(31, '\0');
     bytes += '\x12' + little_bytes(shed.front().size(), 2) + records;
     bytes.resize(2 + 4096 * blocks, '\xff');
     return bytes + std::string(1022, '\0');
 }
 
-inline std::string raw_bytes(const Shed& shed, const LoomProfile& profile) {
-    return record_bytes(shed, {}, profile);
+inline std::string raw_bytes(const Shed& shed, const LoomProfile& profile, const Words& words = {}) {
+    return record_bytes(shed, words, profile);
 }
 
 }  // namespace weave::testing

@@ -34,7 +34,8 @@ struct Reading {
         for (std::size_t pick = from; pick < file.picks(); ++pick) {
             for (std::size_t place = 0; place < hooks.size(); ++place) {
                 const bool lifted = file.lifts.lifted(pick, hooks[place]);
-                if (lifted != wanted(pick, place)) differs({pick, hooks[place], lifted, use, {}});
+                if (lifted == wanted(pick, place)) continue;
+                differs({pick, hooks[place], lifted, use, {}, pick < first_pick()});
             }
         }
     }
@@ -65,12 +66,6 @@ Status check_fit(const Reading& reading) {
     if (file.lifts.hooks() != profile.total_hooks) {
         return bad_input("the file has " + counted(file.lifts.hooks(), "hook") +
                          ", but the loom of the profile " + std::to_string(profile.total_hooks));
-    }
-    if (!profile.end_1_at_left) {
-        return bad_input(
-            "the profile has end 1 at the right, which is for pictures: in a controller file the order of "
-            "the hooks "
-            "says where the ends are, which the rule 'list' can turn round");
     }
     const std::size_t most = most_ends(profile);
     if (reading.ends == 0 || reading.ends > most) {
@@ -105,7 +100,7 @@ Status read_body(Reading& reading) {
             if (!up) reading.made.card.set(pick - first, end, true);
             for (const std::size_t hook : tied[end]) {
                 const bool lifted = lifts.lifted(pick, hook);
-                if (lifted != up) reading.differs({pick, hook, lifted, HookUse::body, end});
+                if (lifted != up) reading.differs({pick, hook, lifted, HookUse::body, end, false});
             }
         }
     }
@@ -113,6 +108,18 @@ Status read_body(Reading& reading) {
     std::erase_if(idle, [&](std::size_t hook) { return carries[hook]; });
     reading.hold(idle, HookUse::body, first, [](std::size_t, std::size_t) { return false; });
     return {};
+}
+
+/// No pick of the lead-in takes weft: nothing lifts there but what always does, which is held to elsewhere.
+void read_lead_in(Reading& reading) {
+    const std::vector<HookUse> uses = hook_uses(reading.profile);
+    for (std::size_t pick = 0; pick < reading.first_pick(); ++pick) {
+        for (std::size_t hook = 0; hook < uses.size(); ++hook) {
+            const bool elsewhere = uses[hook] == HookUse::cast_out || uses[hook] == HookUse::constant_on;
+            if (!elsewhere && reading.file.lifts.lifted(pick, hook))
+                reading.differs({pick, hook, true, uses[hook], {}, true});
+        }
+    }
 }
 
 void read_fixed_hooks(Reading& reading) {
@@ -148,7 +155,7 @@ std::uint64_t selected(const Reading& reading, std::size_t pick) {
     const std::vector<std::size_t>& places = reading.profile.feeder_hooks;
     std::uint64_t bits = 0;
     for (std::size_t k = 0; k < places.size(); ++k) {
-        const bool set = reading.profile.feeder_encoding == FeederEncoding::hooks
+        const bool set = feeders_in_hooks(reading.profile)
                              ? reading.file.lifts.lifted(pick, places[k])
                              : (reading.file.function_words[pick] >> places[k] & 1U) != 0;
         if (set) bits |= std::uint64_t{1} << k;
@@ -156,11 +163,17 @@ std::uint64_t selected(const Reading& reading, std::size_t pick) {
     return bits;
 }
 
+/// Whether the places hold the number of one feeder, from 1.
+bool takes_numbers(const LoomProfile& profile) {
+    return profile.feeder_encoding == FeederEncoding::binary ||
+           profile.feeder_encoding == FeederEncoding::binary_hooks;
+}
+
 Result<FeederSet> feeders_of(const Reading& reading, std::size_t pick) {
     const std::uint64_t bits = selected(reading, pick);
     const std::size_t feeders = reading.profile.feeders;
     FeederSet set;
-    if (reading.profile.feeder_encoding == FeederEncoding::binary) {
+    if (takes_numbers(reading.profile)) {
         if (bits > feeders) {
             return bad_input("pick " + person(pick) + " takes feeder " + std::to_string(bits) +
                                  ", but the loom has " + counted(feeders, "feeder"),
@@ -180,13 +193,13 @@ Result<FeederSet> feeders_of(const Reading& reading, std::size_t pick) {
 
 Status check_places(const Reading& reading) {
     const LoomProfile& profile = reading.profile;
-    const bool in_hooks = profile.feeder_encoding == FeederEncoding::hooks;
+    const bool in_hooks = feeders_in_hooks(profile);
     if (!in_hooks && reading.file.function_words.empty()) {
         return bad_input(
-            "the profile has the feeders in function bits, but of these formats only EP has such bits; "
-            "the encoding 'hooks' names the hooks that select them");
+            "the profile has the feeders in function bits, but no function bytes; the encodings 'hooks' and "
+            "'binary-hooks' name the hooks that select them");
     }
-    const std::size_t most = in_hooks ? profile.total_hooks : 32;
+    const std::size_t most = in_hooks ? profile.total_hooks : 8 * profile.function_bytes;
     const bool fits =
         profile.feeder_hooks.size() <= 64 &&
         std::ranges::all_of(profile.feeder_hooks, [&](std::size_t place) { return place < most; });
@@ -210,27 +223,33 @@ class PickCount {
     std::size_t m_count = 0, m_first = 0;
 };
 
+/// The function bits that the profile gives a meaning on a pick: none in the lead-in, which takes no weft.
+std::uint64_t known_bits(const Reading& reading, std::size_t pick) {
+    const FeederEncoding encoding = reading.profile.feeder_encoding;
+    const bool in_bits = encoding == FeederEncoding::one_hot || encoding == FeederEncoding::binary;
+    std::uint64_t known = 0;
+    if (!in_bits || pick < reading.first_pick()) return known;
+    for (const std::size_t place : reading.profile.feeder_hooks) known |= std::uint64_t{1} << place;
+    return known;
+}
+
 /// Function bits that are set though the profile gives them no meaning.
 void check_function_bits(Reading& reading) {
-    const FeederEncoding encoding = reading.profile.feeder_encoding;
-    std::uint32_t known = 0;
-    if (encoding == FeederEncoding::one_hot || encoding == FeederEncoding::binary) {
-        for (const std::size_t place : reading.profile.feeder_hooks) known |= std::uint32_t{1} << place;
-    }
-    const std::vector<std::uint32_t>& words = reading.file.function_words;
+    const std::vector<std::uint64_t>& words = reading.file.function_words;
     PickCount strange;
     for (std::size_t pick = 0; pick < words.size(); ++pick) {
-        if ((words[pick] & ~known) != 0) strange.add(pick);
+        if ((words[pick] & ~known_bits(reading, pick)) != 0) strange.add(pick);
     }
     if (!strange.any()) return;
+    const std::uint64_t first = words[strange.first()] & ~known_bits(reading, strange.first());
     std::string bits;
-    for (std::size_t k = 0; k < 32; ++k) {
-        if ((words[strange.first()] & ~known) >> k & 1U)
-            bits += (bits.empty() ? "" : ", ") + std::to_string(k);
+    for (std::size_t k = 0; k < 64; ++k) {
+        if ((first >> k & 1U) != 0) bits += (bits.empty() ? "" : ", ") + std::to_string(k);
     }
-    reading.made.warnings.push_back(place_of(reading.file, strange.first()) +
-                                    ": function bits that the profile does not name are set on " +
-                                    strange.in_words() + ", there bits " + bits + " counted from 0");
+    reading.made.warnings.push_back(
+        place_of(reading.file, strange.first()) + ": function bits that the profile does not name" +
+        (reading.first_pick() > 0 ? ", or any in the lead-in," : "") + " are set on " + strange.in_words() +
+        ", there bits " + bits + " counted from 0");
 }
 
 Status read_feeders(Reading& reading) {
@@ -275,6 +294,8 @@ std::string in_words(const HookDifference& difference) {
     const std::string hook =
         "hook " + person(difference.hook) + " is " + (difference.lifted ? "lifted" : "down");
     const auto why = [&]() -> std::string {
+        if (difference.lead_in && difference.lifted && difference.use != HookUse::cast_out)
+            return ", but in the lead-in nothing lifts that is not always lifted";
         switch (difference.use) {
             case HookUse::cast_out:
                 return ", but is cast out";
@@ -300,6 +321,7 @@ Result<ControllerCard> card_of(const ControllerFile& file, const LoomProfile& pr
                                std::optional<std::size_t> ends) {
     Reading reading{file, profile, ends.value_or(most_ends(profile)), {}, {}};
     WEAVE_CHECK_OK(check_fit(reading));
+    read_lead_in(reading);
     read_fixed_hooks(reading);
     WEAVE_CHECK_OK(read_body(reading));
     read_take_up(reading);

@@ -19,6 +19,11 @@ std::string shortened(std::string text, std::size_t longest, const std::string& 
     return text;
 }
 
+/// Blanks that fill a field are no part of what it says.
+std::string without_filling(const std::string& text) {
+    return text.substr(0, text.find_last_not_of(' ') + 1);
+}
+
 /// The part of a list that repeats.
 template <class Item>
 std::vector<Item> repeating(std::vector<Item> list) {
@@ -62,8 +67,8 @@ Result<DesignFromController> design_from_controller_file(std::string_view bytes,
     result.warnings = std::move(file.warnings);
     tell(read, profile, result.warnings);
     Design& design = result.design;
-    design.title = shortened(std::move(file.name), longest_title, "the name", result.warnings);
-    design.notes = shortened(std::move(file.comment), longest_notes, "the comment", result.warnings);
+    design.title = shortened(without_filling(file.name), longest_title, "the name", result.warnings);
+    design.notes = shortened(without_filling(file.comment), longest_notes, "the comment", result.warnings);
     set_weft(profile, read, design.weft);
     design.root = "card";
     const CardLeaf leaf{std::make_shared<const CardImage>(std::move(read.card)), {1}, {1}};

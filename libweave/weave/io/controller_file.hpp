@@ -45,14 +45,15 @@ class HookLifts {
 /// in which they are woven, from 0; hooks are numbered as in the profile, from 0.
 struct ControllerFile {
     OutputFormat format = OutputFormat::raw;  ///< jc5, ep or raw
-    /// As the file has them, fit to be shown (on_one_line()), without the blanks and NULs that fill a field.
-    /// Raw files have neither, EP files no comment.
+    /// As the file has them, fit to be shown (on_one_line()), without the NULs that fill a field. Blanks that
+    /// do are left, since they may be meant. Raw files have neither, EP files no comment.
     std::string name, comment;
     std::vector<HookArea>
         areas;  ///< as the file names them; one without a name where the format has no areas
     HookLifts lifts;
-    /// EP: the function word of each pick, bit k of it bit k mod 8 of function byte k / 8. Else empty.
-    std::vector<std::uint32_t> function_words;
+    /// The function word of each pick, bit k of it bit k mod 8 of function byte k / 8; empty where the
+    /// profile has no function bytes.
+    std::vector<std::uint64_t> function_words;
     std::size_t records_at = 0,
                 record_bytes = 0;       ///< where the first record of the file starts, and how long each is
     bool last_pick_first = false;       ///< the first record of the file is the last pick
@@ -71,10 +72,10 @@ struct ControllerFile {
 std::optional<OutputFormat> recognise_controller_file(std::string_view bytes, std::string_view extension);
 
 /// Reads a file of the kind that the profile's `file.output` names: jc5, ep or raw (CONTROLLER_FILES.md
-/// beside this file says what is read, byte by byte). Polarity, bit order, pick 1 and hook permutation are
-/// those of the profile. Errors name the byte: a file that is cut or has bytes to spare, that contradicts
-/// itself, or that is for other hooks than the profile's. A field of unknown meaning with another value than
-/// the observed one is a warning.
+/// beside this file says what is read, byte by byte). Function bytes, areas, polarity, bit order, pick 1 and
+/// hook permutation are those of the profile. Errors name the byte: a file that is cut or has bytes to spare,
+/// that contradicts itself, or that is for other hooks than the profile's. A field of unknown meaning with
+/// another value than the observed one is a warning.
 Result<ControllerFile> read_controller_file(std::string_view bytes, const LoomProfile& profile);
 
 /// A hook that does otherwise on a pick than the profile demands.
@@ -83,7 +84,8 @@ struct HookDifference {
     bool lifted = false;             ///< what the file says
     HookUse use = HookUse::cast_out;
     std::optional<std::size_t>
-        end;  ///< body hooks: the end, from 0, whose other hook does otherwise; none: no end's
+        end;               ///< body hooks: the end, from 0, whose other hook does otherwise; none: no end's
+    bool lead_in = false;  ///< on a pick before the design's first
 };
 /// One line for a weaver, picks, hooks and ends counted from 1.
 std::string in_words(const HookDifference& difference);
@@ -103,18 +105,17 @@ struct ControllerCard {
 };
 
 /// The card of `ends` ends (as many as the loom carries, if nothing is said) by the profile's hook places.
-/// Picks after the profile's lead-in make the card; what lies before is held to cast-out and constant-on
-/// hooks alone, since nothing says what is woven there. The first hook of an end decides; its others must
-/// agree. Cast-out, constant-on, selvedge, regulator and further body hooks are compared with what the
-/// profile says. Errors: a file of other hooks, ends that the loom cannot carry, a profile with end 1 at the
-/// right (in a controller file the order of hooks says where ends are), feeders in function bits where the
-/// format has none, a feeder that the loom lacks, more than two on a pick.
+/// Picks after the profile's lead-in make the card; in the lead-in nothing lifts but constant-on hooks, and
+/// no function bit is set. The first hook of an end decides; its others must agree. Cast-out, constant-on,
+/// selvedge, regulator and further body hooks are compared with what the profile says. Errors: a file of
+/// other hooks, ends that the loom cannot carry, feeders in function bits that the file does not have, a
+/// feeder that the loom lacks, more than two on a pick.
 Result<ControllerCard> card_of(const ControllerFile& file, const LoomProfile& profile,
                                std::optional<std::size_t> ends = {});
 
 /// A design whose cloth is a card leaf with that card (t = p = 1), the file's name as title and its comment
-/// as notes, and with the file's feeder order and take-up where it has them: feeders of the loom, all with
-/// the usual yarn. Warnings: those of the file and card, and each difference.
+/// as notes, without blanks at their end, and with the file's feeder order and take-up where it has them:
+/// feeders of the loom, all with the usual yarn. Warnings: those of the file and card, and each difference.
 struct DesignFromController {
     Design design;
     std::vector<std::string> warnings;

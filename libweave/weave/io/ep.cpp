@@ -12,7 +12,6 @@ namespace {
 constexpr std::size_t blocks_at = 0, picks_at = 3, name_at = 6, name_bytes = 8, function_bytes_at = 15,
                       hooks_at = 32;
 constexpr std::size_t blocks_from = 2, header_bytes = 34, block_bytes = 4096, tail_bytes = 1022;
-constexpr std::size_t function_bytes = 4;
 
 /// A byte of the header whose meaning is not known, and the value that it had in all files seen.
 struct UnknownByte {
@@ -40,10 +39,11 @@ constexpr std::array<UnknownByte, 19> unknown_bytes{{{2, 0},
                                                      {31, 0x12}}};
 
 struct Header {
-    std::size_t blocks = 0, picks = 0, hooks = 0;
+    std::size_t blocks = 0, picks = 0, function_bytes = 0, hooks = 0;
+    std::size_t record_bytes =
+        0;  ///< function bytes and hooks; by the profile where areas fill bytes of their own
 
-    [[nodiscard]] std::size_t record_bytes() const { return function_bytes + hooks / 8; }
-    [[nodiscard]] std::size_t records_end() const { return header_bytes + picks * record_bytes(); }
+    [[nodiscard]] std::size_t records_end() const { return header_bytes + picks * record_bytes; }
     /// What the number of picks and the length of a record demand.
     [[nodiscard]] std::size_t blocks_needed() const {
         return (records_end() - blocks_from + block_bytes - 1) / block_bytes;
@@ -57,21 +57,31 @@ Result<Header> read_header(std::string_view bytes) {
         return bad_input("the file ends within the header of " + std::to_string(header_bytes) + " bytes",
                          at_byte(bytes.size()));
     }
-    const Header header{little(bytes, blocks_at, 2), little(bytes, picks_at, 2), little(bytes, hooks_at, 2)};
-    if (const std::uint8_t said = byte_at(bytes, function_bytes_at); said != function_bytes) {
-        return bad_input(
-            "says " + counted(said, "function byte") + " a pick; only files with 4 are understood",
-            at_byte(function_bytes_at));
-    }
-    WEAVE_CHECK_OK(check_whole_bytes(header.hooks, hooks_at));
+    Header header{little(bytes, blocks_at, 2), little(bytes, picks_at, 2), byte_at(bytes, function_bytes_at),
+                  little(bytes, hooks_at, 2), 0};
+    header.record_bytes = header.function_bytes + (header.hooks + 7) / 8;
+    if (header.hooks == 0) return bad_input("the file says that it has 0 hooks", at_byte(hooks_at));
     if (header.picks == 0) return bad_input("the file says that it has no picks", at_byte(picks_at));
     return header;
+}
+
+/// The file is for the loom of the profile.
+Status check_loom(const Header& header, const LoomProfile& profile) {
+    if (header.function_bytes != profile.function_bytes) {
+        return bad_input("says " + counted(header.function_bytes, "function byte") +
+                             " a pick, but the profile of the loom " + std::to_string(profile.function_bytes),
+                         at_byte(function_bytes_at));
+    }
+    if (header.hooks == profile.total_hooks) return {};
+    return bad_input("the file is for " + counted(header.hooks, "hook") +
+                         ", but the loom of the profile has " + std::to_string(profile.total_hooks),
+                     at_byte(hooks_at));
 }
 
 Status check_sizes(const Header& header, std::size_t size) {
     if (header.blocks != header.blocks_needed()) {
         return bad_input("says " + counted(header.blocks, "block") + ", but " +
-                             counted(header.picks, "pick") + " of " + counted(header.record_bytes(), "byte") +
+                             counted(header.picks, "pick") + " of " + counted(header.record_bytes, "byte") +
                              " need " + std::to_string(header.blocks_needed()),
                          at_byte(blocks_at));
     }
@@ -107,30 +117,25 @@ void check_padding(std::string_view bytes, std::size_t begin, std::size_t end, c
 
 bool looks_like_ep(std::string_view bytes) {
     const Result<Header> header = read_header(bytes);
-    return header && check_sizes(*header, bytes.size());
+    return header && header->function_bytes <= most_function_bytes && check_sizes(*header, bytes.size());
 }
 
 Result<ControllerFile> read_ep(std::string_view bytes, const LoomProfile& profile) {
-    WEAVE_TRY(const Header header, read_header(bytes));
+    WEAVE_TRY(const HookLayout layout, hook_layout(profile));
+    WEAVE_TRY(Header header, read_header(bytes));
+    WEAVE_CHECK_OK(check_loom(header, profile));
+    header.record_bytes = layout.bytes();
     WEAVE_CHECK_OK(check_sizes(header, bytes.size()));
-    if (header.hooks != profile.total_hooks) {
-        return bad_input("the file is for " + counted(header.hooks, "hook") +
-                             ", but the loom of the profile has " + std::to_string(profile.total_hooks),
-                         at_byte(hooks_at));
-    }
     ControllerFile file;
     file.format = OutputFormat::ep;
     file.areas = {{"", header.hooks}};
     file.records_at = header_bytes;
-    file.record_bytes = header.record_bytes();
     Oddities oddities;
     check_unknown(bytes, oddities);
     file.name = text_of(bytes.substr(name_at, name_bytes), name_at, "the name", oddities);
     check_padding(bytes, header.records_end(), header.blocks_end(), '\xff', oddities);
     check_padding(bytes, header.blocks_end(), header.file_bytes(), '\0', oddities);
-    WEAVE_CHECK_OK(read_lifts(bytes, header.picks, profile, file));
-    for (std::size_t pick = 0; pick < header.picks; ++pick)
-        file.function_words.push_back(little(bytes, file.offset_of(pick), function_bytes));
+    read_records(bytes, header.picks, profile, layout, file, oddities);
     file.warnings = std::move(oddities).take();
     return file;
 }

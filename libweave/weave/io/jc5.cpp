@@ -176,7 +176,6 @@ Result<HookArea> read_area(const Field& field, const std::string& what, Oddities
                              std::to_string(most_hooks) + " are not read",
                          at_byte(field.offset + 4));
     }
-    WEAVE_CHECK_OK(check_whole_bytes(area.hooks, field.offset + 4));
     area.name = ended_text(field.value.substr(area_numbers), field.offset + area_numbers,
                            "the name of " + what, oddities);
     return area;
@@ -190,7 +189,7 @@ Status check_area(const HookArea& area, const HookArea& loom, const std::string&
                              std::to_string(loom.hooks),
                          at_byte(offset + 4));
     }
-    if (area.name != loom.name) {
+    if (area.name != on_one_line(loom.name)) {
         oddities.add(offset + area_numbers, what + " is called '" + area.name +
                                                 "', in the profile of the loom '" + on_one_line(loom.name) +
                                                 "'");
@@ -237,6 +236,7 @@ Result<ControllerFile> read_jc5(std::string_view bytes, const LoomProfile& profi
                              hexadecimal(jc5_magic) + ", so this is no JC5 file",
                          at_byte(0));
     }
+    WEAVE_TRY(const HookLayout layout, hook_layout(profile));
     Cursor cursor(bytes);
     WEAVE_CHECK_OK(cursor.take(jc5_magic.size(), "the mark of a JC5 file"));
     ControllerFile file;
@@ -246,9 +246,8 @@ Result<ControllerFile> read_jc5(std::string_view bytes, const LoomProfile& profi
     WEAVE_TRY(const std::size_t picks, apply(attributes, cursor.at(), file, oddities));
     WEAVE_CHECK_OK(read_areas(cursor, profile, file, oddities));
     file.records_at = cursor.at();
-    file.record_bytes = profile.total_hooks / 8;
-    WEAVE_CHECK_OK(check_data(cursor, picks, file.record_bytes));
-    WEAVE_CHECK_OK(read_lifts(bytes, picks, profile, file));
+    WEAVE_CHECK_OK(check_data(cursor, picks, layout.bytes()));
+    read_records(bytes, picks, profile, layout, file, oddities);
     file.warnings = std::move(oddities).take();
     return file;
 }

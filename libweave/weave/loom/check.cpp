@@ -92,9 +92,10 @@ bool comes_before(const Finding& a, const Finding& b) {
 }  // namespace
 
 CheckReport check_for_loom(const Design& design, const Evaluation& cloth, const LoomProfile& profile,
-                           const std::optional<RelaxedCloth>& relaxed) {
+                           const std::optional<RelaxedCloth>& relaxed,
+                           const std::optional<ReadBack>& read_back) {
     const Block& block = *cloth.block;
-    Subject subject{design, cloth, profile, relaxed, block, block.card_image(), pick_table(design, block),
+    Subject subject{design, cloth, profile, relaxed, read_back, block, block.card_image(), pick_table(design, block),
                     {},     {},    false};
     subject.turns = profile.insertion == Insertion::shuttle && design.scene.weft_mode == WeftMode::wraparound;
     if (subject.turns) {

@@ -6,6 +6,7 @@
 
 #include <array>
 #include <cstddef>
+#include <cstdint>
 #include <optional>
 #include <string>
 #include <vector>
@@ -41,6 +42,14 @@ struct RelaxedCloth {
     bool width_found = false;  ///< the simulation let the cloth find its width; else it is that which was given
 };
 
+/// What came of writing the controller's file of a design and reading it again with a decoder that shares no code
+/// with the writer. Only programs that write such files know it; they hand it in as plain data.
+struct ReadBack {
+    enum class Outcome : std::uint8_t { equal, differs, no_file };
+    Outcome outcome = Outcome::no_file;
+    std::string words;  ///< what differs, or why there is no file; empty where all is equal
+};
+
 /// Ends of one beam may differ in take-up by so much where the profile sets no limit. A beam lets all its ends off
 /// alike, so what one takes up less hangs in the shed as slack unless the warp's own stretch takes it in: warp is
 /// held at a strain of about a hundredth (the paper's S = 1.01), and beyond that difference there is none left.
@@ -69,6 +78,7 @@ const std::vector<Rule>& rules();
 /// Holds a design to a loom: every rule of rules() is judged, or listed as not evaluated with the reason,
 /// never passed silently.
 CheckReport check_for_loom(const Design& design, const Evaluation& cloth, const LoomProfile& profile,
-                           const std::optional<RelaxedCloth>& relaxed = {});
+                           const std::optional<RelaxedCloth>& relaxed = {},
+                           const std::optional<ReadBack>& read_back = {});
 
 }  // namespace weave

@@ -58,6 +58,7 @@ struct Subject {
     const Evaluation& cloth;
     const LoomProfile& profile;
     const std::optional<RelaxedCloth>& relaxed;
+    const std::optional<ReadBack>& read_back;
     const Block& block;
     CardImage card;
     std::vector<Pick> picks;

@@ -129,6 +129,24 @@ void check_name(const Subject& subject, CheckReport& report) {
         rule.find({}, "the title '" + title + "' has characters that the loom's name field cannot show");
 }
 
+/// The file is no business of this library: whoever writes it says what came of it.
+void check_read_back(const Subject& subject, CheckReport& report) {
+    RuleReport rule(report, subject.profile, "hooks.read-back");
+    if (!rule.wanted()) return;
+    if (takes_picture(subject.profile.output))
+        return rule.not_evaluated("this loom takes a picture, no file of hooks");
+    if (!subject.read_back)
+        return rule.not_evaluated("needs the file for the controller, which loomlink writes and reads back");
+    switch (subject.read_back->outcome) {
+        case ReadBack::Outcome::equal:
+            return;
+        case ReadBack::Outcome::differs:
+            return rule.find({}, subject.read_back->words);
+        case ReadBack::Outcome::no_file:
+            return rule.not_evaluated("there is no file for the controller: " + subject.read_back->words);
+    }
+}
+
 }  // namespace
 
 void check_hooks(const Subject& subject, CheckReport& report) {
@@ -136,8 +154,7 @@ void check_hooks(const Subject& subject, CheckReport& report) {
     check_fit(subject, report);
     check_cast_outs(subject, hooks, report);
     check_shared(subject, hooks, report);
-    RuleReport(report, subject.profile, "hooks.read-back")
-        .not_evaluated("needs the file for the controller, which is written and read back on release");
+    check_read_back(subject, report);
     check_picks(subject, report);
     check_name(subject, report);
 }
