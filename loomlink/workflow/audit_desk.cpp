@@ -1,6 +1,7 @@
 #include <algorithm>
 #include <loomlink/workflow/accounts.hpp>
 #include <loomlink/workflow/audit_desk.hpp>
+#include <loomlink/workflow/found.hpp>
 #include <loomlink/workflow/releases.hpp>
 
 namespace weave::loomlink {
@@ -39,7 +40,62 @@ Result<Json> event_json(const Reader& reader, const std::string& bytes) {
                 {"record", bytes}};
 }
 
+constexpr std::size_t most_bundled = 100000;
+
+/// The records of a design that are about one of its revisions, each with its way to the head.
+Result<Json> proven_records(const Reader& reader, const FoundRevision& found, std::uint64_t size) {
+    WEAVE_TRY(const auto events,
+              reader.events({.from = 0, .most = most_bundled, .kind = {}, .subject = found.design.name}));
+    Json list = Json::array();
+    for (const auto& [seq, bytes] : events) {
+        if (seq >= size) break;
+        WEAVE_TRY(const EventRecord record, parse_record(bytes));
+        const Json& data = record.statement.data;
+        const bool is_about = seq == found.revision.event ||
+                              (data.contains("revision") && data.at("revision") == found.revision.number);
+        if (!is_about) continue;
+        WEAVE_TRY(const auto path, reader.inclusion(seq, size));
+        list.push_back({{"seq", seq}, {"record", bytes}, {"path", path_json(path).at("path")}});
+    }
+    return list;
+}
+
+Result<Json> manifests_of(const Reader& reader, Id revision) {
+    WEAVE_TRY(const auto releases, reader.releases_of(revision));
+    Json list = Json::array();
+    for (const Release& release : releases) {
+        WEAVE_TRY(const SignedManifest manifest, signed_manifest(reader, release));
+        list.push_back(manifest.bytes);
+    }
+    return list;
+}
+
 }  // namespace
+
+Result<Json> AuditDesk::revision_bundle(const Caller& caller, const std::string& design,
+                                        std::int64_t number) {
+    WEAVE_CHECK_OK(need_role(caller, PersonRole::engineer));
+    WEAVE_CHECK_OK(m_desk->note(caller.login, "revision.exported", design, {{"revision", number}}));
+    WEAVE_TRY(const SignedTreeHead head, current_head(*m_desk));
+    return m_desk->store().read([&](const Reader& reader) -> Result<Json> {
+        WEAVE_TRY(const FoundRevision found, find_revision(reader, caller, design, number));
+        WEAVE_TRY(const auto document, reader.object(found.revision.document));
+        WEAVE_TRY(const auto papers, reader.trust_documents(1));
+        Json json{{"format", "weave-revision-bundle"},
+                  {"version", 1},
+                  {"site", m_desk->site()},
+                  {"design", design},
+                  {"revision", number},
+                  {"sha256", hash_hex(found.revision.hash)},
+                  {"document", document.value_or("")},
+                  {"head", signed_head_bytes(head)},
+                  {"trust", Json::array()}};
+        for (const SitePaper& paper : papers) json["trust"].push_back(paper.text);
+        WEAVE_TRY(json["records"], proven_records(reader, found, head.head.size));
+        WEAVE_TRY(json["manifests"], manifests_of(reader, found.revision.id));
+        return json;
+    });
+}
 
 Result<Json> AuditDesk::events(const Caller& caller, Seq from, std::size_t limit,
                                const std::optional<std::string>& design) {

@@ -23,6 +23,10 @@ class AuditDesk {
     Result<Json> consistency(const Caller& caller, std::uint64_t from, std::uint64_t size);
     /// The whole log as a file to verify offline. Taking it is logged.
     Result<std::string> bundle(const Caller& caller);
+    /// Evidence about one revision, to be kept elsewhere: `revision`, `document`, the signed `head`, every
+    /// `record` of its design that names it with its `path` to that head, the `trust` documents and the
+    /// signed `manifests`. Taking it is logged.
+    Result<Json> revision_bundle(const Caller& caller, const std::string& design, std::int64_t number);
 
   private:
     Desk* m_desk;
