@@ -10,6 +10,7 @@
 
 #include <catch2/catch.hpp>
 
+#include <loomlink/keys/hex.hpp>
 #include <loomlink/workflow/workflow.hpp>
 #include <map>
 #include <memory>
