@@ -1,0 +1,162 @@
+#pragma once
+
+// A small site that is run through the workflow alone, at a cheap cost of passwords and a clock of its own.
+
+#include "export_case.hpp"
+#include "store_case.hpp"
+
+#include <weave/core/file.hpp>
+#include <weave/design/document.hpp>
+
+#include <catch2/catch.hpp>
+
+#include <loomlink/keys/hex.hpp>
+#include <loomlink/workflow/workflow.hpp>
+#include <map>
+#include <memory>
+#include <string>
+#include <vector>
+
+namespace weave::loomlink::testing {
+
+/// What an operation gave, or a failed test with its error.
+template <class T>
+T got(Result<T> result) {
+    if (!result) FAIL("refused: " << result.error().text());
+    return std::move(result).value();
+}
+
+/// The denial of a refusal; a failed test where it was done.
+template <class T>
+Denial denied(const Result<T>& result) {
+    if (result) FAIL("was done");
+    INFO(result.error().text());
+    const auto denial = denial_of(result.error());
+    REQUIRE(denial);
+    return *denial;
+}
+
+struct FlowSite {
+    Folder folder;
+    std::filesystem::path path = folder / "store.db";
+    Instant time = parse_utc("2026-11-26T08:00:00.000Z").value();
+    ServerKeys keys{KeyPair::generate(), KeyPair::generate()};
+    std::unique_ptr<Workflow> flow;
+    std::map<std::string, Caller> people;
+    int requests = 0;
+
+    FlowSite() {
+        DeskSettings settings;
+        settings.key_cost = settings.login_cost = test_cost();
+        flow =
+            got(Workflow::open(Store::create(path, "mill").value(),
+                               {KeyPair::from_seed(keys.log.seed()), KeyPair::from_seed(keys.stamp.seed())},
+                               settings, [this] { return time; }));
+        const Json first = got(flow->accounts().first_invitation());
+        enter("ada", first.at("code"));
+        for (const auto& [name, roles] :
+             std::vector<std::pair<std::string, std::vector<std::string>>>{{"dora", {"designer"}},
+                                                                           {"eve", {"designer", "approver"}},
+                                                                           {"abe", {"approver"}},
+                                                                           {"otto", {"operator"}},
+                                                                           {"enno", {"engineer"}}})
+            enter(name, got(flow->accounts().invite(people.at("ada"), ask(), roles)).at("code"));
+    }
+
+    static std::string password(const std::string& name) { return "the password of " + name; }
+    void enter(const std::string& name, const std::string& code) {
+        const Json joined =
+            got(flow->accounts().join(code, name, "Full " + name, password(name), "10.0.0.1"));
+        people[name] = got(flow->accounts().who(joined.at("token"))).caller;
+    }
+
+    /// A new request; with a name, signed with that person's password.
+    Ask ask(const std::string& name = {}) {
+        return {"request-" + std::to_string(++requests), name.empty() ? "" : password(name)};
+    }
+
+    /// Policy without simulations; with `wish` merged in.
+    void set_policy(const Json& wish = Json::object()) {
+        Json policy = got(flow->accounts().policy());
+        policy["simulation"] = "optional";
+        policy.update(wish);
+        got(flow->accounts().set_policy(people.at("ada"), ask(), policy));
+    }
+
+    static std::string profile(const std::string& name) {
+        return read_file(std::string(WEAVE_SOURCE_DIR) + "/db/looms/" + name + ".json").value();
+    }
+    /// The loom `EP 1` with its operator otto, and a trust document that lists the approvers.
+    void set_up_loom() {
+        got(flow->looms().add(people.at("ada"), ask(), "EP 1", profile("ep-2688")));
+        got(flow->looms().set_operators(people.at("ada"), ask(), "EP 1", {"otto"}));
+        got(flow->trust().publish(people.at("ada"), ask("ada"), false));
+    }
+
+    static std::string document(const std::string& title = "twill") {
+        weave::Design design = weave::testing::design_of(
+            weave::testing::card_of({"XX..XX..", ".XX..XX.", "..XX..XX", "X..XX..X"}), {1}, 1);
+        design.title = title;
+        return write_document(design);
+    }
+    /// Saves on main.
+    std::int64_t save(const std::string& name, std::optional<std::int64_t> expected,
+                      const std::string& title = "twill") {
+        SaveWish wish{"shoe", "main", title, document(title), expected, {}};
+        return got(flow->designs().save(people.at(name), ask(), wish)).at("number");
+    }
+    /// Revision `number` of shoe goes to `approved`.
+    void approve(std::int64_t number, const std::string& author = "dora") {
+        got(flow->steps().submit(people.at(author), ask(author), {"shoe", number, "ready"}, {}));
+        got(flow->steps().approve(people.at("abe"), ask("abe"), {"shoe", number, "good"}));
+    }
+    std::string state(std::int64_t number) {
+        return got(flow->designs().revision(people.at("enno"), "shoe", number)).at("state");
+    }
+
+    /// All rows of all tables but the log's, as text.
+    [[nodiscard]] std::string dump() const {
+        sqlite3* handle = nullptr;
+        if (sqlite3_open(path.c_str(), &handle) != SQLITE_OK) throw std::runtime_error("cannot open");
+        std::string text;
+        const auto each = [&](const std::string& sql, const auto& take) {
+            sqlite3_stmt* statement = nullptr;
+            if (sqlite3_prepare_v2(handle, sql.c_str(), -1, &statement, nullptr) != SQLITE_OK)
+                throw std::runtime_error(sqlite3_errmsg(handle));
+            while (sqlite3_step(statement) == SQLITE_ROW) take(statement);
+            sqlite3_finalize(statement);
+        };
+        std::vector<std::string> tables;
+        each("SELECT name FROM sqlite_schema WHERE type = 'table' ORDER BY name", [&](sqlite3_stmt* row) {
+            tables.emplace_back(reinterpret_cast<const char*>(sqlite3_column_text(row, 0)));
+        });
+        for (const std::string& table : tables) {
+            if (table == "event" || table == "tree_node" || table == "tree_head") continue;
+            each("SELECT * FROM " + table, [&](sqlite3_stmt* row) {
+                text += table;
+                for (int k = 0; k < sqlite3_column_count(row); ++k) {
+                    const auto* bytes = static_cast<const char*>(sqlite3_column_blob(row, k));
+                    text += '|' + std::string(bytes == nullptr ? "" : bytes,
+                                              static_cast<std::size_t>(sqlite3_column_bytes(row, k)));
+                }
+                text += '\n';
+            });
+        }
+        sqlite3_close(handle);
+        return text;
+    }
+    /// Kinds of the records from a number on.
+    [[nodiscard]] std::vector<std::string> kinds(Seq from) const {
+        std::vector<std::string> list;
+        const auto events = flow->store().read([&](const Reader& reader) {
+            return reader.events({from, 1000, {}, {}});
+        });
+        for (const auto& [seq, bytes] : got(events)) list.push_back(parse_record(bytes)->statement.kind);
+        return list;
+    }
+    [[nodiscard]] Seq log_size() const {
+        return got(flow->store().read([](const Reader& reader) { return reader.log_size(); }));
+    }
+};
+
+}  // namespace weave::loomlink::testing
