@@ -6,7 +6,7 @@ import { card_view } from '../parts/card_view.js';
 const views = [['card', 'Card image'], ['face', 'Face'], ['back', 'Back'], ['floats', 'Floats'], ['layers', 'Layers']];
 
 export async function show({ design, revision, me, refresh }) {
-    const path = at('designs', design, revision);
+    const path = at('designs', design, 'revisions', revision);
     const [content, { looms }] = await Promise.all([get(path), get('/looms')]);
     const card = card_view({ source: `/api/v1${path}/card`, picks: content.picks, ends: content.ends, label: 'Card image' });
     return {
