@@ -34,6 +34,11 @@ Ask ask_of(const ApiCall& call) {
     return {call.id(), call.text("password")};
 }
 
+CardTile tile_of(const ApiCall& call) {
+    const auto number = [&](const char* name) { return call.query.value(name, std::size_t{1}); };
+    return {number("x"), number("y"), number("w"), number("h"), number("scale")};
+}
+
 std::string disposition_of(const std::string& file_name) {
     const std::string encoded = net::percent_encoded(file_name);
     if (encoded == file_name) return "attachment; filename=\"" + file_name + '"';

@@ -2,6 +2,7 @@
 
 #include <functional>
 #include <loomlink/service/table.hpp>
+#include <loomlink/workflow/cloths.hpp>
 #include <string>
 
 namespace weave::loomlink {
@@ -21,6 +22,9 @@ ApiHandler giving(std::function<Result<Content>(const ApiCall&)> work);
 
 /// The id and the password that a step brings.
 Ask ask_of(const ApiCall& call);
+
+/// The part of a card that a query asks for.
+CardTile tile_of(const ApiCall& call);
 
 /// `attachment; filename="…"` for any name: RFC 6266, with all but plain characters percent-encoded.
 std::string disposition_of(const std::string& file_name);

@@ -106,6 +106,11 @@ std::size_t ApiRoute::body_bytes() const {
     return body.empty() ? 0 : body_limit;
 }
 
+std::optional<std::int64_t> ApiCall::whole(const std::string& field) const {
+    if (!body.contains(field)) return {};
+    return body[field].get<std::int64_t>();
+}
+
 Fields with_request(Fields fields) {
     fields.insert(fields.begin(),
                   {"request",

@@ -6,6 +6,7 @@
 #include <loomlink/service/fields.hpp>
 #include <loomlink/service/visitor.hpp>
 #include <map>
+#include <optional>
 #include <string>
 #include <vector>
 
@@ -27,6 +28,8 @@ struct ApiCall {
     [[nodiscard]] std::string id() const { return body.value("request", std::string()); }
     /// A text of the body; empty where it is missing.
     [[nodiscard]] std::string text(const std::string& field) const;
+    /// A number of the body; nothing where it is missing.
+    [[nodiscard]] std::optional<std::int64_t> whole(const std::string& field) const;
 };
 
 /// One line of the table: routing, rights, the checks of a request, the API document and the names of metrics

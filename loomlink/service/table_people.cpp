@@ -60,7 +60,7 @@ std::vector<ApiRoute> account_table() {
          "Invites somebody",
          "`code`, given once",
          {},
-         with_request({roles(), optional({"full_name", "Who it is for", FieldKind::text, true, 1, 128})})},
+         with_request({roles()})},
         {"invitation.accept",
          "POST",
          "/invitations/accept",
@@ -142,6 +142,8 @@ std::vector<ApiRoute> members_table() {
 
 std::vector<ApiRoute> key_table() {
     return {
+        {"signers", "GET", "/signers", admin(), "The machines whose simulations count",
+         "`signers`: `name`, `key`, `revoked`"},
         {"signer.invite",
          "POST",
          "/signers",

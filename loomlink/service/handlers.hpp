@@ -1,0 +1,22 @@
+#pragma once
+
+#include <loomlink/service/table.hpp>
+#include <loomlink/workflow/accounts.hpp>
+#include <loomlink/workflow/designs.hpp>
+#include <loomlink/workflow/evidence.hpp>
+#include <loomlink/workflow/steps.hpp>
+
+namespace weave::loomlink {
+
+// What answers the lines of the table, subject by subject. The desks must outlive the handlers.
+
+/// Accounts, people and the policy.
+void add_account_handlers(ApiHandlers& handlers, Accounts& accounts);
+/// Designs and revisions, to read and to save.
+void add_design_handlers(ApiHandlers& handlers, DesignDesk& designs);
+/// What is done to a revision.
+void add_step_handlers(ApiHandlers& handlers, Steps& steps);
+/// Machines that sign, and what they hand in.
+void add_evidence_handlers(ApiHandlers& handlers, EvidenceDesk& evidence);
+
+}  // namespace weave::loomlink
