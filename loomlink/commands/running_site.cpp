@@ -15,10 +15,28 @@ struct RunningSite::Parts {
           config(std::move(config_)),
           desk(std::move(site.store), std::move(site.keys), site.name, settings, system_clock()) {}
 
+    ApiHandlers handlers() {
+        ApiHandlers all;
+        add_account_handlers(all, accounts);
+        add_design_handlers(all, designs);
+        add_step_handlers(all, steps);
+        add_evidence_handlers(all, evidence);
+        add_release_handlers(all, releases, watchers);
+        add_trust_handlers(all, trust, watchers);
+        return all;
+    }
+
     FolderLock lock;
     ServeConfig config;
     Desk desk;
+    ClothShelf shelf;
     Accounts accounts{desk};
+    DesignDesk designs{desk, shelf};
+    Steps steps{desk, shelf};
+    EvidenceDesk evidence{desk};
+    ReleaseDesk releases{desk, shelf};
+    TrustChain trust{desk};
+    Watchers watchers;
     std::optional<net::TlsFiles> tls;
     std::optional<net::Server> server;  ///< last, so that it ends first
 };
@@ -45,7 +63,7 @@ Result<std::unique_ptr<RunningSite>> RunningSite::start(const SiteFolder& folder
     WEAVE_TRY(const auto tls, tls_of(folder, config));
     auto parts = std::make_unique<Parts>(std::move(site), config, settings);
     ServiceParts service;
-    add_account_handlers(service.handlers, parts->accounts);
+    service.handlers = parts->handlers();
     service.session = [&accounts = parts->accounts](const std::string& token) { return accounts.who(token); };
     service.health = {{"store", [&desk = parts->desk]() -> Status {
                            const auto name =
@@ -79,12 +97,8 @@ Result<Json> RunningSite::introduction() {
         WEAVE_TRY(const auto certificate, net::read_certificate(m_parts->tls->certificate));
         told["certificate_sha256"] = certificate.fingerprint;
     }
-    WEAVE_TRY(const auto trust,
-              m_parts->desk.store().read([](const Reader& reader) { return reader.latest_trust(); }));
-    if (trust) {
-        WEAVE_TRY(const TrustDocument document, read_trust(trust->text));
-        told["trust_sha256"] = document.fingerprint();
-    }
+    WEAVE_TRY(const auto trust, m_parts->desk.store().read(newest_trust));
+    if (trust) told["trust_sha256"] = trust->fingerprint();
     const auto invitation = m_parts->accounts.first_invitation();
     if (invitation)
         told["invitation"] = url + "/join#" + invitation->value("code", std::string());

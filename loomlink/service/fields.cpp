@@ -80,6 +80,8 @@ Status check_value(const Json& value, const Field& field) {
             return check_integer(value, field);
         case FieldKind::number:
             return check_number(value, field);
+        case FieldKind::yes_or_no:
+            return value.is_boolean() ? Status() : Status(bad_input("must be true or false", field.name));
         case FieldKind::texts:
         case FieldKind::integers:
             return check_list(value, field);
@@ -156,6 +158,9 @@ Json schema_of(const Field& field) {
             schema["type"] = field.kind == FieldKind::integer ? "integer" : "number";
             schema["minimum"] = field.low;
             schema["maximum"] = field.high;
+            break;
+        case FieldKind::yes_or_no:
+            schema["type"] = "boolean";
             break;
         case FieldKind::texts:
         case FieldKind::integers: {

@@ -16,6 +16,7 @@ enum class FieldKind : std::uint8_t {
     secret,  ///< a text that no message repeats
     integer,
     number,
+    yes_or_no,
     texts,     ///< a list
     integers,  ///< a list
     document,  ///< JSON as it stands, or the text of it

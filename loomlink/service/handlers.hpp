@@ -1,10 +1,13 @@
 #pragma once
 
 #include <loomlink/service/table.hpp>
+#include <loomlink/service/watchers.hpp>
 #include <loomlink/workflow/accounts.hpp>
 #include <loomlink/workflow/designs.hpp>
 #include <loomlink/workflow/evidence.hpp>
+#include <loomlink/workflow/releases.hpp>
 #include <loomlink/workflow/steps.hpp>
+#include <loomlink/workflow/trust_chain.hpp>
 
 namespace weave::loomlink {
 
@@ -18,5 +21,9 @@ void add_design_handlers(ApiHandlers& handlers, DesignDesk& designs);
 void add_step_handlers(ApiHandlers& handlers, Steps& steps);
 /// Machines that sign, and what they hand in.
 void add_evidence_handlers(ApiHandlers& handlers, EvidenceDesk& evidence);
+/// Releases; who watches their loom is told of each change.
+void add_release_handlers(ApiHandlers& handlers, ReleaseDesk& releases, const Watchers& watchers);
+/// Whose keys count; all who watch a loom are told of a new document.
+void add_trust_handlers(ApiHandlers& handlers, TrustChain& trust, const Watchers& watchers);
 
 }  // namespace weave::loomlink

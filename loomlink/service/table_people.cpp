@@ -177,14 +177,18 @@ std::vector<ApiRoute> key_table() {
          "Whose keys count: the trust documents from a version on",
          "`documents`: texts, oldest first",
          {optional({"from", "The first version, from 1", FieldKind::integer, true, 1, 1 << 30})}},
+        {"trust.pending", "GET", "/trust/pending", admin(), "What a next trust document would change",
+         "`changes`: in words"},
         {"trust.extend",
          "POST",
          "/trust",
          admin(),
          "Signs a new trust document that lists the keys as they are now",
-         "`version`, `fingerprint`",
+         "`number`, `fingerprint`",
          {},
-         with_request({password})},
+         with_request({password, optional({"keep_server_keys",
+                                           "The server's keys until now go on counting beside its new ones",
+                                           FieldKind::yes_or_no})})},
     };
 }
 

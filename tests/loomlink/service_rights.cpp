@@ -74,6 +74,7 @@ const std::map<std::string, std::string> expected{
     {"POST /signers/enrol", "any"},
     {"POST /signers/{name}/revoke", "m"},
     {"GET /trust", "all"},
+    {"GET /trust/pending", "m"},
     {"POST /trust", "m"},
     {"GET /openapi.json", "any"},
 };
