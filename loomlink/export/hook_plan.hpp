@@ -41,7 +41,7 @@ Result<std::vector<std::size_t>> loom_feeders(const Pick& pick, std::size_t numb
 /// `picks` is the pick table of one repeat; its length is the card's. `feeders` maps each feeder that the
 /// picks take; two may share one of the loom's where both carry the same yarn. Errors name the pick or end,
 /// from 1.
-Result<HookPlan> plan_hooks(const Design& design, const CardImage& card, const std::vector<Pick>& picks,
+Result<HookPlan> plan_hooks(const weave::Design& design, const CardImage& card, const std::vector<Pick>& picks,
                             const LoomProfile& profile, const FeederMap& feeders);
 
 }  // namespace weave::loomlink

@@ -21,7 +21,7 @@ Json controller_reading(const HookPlan& plan, const LoomProfile& profile, std::s
 Json hooks_entry(const HookPlan& plan, const LoomProfile& profile, std::size_t ends);
 
 /// `feeders`: how the file selects them, and which feeder of the loom each of the design's is.
-Json feeders_entry(const Design& design, const LoomProfile& profile, const FeederMap& feeders);
+Json feeders_entry(const weave::Design& design, const LoomProfile& profile, const FeederMap& feeders);
 
 /// `take_up`: on how many picks the cloth stands still, and whether the file stops it.
 Json take_up_entry(const std::vector<Pick>& picks, const LoomProfile& profile);

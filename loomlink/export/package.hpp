@@ -39,7 +39,7 @@ struct ReleasePackage {
 /// has validated the cloth and found out that it may be released: this function signs nothing and judges no
 /// rights. Errors: `invalid` where the cloth does not go on the loom or a name not into the file, `system`
 /// where a file does not read back.
-Result<ReleasePackage> make_release_package(const Design& design, const Evaluation& cloth,
+Result<ReleasePackage> make_release_package(const weave::Design& design, const Evaluation& cloth,
                                             const LoomProfile& profile, const FeederMap& feeders,
                                             const ReleaseNames& names, const std::set<ExtraFile>& extras,
                                             const ControllerDecoder& decoder);

@@ -47,6 +47,12 @@ Reader::List<std::pair<Seq, std::string>> Reader::events(const EventFilter& filt
                             most);
 }
 
+Result<EventRecord> Reader::record(Seq seq) const {
+    WEAVE_TRY(const auto found, events({.from = seq, .most = 1, .kind = {}, .subject = {}}));
+    if (found.empty() || found.front().first != seq) return damaged("a record of the log is missing");
+    return parse_record(found.front().second);
+}
+
 NodeReader Reader::nodes() const {
     return [database = m_connection](NodePlace place) -> Result<Hash> {
         const auto make = [](const sql::Row& row) { return row.hash(0); };

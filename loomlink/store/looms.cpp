@@ -88,6 +88,20 @@ Reader::List<Loom> Reader::looms_of(Id operator_person) const {
         loom_of, operator_person);
 }
 
+Reader::List<Person> Reader::operators(Id loom) const {
+    WEAVE_TRY(const auto ids,
+              connection().all(
+                  "SELECT o.person FROM loom_operator o JOIN person p ON p.id = o.person WHERE "
+                  "o.loom = ? ORDER BY p.login",
+                  [](const sql::Row& row) { return row.integer(0); }, loom));
+    std::vector<Person> people;
+    for (const Id id : ids) {
+        WEAVE_TRY(auto found, person(id));
+        if (found) people.push_back(*std::move(found));
+    }
+    return people;
+}
+
 Reader::Maybe<Release> Reader::release(Id id) const {
     auto found = connection().one(WEAVE_RELEASE_COLUMNS "WHERE r.id = ?", release_of, id);
     if (found && *found) WEAVE_CHECK_OK(fill(connection(), **found));

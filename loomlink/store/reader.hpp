@@ -40,6 +40,8 @@ class Reader {
     [[nodiscard]] Result<std::uint64_t> log_size() const;
     /// The canonical bytes of records, oldest first, with their numbers.
     [[nodiscard]] List<std::pair<Seq, std::string>> events(const EventFilter& filter) const;
+    /// One record, read.
+    [[nodiscard]] Result<EventRecord> record(Seq seq) const;
     /// The root of the first `size` records.
     [[nodiscard]] Result<Hash> root(std::uint64_t size) const;
     [[nodiscard]] Result<std::vector<Hash>> inclusion(Seq seq, std::uint64_t size) const;
@@ -64,6 +66,14 @@ class Reader {
     /// The answer recorded for a request of this person. Refused: the same id used by another person.
     [[nodiscard]] Maybe<std::string> answer(const std::string& request, Id person) const;
 
+    // The site
+    [[nodiscard]] Maybe<Invitation> invitation(const Hash& code) const;
+    /// The newest policy.
+    [[nodiscard]] Maybe<SitePaper> policy() const;
+    /// Trust documents from this number on, as signed, oldest first.
+    [[nodiscard]] List<SitePaper> trust_documents(std::int64_t from) const;
+    [[nodiscard]] Maybe<SitePaper> latest_trust() const;
+
     // Designs
     [[nodiscard]] List<Design> designs() const;
     [[nodiscard]] Maybe<Design> design(const std::string& name) const;
@@ -85,6 +95,7 @@ class Reader {
     [[nodiscard]] Maybe<Loom> loom(const std::string& name) const;
     [[nodiscard]] List<LoomProfileVersion> profiles(Id loom) const;
     [[nodiscard]] List<Loom> looms_of(Id operator_person) const;
+    [[nodiscard]] List<Person> operators(Id loom) const;
     [[nodiscard]] Maybe<Release> release(Id id) const;
     /// All of a loom, newest first, with files, signatures and state.
     [[nodiscard]] List<Release> releases(Id loom) const;

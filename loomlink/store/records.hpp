@@ -193,6 +193,24 @@ struct Loaded {
     Seq event = 0;
 };
 
+/// A one-time code by which a person, or a machine that signs, joins.
+struct Invitation {
+    Hash code{};                      ///< the hash of the code, never the code
+    std::string purpose;              ///< `person` or `signer`
+    std::optional<std::string> name;  ///< who alone may use it
+    std::string roles;                ///< words with commas between; opaque here
+    std::string expires;
+    Seq event = 0;
+    std::optional<Seq> used;
+};
+
+/// A version of what the site agreed on, or of whose keys count.
+struct SitePaper {
+    std::int64_t number = 0;  ///< from 1
+    std::string text;
+    Seq event = 0;
+};
+
 /// A state that a revision or release came to, and the record that tells of it.
 template <class State>
 struct Step {

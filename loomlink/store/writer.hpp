@@ -45,6 +45,14 @@ class Writer : public Reader {
     /// Records the answer to a request, so that its repetition is answered the same and done once.
     Status record_answer(const std::string& request, Id person, const std::string& answer);
 
+    // The site
+    Status add_invitation(const Invitation& invitation);
+    /// Refused: an invitation that was used.
+    Status use_invitation(const Hash& code, Seq event);
+    Status add_policy(const std::string& text, Seq event);
+    /// Keeps the next trust document, which must be an object.
+    Status add_trust(std::int64_t number, const Hash& object, Seq event);
+
     // Designs
     Result<Id> add_design(const std::string& name, Seq event);
     /// Adds a draft; see Revision for what is given. Parents must exist, the document must be an object.

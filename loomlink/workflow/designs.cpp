@@ -1,0 +1,206 @@
+#include <weave/design/document.hpp>
+
+#include <algorithm>
+#include <loomlink/workflow/accounts.hpp>
+#include <loomlink/workflow/designs.hpp>
+
+namespace weave::loomlink {
+
+namespace {
+
+constexpr std::size_t most_message = 4000, most_parents = 16;
+
+Result<Json> newest_json(const Reader& reader, const Design& design) {
+    WEAVE_TRY(const auto revisions, reader.revisions(design.id));
+    if (revisions.empty()) return Json(nullptr);
+    const Revision& newest = revisions.back();
+    WEAVE_TRY(const std::string author, full_name_of(reader, newest.author));
+    return Json{{"number", newest.number}, {"message", newest.message}, {"state", word(newest.state)},
+                {"at", newest.at},         {"author", author},          {"ends", newest.ends},
+                {"picks", newest.picks}};
+}
+
+/// The number of each revision by its id.
+std::map<Id, std::int64_t> numbers_of(const std::vector<Revision>& revisions) {
+    std::map<Id, std::int64_t> numbers;
+    for (const Revision& revision : revisions) numbers[revision.id] = revision.number;
+    return numbers;
+}
+
+Json parents_json(const Revision& revision, const std::map<Id, std::int64_t>& numbers) {
+    Json parents = Json::array();
+    for (const Id parent : revision.parents) parents.push_back(numbers.at(parent));
+    return parents;
+}
+
+Result<Json> revisions_json(const Reader& reader, const std::vector<Revision>& revisions,
+                            const std::vector<Branch>& branches) {
+    const auto numbers = numbers_of(revisions);
+    Json list = Json::array();
+    for (auto revision = revisions.rbegin(); revision != revisions.rend(); ++revision) {
+        WEAVE_TRY(const std::string author, full_name_of(reader, revision->author));
+        Json heads = Json::array();
+        for (const Branch& branch : branches)
+            if (branch.head == revision->id) heads.push_back(branch.name);
+        list.push_back({{"number", revision->number},
+                        {"parents", parents_json(*revision, numbers)},
+                        {"state", word(revision->state)},
+                        {"author", author},
+                        {"at", revision->at},
+                        {"message", revision->message},
+                        {"sha256", hash_hex(revision->hash)},
+                        {"branches", std::move(heads)}});
+    }
+    return list;
+}
+
+Result<Json> releases_json(const Reader& reader, const std::vector<Revision>& revisions) {
+    WEAVE_TRY(const auto looms, reader.looms());
+    Json list = Json::array();
+    for (const Revision& revision : revisions) {
+        WEAVE_TRY(const auto releases, reader.releases_of(revision.id));
+        for (const Release& release : releases) {
+            const auto loom = std::find_if(looms.begin(), looms.end(),
+                                           [&](const Loom& one) { return one.id == release.loom; });
+            list.push_back(
+                {{"loom", loom == looms.end() ? "" : loom->name},
+                 {"number", release.number},
+                 {"revision", revision.number},
+                 {"state", release.state == ReleaseStage::prepared ? "awaiting" : word(release.state)}});
+        }
+    }
+    return list;
+}
+
+/// The parents of what is saved: the branch's head first, then the others that are named.
+Result<std::vector<Id>> parents_of(const Reader& reader, Id design, const SaveWish& wish) {
+    std::vector<std::int64_t> numbers = wish.also;
+    if (wish.expected) numbers.insert(numbers.begin(), *wish.expected);
+    std::vector<Id> parents;
+    for (const std::int64_t number : numbers) {
+        WEAVE_TRY(const auto parent, reader.revision(design, number));
+        if (!parent) return deny(Denial::absent, "the design has no revision " + std::to_string(number));
+        if (std::find(parents.begin(), parents.end(), parent->id) == parents.end())
+            parents.push_back(parent->id);
+    }
+    return parents;
+}
+
+/// Refused where the branch is not where the caller believes it to be.
+Status check_head(const Reader& reader, Id design, const SaveWish& wish) {
+    WEAVE_TRY(const auto branches, reader.branches(design));
+    const auto branch = std::find_if(branches.begin(), branches.end(),
+                                     [&](const Branch& one) { return one.name == wish.branch; });
+    if (branch == branches.end()) {
+        if (!wish.expected) return {};
+        return deny(Denial::conflict, "there is no branch of this name");
+    }
+    WEAVE_TRY(const auto head, reader.revision(branch->head));
+    if (head && wish.expected == head->number) return {};
+    return deny(Denial::conflict, "the branch has moved on" +
+                                      (head ? " to revision " + std::to_string(head->number) : "") +
+                                      ": somebody else saved first; compare and merge");
+}
+
+Status check_wish(const SaveWish& wish) {
+    WEAVE_CHECK_OK(check_name(wish.branch, "branch", false));
+    WEAVE_CHECK_OK(check_text(wish.message, "message", 0, most_message));
+    if (wish.also.size() > most_parents) return bad_input("names more than 16 revisions", "also");
+    return {};
+}
+
+}  // namespace
+
+Result<Json> DesignDesk::add(const Caller& caller, const Ask& ask, const std::string& name) {
+    WEAVE_CHECK_OK(check_name(name, "name", false));
+    const Deed deed{"design.added", name, {}, Json::object()};
+    return m_desk->take(
+        caller, ask, deed,
+        [&](const Reader& reader, const Caller& now) -> Status {
+            WEAVE_CHECK_OK(need_role(now, PersonRole::designer));
+            WEAVE_TRY(const auto same, reader.design(name));
+            return same ? Status(deny(Denial::conflict, "there is a design of this name")) : Status();
+        },
+        [&](Writer& writer, const TakenStep& step) -> Result<Json> {
+            WEAVE_CHECK_OK(writer.add_design(name, step.event));
+            return Json{{"name", name}};
+        });
+}
+
+Result<Json> DesignDesk::save(const Caller& caller, const Ask& ask, const SaveWish& wish) {
+    WEAVE_CHECK_OK(check_wish(wish));
+    const auto check = [&](const Reader& reader, const Caller& now) -> Status {
+        WEAVE_CHECK_OK(need_role(now, PersonRole::designer));
+        WEAVE_TRY(const Design design, find_design(reader, now, wish.design));
+        WEAVE_CHECK_OK(check_head(reader, design.id, wish));
+        const auto parents = parents_of(reader, design.id, wish);
+        return parents ? Status() : Status(parents.error());
+    };
+    // The same request is answered before anything is woven.
+    Deed deed{"revision.saved", wish.design, {}, {{"branch", wish.branch}}};
+    WEAVE_TRY(const auto known, m_desk->recorded(caller, ask.request, deed));
+    if (known) return *known;
+    const Status allowed = m_desk->store().read([&](const Reader& reader) -> Status {
+        WEAVE_TRY(const Caller now, fresh_caller(reader, caller));
+        return check(reader, now);
+    });
+    if (!allowed) return m_desk->refuse(caller.login, ask.request, deed, allowed.error());
+    WEAVE_TRY(const RevisionClothPtr cloth, weave_document(wish.document));
+    Revision made;
+    made.message = wish.message;
+    made.at = m_desk->now_text();
+    made.author = caller.id;
+    made.design_sha256 = *parse_hash(design_sha256(cloth->design));
+    made.scene_sha256 = *parse_hash(scene_sha256(cloth->design));
+    made.card_sha256 = *parse_hash(cloth->card.sha256());
+    made.picks = static_cast<std::int64_t>(cloth->card.picks());
+    made.ends = static_cast<std::int64_t>(cloth->card.ends());
+    deed.data["document_sha256"] = hash_hex(sha256(wish.document));
+    deed.data["design_sha256"] = hash_hex(made.design_sha256);
+    deed.data["message"] = wish.message;
+    return m_desk->take(caller, ask, deed, check, [&](Writer& writer, const TakenStep& step) -> Result<Json> {
+        WEAVE_TRY(const Design design, find_design(writer, caller, wish.design));
+        made.design = design.id;
+        made.event = step.event;
+        WEAVE_TRY(made.parents, parents_of(writer, design.id, wish));
+        WEAVE_TRY(made.document, writer.put_object(wish.document));
+        const std::optional<Id> expected = wish.expected ? std::optional(made.parents.front()) : std::nullopt;
+        WEAVE_TRY(const Revision stored, writer.add_revision(made));
+        WEAVE_CHECK_OK(writer.move_branch({design.id, wish.branch, stored.id, step.event}, expected));
+        m_shelf->keep(made.document, cloth);
+        return Json{{"number", stored.number}, {"sha256", hash_hex(stored.hash)}};
+    });
+}
+
+Result<Json> DesignDesk::list(const Caller& caller) {
+    return m_desk->store().read([&](const Reader& reader) -> Result<Json> {
+        WEAVE_CHECK_OK(need_designs_open(caller));
+        WEAVE_TRY(const auto designs, reader.designs());
+        Json list = Json::array();
+        for (const Design& design : designs) {
+            WEAVE_TRY(Json newest, newest_json(reader, design));
+            list.push_back({{"name", design.name}, {"newest", std::move(newest)}});
+        }
+        return Json{{"designs", std::move(list)}};
+    });
+}
+
+Result<Json> DesignDesk::graph(const Caller& caller, const std::string& name) {
+    return m_desk->store().read([&](const Reader& reader) -> Result<Json> {
+        WEAVE_TRY(const Design design, find_design(reader, caller, name));
+        WEAVE_TRY(const auto revisions, reader.revisions(design.id));
+        WEAVE_TRY(const auto branches, reader.branches(design.id));
+        const auto numbers = numbers_of(revisions);
+        Json heads = Json::array();
+        for (const Branch& branch : branches)
+            heads.push_back({{"name", branch.name}, {"head", numbers.at(branch.head)}});
+        WEAVE_TRY(Json list, revisions_json(reader, revisions, branches));
+        WEAVE_TRY(Json releases, releases_json(reader, revisions));
+        return Json{{"name", design.name},
+                    {"branches", std::move(heads)},
+                    {"revisions", std::move(list)},
+                    {"releases", std::move(releases)}};
+    });
+}
+
+}  // namespace weave::loomlink
