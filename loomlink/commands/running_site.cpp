@@ -23,6 +23,7 @@ struct RunningSite::Parts {
         add_evidence_handlers(all, evidence);
         add_release_handlers(all, releases, watchers);
         add_trust_handlers(all, trust, watchers);
+        add_watch_handler(all, desk, accounts, watchers);
         return all;
     }
 

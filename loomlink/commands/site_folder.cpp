@@ -22,7 +22,7 @@ Error fault(const fs::path& path, const std::string& action) {
 }
 
 /// Whether a folder holds nothing but, perhaps, our lock.
-Result<bool> is_empty(const fs::path& folder) {
+Result<bool> holds_nothing(const fs::path& folder) {
     std::error_code trouble;
     fs::directory_iterator entries(folder, trouble);
     if (trouble) return system_fault("cannot be read: " + trouble.message(), folder.string());
@@ -67,7 +67,7 @@ Result<OpenSite> open_site(const SiteFolder& folder, const ServeConfig& config) 
     fs::create_directories(folder.path, trouble);
     if (trouble) return system_fault("cannot be made: " + trouble.message(), folder.path.string());
     WEAVE_TRY(FolderLock lock, FolderLock::take(folder.path));
-    WEAVE_TRY(const bool empty, is_empty(folder.path));
+    WEAVE_TRY(const bool empty, holds_nothing(folder.path));
     if (empty) {
         if (::chmod(folder.path.c_str(), 0700) != 0) return fault(folder.path, "close it to others");
         return make_site(std::move(lock), folder, config.site);

@@ -26,4 +26,7 @@ void add_release_handlers(ApiHandlers& handlers, ReleaseDesk& releases, const Wa
 /// Whose keys count; all who watch a loom are told of a new document.
 void add_trust_handlers(ApiHandlers& handlers, TrustChain& trust, const Watchers& watchers);
 
+/// Who may see a loom may watch it, as long as the sign-in lasts.
+void add_watch_handler(ApiHandlers& handlers, Desk& desk, Accounts& accounts, const Watchers& watchers);
+
 }  // namespace weave::loomlink
