@@ -1,0 +1,28 @@
+#pragma once
+
+#include <loomlink/export/package.hpp>
+#include <loomlink/keys/release_manifest.hpp>
+#include <loomlink/workflow/cloths.hpp>
+#include <loomlink/workflow/validation.hpp>
+#include <string>
+#include <vector>
+
+namespace weave::loomlink {
+
+/// The feeders of a loom (given from 1) for those of a design. Errors: not one for each.
+Result<FeederMap> feeder_map(const weave::Design& design, const std::vector<std::int64_t>& feeders);
+
+/// The files of a release, each read back by the decoders of libweave, which share no code with the writers.
+Result<ReleasePackage> proven_package(const RevisionCloth& cloth, const LoomProfile& profile,
+                                      const FeederMap& feeders, const std::string& stem);
+
+/// The body of the manifest that people sign.
+struct ManifestTerms {
+    std::string site, loom, design;
+    std::uint64_t number = 0;
+    Instant released;
+};
+ReleaseManifest manifest_of(const ManifestTerms& terms, const Revision& revision, const RevisionCloth& cloth,
+                            const ProfileInForce& profile, const ReleasePackage& package);
+
+}  // namespace weave::loomlink
