@@ -1,6 +1,6 @@
 #include <loomlink/commands/command.hpp>
 #include <loomlink/commands/site_folder.hpp>
-#include <loomlink/workflow/accounts.hpp>
+#include <loomlink/workflow/workflow.hpp>
 #include <memory>
 #include <string>
 
@@ -15,8 +15,8 @@ Status make_new_site(const SiteFolder& folder, const ServeConfig& config, Comman
     WEAVE_CHECK_OK(tls_of(folder, config));
     WEAVE_TRY(const auto certificate, net::read_certificate(folder.tls().certificate));
     const std::string name = site.name;
-    Desk desk(std::move(site.store), std::move(site.keys), name, {}, system_clock());
-    WEAVE_TRY(const Json invitation, Accounts(desk).first_invitation());
+    WEAVE_TRY(const auto workflow, Workflow::open(std::move(site.store), std::move(site.keys)));
+    WEAVE_TRY(const Json invitation, workflow->accounts().first_invitation());
     const std::string code = invitation.value("code", std::string());
     outcome.answer({{"site", name}, {"certificate_sha256", certificate.fingerprint}, {"code", code}},
                    "Made the site " + name + ".\ncertificate (SHA-256): " + certificate.fingerprint +

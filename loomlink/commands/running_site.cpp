@@ -10,35 +10,12 @@
 namespace weave::loomlink {
 
 struct RunningSite::Parts {
-    Parts(OpenSite site, ServeConfig config_, const DeskSettings& settings)
-        : lock(std::move(site.lock)),
-          config(std::move(config_)),
-          desk(std::move(site.store), std::move(site.keys), site.name, settings, system_clock()) {}
-
-    ApiHandlers handlers() {
-        ApiHandlers all;
-        add_account_handlers(all, accounts);
-        add_design_handlers(all, designs);
-        add_step_handlers(all, steps);
-        add_evidence_handlers(all, evidence);
-        add_release_handlers(all, releases, watchers);
-        add_trust_handlers(all, trust, watchers);
-        add_watch_handler(all, desk, accounts, watchers);
-        return all;
-    }
-
     FolderLock lock;
     ServeConfig config;
-    Desk desk;
-    ClothShelf shelf;
-    Accounts accounts{desk};
-    DesignDesk designs{desk, shelf};
-    Steps steps{desk, shelf};
-    EvidenceDesk evidence{desk};
-    ReleaseDesk releases{desk, shelf};
-    TrustChain trust{desk};
-    Watchers watchers;
+    std::string name;
+    std::unique_ptr<Workflow> workflow;
     std::optional<net::TlsFiles> tls;
+    Watchers watchers;
     std::optional<net::Server> server;  ///< last, so that it ends first
 };
 
@@ -52,6 +29,21 @@ std::string origin_of(const ServeConfig& config, std::uint16_t port) {
     return (config.plain ? "http://" : "https://") + host + ":" + std::to_string(port);
 }
 
+Status check_store(Workflow& workflow) {
+    const auto name = workflow.store().read([](const Reader& reader) { return reader.site(); });
+    return name ? Status() : Status(name.error());
+}
+
+ServiceParts service_of(Workflow& workflow, const Watchers& watchers) {
+    ServiceParts service;
+    service.handlers = workflow_handlers(workflow, watchers);
+    service.session = [&workflow](const std::string& token) { return workflow.accounts().who(token); };
+    service.health = {{"store", [&workflow] { return check_store(workflow); }}};
+    service.metrics = std::make_shared<net::Metrics>();
+    service.version = WEAVE_VERSION;
+    return service;
+}
+
 }  // namespace
 
 RunningSite::RunningSite(std::unique_ptr<Parts> parts) : m_parts(std::move(parts)) {}
@@ -62,17 +54,10 @@ Result<std::unique_ptr<RunningSite>> RunningSite::start(const SiteFolder& folder
                                                         const DeskSettings& settings) {
     WEAVE_TRY(OpenSite site, open_site(folder, config));
     WEAVE_TRY(const auto tls, tls_of(folder, config));
-    auto parts = std::make_unique<Parts>(std::move(site), config, settings);
-    ServiceParts service;
-    service.handlers = parts->handlers();
-    service.session = [&accounts = parts->accounts](const std::string& token) { return accounts.who(token); };
-    service.health = {{"store", [&desk = parts->desk]() -> Status {
-                           const auto name =
-                               desk.store().read([](const Reader& reader) { return reader.site(); });
-                           return name ? Status() : Status(name.error());
-                       }}};
-    service.metrics = std::make_shared<net::Metrics>();
-    service.version = WEAVE_VERSION;
+    WEAVE_TRY(auto workflow, Workflow::open(std::move(site.store), std::move(site.keys), settings));
+    auto parts = std::make_unique<Parts>(
+        Parts{std::move(site.lock), config, std::move(site.name), std::move(workflow), tls, {}, {}});
+    const ServiceParts service = service_of(*parts->workflow, parts->watchers);
     WEAVE_TRY(net::Router routes, service_routes(service));
     net::ServerOptions options;
     options.address = config.address;
@@ -82,7 +67,6 @@ Result<std::unique_ptr<RunningSite>> RunningSite::start(const SiteFolder& folder
     options.workers = config.workers;
     options.metrics = service.metrics;
     WEAVE_TRY(net::Server server, net::Server::start(std::move(routes), std::move(options)));
-    parts->tls = tls;
     parts->server.emplace(std::move(server));
     return std::unique_ptr<RunningSite>(new RunningSite(std::move(parts)));
 }
@@ -93,14 +77,14 @@ std::uint16_t RunningSite::port() const {
 
 Result<Json> RunningSite::introduction() {
     const std::string url = origin_of(m_parts->config, port());
-    Json told{{"site", m_parts->desk.site()}, {"url", url}};
+    Json told{{"site", m_parts->name}, {"url", url}};
     if (m_parts->tls) {
         WEAVE_TRY(const auto certificate, net::read_certificate(m_parts->tls->certificate));
         told["certificate_sha256"] = certificate.fingerprint;
     }
-    WEAVE_TRY(const auto trust, m_parts->desk.store().read(newest_trust));
+    WEAVE_TRY(const auto trust, m_parts->workflow->store().read(newest_trust));
     if (trust) told["trust_sha256"] = trust->fingerprint();
-    const auto invitation = m_parts->accounts.first_invitation();
+    const auto invitation = m_parts->workflow->accounts().first_invitation();
     if (invitation)
         told["invitation"] = url + "/join#" + invitation->value("code", std::string());
     else if (denial_of(invitation.error()) != Denial::conflict)

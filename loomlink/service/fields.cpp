@@ -123,7 +123,9 @@ Field optional(Field field) {
 }
 
 Result<Json> read_body(std::string_view body, const Fields& fields) {
-    WEAVE_TRY(const Json given, parse_json(body));
+    const auto read = parse_json(body);
+    if (!read) return bad_input("the body is not JSON");  // what the parser says repeats what it read
+    const Json& given = *read;
     if (!given.is_object()) return bad_input("the body must be a JSON object");
     return checked(given, fields);
 }
