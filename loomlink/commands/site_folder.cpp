@@ -31,11 +31,29 @@ Result<bool> holds_nothing(const fs::path& folder) {
     return true;
 }
 
+/// Refused: a folder with anything in it but a site, before anything is put into it.
+Status check_folder(const SiteFolder& folder) {
+    std::error_code trouble;
+    if (fs::exists(folder.store(), trouble)) return {};
+    WEAVE_TRY(const bool empty, holds_nothing(folder.path));
+    if (empty) return {};
+    return Error{ErrorCode::refused, "holds no store of loomlink, and is not empty", folder.path.string()};
+}
+
 Result<OpenSite> make_site(FolderLock lock, const SiteFolder& folder, const std::string& name) {
     WEAVE_TRY(KeyPair log, create_server_key(folder.log_key(), ServerKeyRole::log));
     WEAVE_TRY(KeyPair stamp, create_server_key(folder.stamp_key(), ServerKeyRole::stamp));
     WEAVE_TRY(Store store, Store::create(folder.store(), name));
     return OpenSite{std::move(lock), std::move(store), {std::move(log), std::move(stamp)}, name, true};
+}
+
+Result<OpenSite> open_old_site(FolderLock lock, const SiteFolder& folder) {
+    WEAVE_TRY(KeyPair log, load_server_key(folder.log_key(), ServerKeyRole::log));
+    WEAVE_TRY(KeyPair stamp, load_server_key(folder.stamp_key(), ServerKeyRole::stamp));
+    WEAVE_TRY(Store store, Store::open(folder.store()));
+    WEAVE_TRY(std::string name, store.read([](const Reader& reader) { return reader.site(); }));
+    return OpenSite{
+        std::move(lock), std::move(store), {std::move(log), std::move(stamp)}, std::move(name), false};
 }
 
 }  // namespace
@@ -66,21 +84,11 @@ Result<OpenSite> open_site(const SiteFolder& folder, const ServeConfig& config) 
     std::error_code trouble;
     fs::create_directories(folder.path, trouble);
     if (trouble) return system_fault("cannot be made: " + trouble.message(), folder.path.string());
+    WEAVE_CHECK_OK(check_folder(folder));
     WEAVE_TRY(FolderLock lock, FolderLock::take(folder.path));
-    WEAVE_TRY(const bool empty, holds_nothing(folder.path));
-    if (empty) {
-        if (::chmod(folder.path.c_str(), 0700) != 0) return fault(folder.path, "close it to others");
-        return make_site(std::move(lock), folder, config.site);
-    }
-    if (!fs::exists(folder.store(), trouble))
-        return Error{ErrorCode::refused, "holds no store of loomlink, and is not empty",
-                     folder.path.string()};
-    WEAVE_TRY(KeyPair log, load_server_key(folder.log_key(), ServerKeyRole::log));
-    WEAVE_TRY(KeyPair stamp, load_server_key(folder.stamp_key(), ServerKeyRole::stamp));
-    WEAVE_TRY(Store store, Store::open(folder.store()));
-    WEAVE_TRY(std::string name, store.read([](const Reader& reader) { return reader.site(); }));
-    return OpenSite{
-        std::move(lock), std::move(store), {std::move(log), std::move(stamp)}, std::move(name), false};
+    if (fs::exists(folder.store(), trouble)) return open_old_site(std::move(lock), folder);
+    if (::chmod(folder.path.c_str(), 0700) != 0) return fault(folder.path, "close it to others");
+    return make_site(std::move(lock), folder, config.site);
 }
 
 Result<std::optional<net::TlsFiles>> tls_of(const SiteFolder& folder, const ServeConfig& config) {

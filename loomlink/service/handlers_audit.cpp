@@ -6,6 +6,8 @@ namespace weave::loomlink {
 
 namespace {
 
+constexpr std::size_t usual_limit = 100;
+
 /// The size of the log that a proof is asked for: the one named, or that of its newest head.
 Result<std::uint64_t> size_of(const ApiCall& call, AuditDesk& audit) {
     if (call.query.contains("size")) return call.query["size"].get<std::uint64_t>();
@@ -69,7 +71,6 @@ void add_bundle_handler(ApiHandlers& handlers, DesignDesk& designs, AuditDesk& a
 }
 
 void add_audit_handlers(ApiHandlers& handlers, AuditDesk& audit) {
-    constexpr std::size_t usual_limit = 100;
     auto& answers = handlers.answers;
     answers["events"] = answering([&audit](const ApiCall& call) {
         return audit.events(call.visitor.caller(), call.query.value("from", Seq{0}),
