@@ -269,7 +269,7 @@ TEST_CASE("a design goes its way from a first revision to the loom and back, ove
     mill.done("otto", "POST", "/looms/seven/loaded", {{"release", 1}});
     mill.done("otto", "POST", "/looms/seven/faults", {{"release", 1}, {"pick", 2}, {"text", "It floats"}});
     CHECK(mill.done("dora", "GET", "/looms/seven/faults").at("faults").size() == 1);
-    CHECK(mill.status("olga", "POST", "/looms/seven/loaded", {{"release", 1}}) == 404);
+    CHECK(mill.status("olga", "POST", "/looms/seven/loaded", {{"release", 1}}) == 403);
 
     mill.done("emil", "POST", root + "/withdraw", why);
     CHECK(mill.status("otto", "GET", root + "/manifest") == 409);
