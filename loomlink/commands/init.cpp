@@ -1,0 +1,42 @@
+#include <loomlink/commands/command.hpp>
+#include <loomlink/commands/site_folder.hpp>
+#include <loomlink/workflow/workflow.hpp>
+#include <memory>
+#include <string>
+
+namespace weave::loomlink {
+
+namespace {
+
+Status make_new_site(const SiteFolder& folder, const ServeConfig& config, CommandOutcome& outcome) {
+    WEAVE_CHECK_OK(check_config(config));
+    WEAVE_TRY(OpenSite site, open_site(folder, config));
+    if (!site.is_new) return Error{ErrorCode::refused, "holds a site already", folder.path.string()};
+    WEAVE_CHECK_OK(tls_of(folder, config));
+    WEAVE_TRY(const auto certificate, net::read_certificate(folder.tls().certificate));
+    const std::string name = site.name;
+    WEAVE_TRY(const auto workflow, Workflow::open(std::move(site.store), std::move(site.keys)));
+    WEAVE_TRY(const Json invitation, workflow->accounts().first_invitation());
+    const std::string code = invitation.value("code", std::string());
+    outcome.answer({{"site", name}, {"certificate_sha256", certificate.fingerprint}, {"code", code}},
+                   "Made the site " + name + ".\ncertificate (SHA-256): " + certificate.fingerprint +
+                       "\nThe first administrator joins with this code, once: " + code +
+                       "\nServe it: loomlink serve\n");
+    return {};
+}
+
+}  // namespace
+
+void add_init_command(CLI::App& app, CommandOutcome& outcome) {
+    CLI::App* const command = add_command(app, outcome, "init", "make a site in an empty folder");
+    auto folder = std::make_shared<std::string>(".");
+    auto config = std::make_shared<ServeConfig>();
+    command->add_option("folder", *folder, "the folder of the site; the current one if not given");
+    command->add_option("--site", config->site, "the name of the site (mill)");
+    command->add_option("--host", config->hosts,
+                        "a name or address that clients use, for the certificate; may be repeated");
+    on_run(command, outcome,
+           [folder, config, &outcome] { return make_new_site({*folder}, *config, outcome); });
+}
+
+}  // namespace weave::loomlink

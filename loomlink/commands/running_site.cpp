@@ -1,0 +1,99 @@
+#include <weave/net/server.hpp>
+
+#include <chrono>
+#include <loomlink/commands/running_site.hpp>
+#include <loomlink/service/handlers.hpp>
+#include <loomlink/service/service.hpp>
+#include <optional>
+#include <utility>
+
+namespace weave::loomlink {
+
+struct RunningSite::Parts {
+    FolderLock lock;
+    ServeConfig config;
+    std::string name;
+    std::unique_ptr<Workflow> workflow;
+    std::optional<net::TlsFiles> tls;
+    Watchers watchers;
+    std::optional<net::Server> server;  ///< last, so that it ends first
+};
+
+namespace {
+
+constexpr std::chrono::seconds patience{10};
+
+std::string origin_of(const ServeConfig& config, std::uint16_t port) {
+    std::string host = config.plain ? config.address : client_hosts(config).front();
+    if (host.find(':') != std::string::npos) host = "[" + host + "]";
+    return (config.plain ? "http://" : "https://") + host + ":" + std::to_string(port);
+}
+
+Status check_store(Workflow& workflow) {
+    const auto name = workflow.store().read([](const Reader& reader) { return reader.site(); });
+    return name ? Status() : Status(name.error());
+}
+
+ServiceParts service_of(Workflow& workflow, const Watchers& watchers) {
+    ServiceParts service;
+    service.handlers = workflow_handlers(workflow, watchers);
+    service.session = [&workflow](const std::string& token) { return workflow.accounts().who(token); };
+    service.health = {{"store", [&workflow] { return check_store(workflow); }}};
+    service.metrics = std::make_shared<net::Metrics>();
+    service.version = WEAVE_VERSION;
+    return service;
+}
+
+}  // namespace
+
+RunningSite::RunningSite(std::unique_ptr<Parts> parts) : m_parts(std::move(parts)) {}
+
+RunningSite::~RunningSite() = default;
+
+Result<std::unique_ptr<RunningSite>> RunningSite::start(const SiteFolder& folder, const ServeConfig& config,
+                                                        const DeskSettings& settings) {
+    WEAVE_TRY(OpenSite site, open_site(folder, config));
+    WEAVE_TRY(const auto tls, tls_of(folder, config));
+    WEAVE_TRY(auto workflow, Workflow::open(std::move(site.store), std::move(site.keys), settings));
+    auto parts = std::make_unique<Parts>(
+        Parts{std::move(site.lock), config, std::move(site.name), std::move(workflow), tls, {}, {}});
+    const ServiceParts service = service_of(*parts->workflow, parts->watchers);
+    WEAVE_TRY(net::Router routes, service_routes(service));
+    net::ServerOptions options;
+    options.address = config.address;
+    options.port = config.port;
+    options.tls = tls;
+    options.hosts = config.hosts;
+    options.workers = config.workers;
+    options.metrics = service.metrics;
+    WEAVE_TRY(net::Server server, net::Server::start(std::move(routes), std::move(options)));
+    parts->server.emplace(std::move(server));
+    return std::unique_ptr<RunningSite>(new RunningSite(std::move(parts)));
+}
+
+std::uint16_t RunningSite::port() const {
+    return m_parts->server->port();
+}
+
+Result<Json> RunningSite::introduction() {
+    const std::string url = origin_of(m_parts->config, port());
+    Json told{{"site", m_parts->name}, {"url", url}};
+    if (m_parts->tls) {
+        WEAVE_TRY(const auto certificate, net::read_certificate(m_parts->tls->certificate));
+        told["certificate_sha256"] = certificate.fingerprint;
+    }
+    WEAVE_TRY(const auto trust, m_parts->workflow->store().read(newest_trust));
+    if (trust) told["trust_sha256"] = trust->fingerprint();
+    const auto invitation = m_parts->workflow->accounts().first_invitation();
+    if (invitation)
+        told["invitation"] = url + "/join#" + invitation->value("code", std::string());
+    else if (denial_of(invitation.error()) != Denial::conflict)
+        return invitation.error();
+    return told;
+}
+
+void RunningSite::stop() {
+    m_parts->server->stop(patience);
+}
+
+}  // namespace weave::loomlink

@@ -1,0 +1,104 @@
+#include <cerrno>
+#include <cstring>
+#include <fcntl.h>
+#include <loomlink/commands/site_folder.hpp>
+#include <loomlink/keys/private_file.hpp>
+#include <loomlink/keys/server_key.hpp>
+#include <sys/file.h>
+#include <sys/stat.h>
+#include <unistd.h>
+#include <utility>
+
+namespace weave::loomlink {
+
+namespace fs = std::filesystem;
+
+namespace {
+
+constexpr const char* lock_name = ".lock";
+
+Error fault(const fs::path& path, const std::string& action) {
+    return system_fault("cannot " + action + ": " + std::strerror(errno), path.string());
+}
+
+/// Whether a folder holds nothing but, perhaps, our lock.
+Result<bool> holds_nothing(const fs::path& folder) {
+    std::error_code trouble;
+    fs::directory_iterator entries(folder, trouble);
+    if (trouble) return system_fault("cannot be read: " + trouble.message(), folder.string());
+    for (const auto& entry : entries)
+        if (entry.path().filename() != lock_name) return false;
+    return true;
+}
+
+/// Refused: a folder with anything in it but a site, before anything is put into it.
+Status check_folder(const SiteFolder& folder) {
+    std::error_code trouble;
+    if (fs::exists(folder.store(), trouble)) return {};
+    WEAVE_TRY(const bool empty, holds_nothing(folder.path));
+    if (empty) return {};
+    return Error{ErrorCode::refused, "holds no store of loomlink, and is not empty", folder.path.string()};
+}
+
+Result<OpenSite> make_site(FolderLock lock, const SiteFolder& folder, const std::string& name) {
+    WEAVE_TRY(KeyPair log, create_server_key(folder.log_key(), ServerKeyRole::log));
+    WEAVE_TRY(KeyPair stamp, create_server_key(folder.stamp_key(), ServerKeyRole::stamp));
+    WEAVE_TRY(Store store, Store::create(folder.store(), name));
+    return OpenSite{std::move(lock), std::move(store), {std::move(log), std::move(stamp)}, name, true};
+}
+
+Result<OpenSite> open_old_site(FolderLock lock, const SiteFolder& folder) {
+    WEAVE_TRY(KeyPair log, load_server_key(folder.log_key(), ServerKeyRole::log));
+    WEAVE_TRY(KeyPair stamp, load_server_key(folder.stamp_key(), ServerKeyRole::stamp));
+    WEAVE_TRY(Store store, Store::open(folder.store()));
+    WEAVE_TRY(std::string name, store.read([](const Reader& reader) { return reader.site(); }));
+    return OpenSite{
+        std::move(lock), std::move(store), {std::move(log), std::move(stamp)}, std::move(name), false};
+}
+
+}  // namespace
+
+Result<FolderLock> FolderLock::take(const fs::path& folder) {
+    const fs::path path = folder / lock_name;
+    const int file = ::open(path.c_str(), O_RDWR | O_CREAT | O_CLOEXEC | O_NOFOLLOW, 0600);
+    if (file < 0) return fault(path, "open it");
+    FolderLock lock(file);
+    if (::flock(file, LOCK_EX | LOCK_NB) == 0) return lock;
+    if (errno == EWOULDBLOCK)
+        return Error{ErrorCode::refused, "another loomlink is using this folder", folder.string()};
+    return fault(path, "lock it");
+}
+
+FolderLock::~FolderLock() {
+    if (m_file >= 0) ::close(m_file);
+}
+
+FolderLock::FolderLock(FolderLock&& other) noexcept : m_file(std::exchange(other.m_file, -1)) {}
+
+FolderLock& FolderLock::operator=(FolderLock&& other) noexcept {
+    std::swap(m_file, other.m_file);
+    return *this;
+}
+
+Result<OpenSite> open_site(const SiteFolder& folder, const ServeConfig& config) {
+    std::error_code trouble;
+    fs::create_directories(folder.path, trouble);
+    if (trouble) return system_fault("cannot be made: " + trouble.message(), folder.path.string());
+    WEAVE_CHECK_OK(check_folder(folder));
+    WEAVE_TRY(FolderLock lock, FolderLock::take(folder.path));
+    if (fs::exists(folder.store(), trouble)) return open_old_site(std::move(lock), folder);
+    if (::chmod(folder.path.c_str(), 0700) != 0) return fault(folder.path, "close it to others");
+    return make_site(std::move(lock), folder, config.site);
+}
+
+Result<std::optional<net::TlsFiles>> tls_of(const SiteFolder& folder, const ServeConfig& config) {
+    if (config.plain) return std::optional<net::TlsFiles>();
+    if (!config.certificate.empty()) return std::optional(net::TlsFiles{config.certificate, config.key});
+    const net::TlsFiles own = folder.tls();
+    std::error_code trouble;
+    if (!fs::exists(own.certificate, trouble))
+        WEAVE_CHECK_OK(net::make_certificate(own, client_hosts(config)));
+    return std::optional(own);
+}
+
+}  // namespace weave::loomlink

@@ -1,0 +1,55 @@
+#pragma once
+
+#include <weave/net/certificate.hpp>
+
+#include <filesystem>
+#include <loomlink/commands/config.hpp>
+#include <loomlink/store/store.hpp>
+#include <loomlink/workflow/desk.hpp>
+#include <memory>
+#include <optional>
+#include <string>
+
+namespace weave::loomlink {
+
+/// Keeps other programs from serving the same folder, for as long as it lives.
+class FolderLock {
+  public:
+    /// Refused: another one has it.
+    static Result<FolderLock> take(const std::filesystem::path& folder);
+    ~FolderLock();
+    FolderLock(FolderLock&& other) noexcept;
+    FolderLock& operator=(FolderLock&& other) noexcept;
+
+  private:
+    explicit FolderLock(int file) : m_file(file) {}
+    int m_file = -1;
+};
+
+/// Where things lie in the folder of a site.
+struct SiteFolder {
+    std::filesystem::path path;
+    [[nodiscard]] std::filesystem::path store() const { return path / "loomlink.db"; }
+    [[nodiscard]] std::filesystem::path log_key() const { return path / "log.key"; }
+    [[nodiscard]] std::filesystem::path stamp_key() const { return path / "stamp.key"; }
+    [[nodiscard]] net::TlsFiles tls() const { return {path / "tls.pem", path / "tls.key"}; }
+};
+
+/// A site that is open, for this process alone.
+struct OpenSite {
+    FolderLock lock;
+    Store store;
+    ServerKeys keys;
+    std::string name;
+    bool is_new = false;
+};
+
+/// Opens the site in a folder, or makes it where the folder is missing or empty: the store, and the keys for
+/// log and stamps (mode 0600). Refused: a folder that holds other things, or half a site.
+Result<OpenSite> open_site(const SiteFolder& folder, const ServeConfig& config);
+
+/// The certificate that is served with: the one of the configuration, or the folder's own, which is made
+/// where it is missing. Nothing where HTTP is plain.
+Result<std::optional<net::TlsFiles>> tls_of(const SiteFolder& folder, const ServeConfig& config);
+
+}  // namespace weave::loomlink

@@ -1,0 +1,156 @@
+#include <loomlink/keys/secret_bytes.hpp>
+#include <loomlink/service/gate.hpp>
+#include <loomlink/workflow/denial.hpp>
+#include <utility>
+#include <variant>
+
+namespace weave::loomlink {
+
+namespace {
+
+using net::Request;
+using net::Response;
+
+Response declined(int status, std::string why, std::string where = {}) {
+    Response response = net::error_answer({ErrorCode::refused, std::move(why), std::move(where)}, status);
+    if (status == 401) response.headers.set("WWW-Authenticate", "Bearer");
+    return response;
+}
+
+bool changes_something(const ApiRoute& route) {
+    return route.method != "GET";
+}
+
+/// The token that a program shows; nothing where there is no such header, empty where it is no such token.
+std::optional<std::string> shown_token(const Request& request) {
+    std::optional<std::string> token;
+    for (const auto& [name, value] : request.headers) {
+        if (!net::equal_without_case(name, "Authorization")) continue;
+        if (token) return std::string();
+        constexpr std::string_view scheme = "Bearer ";
+        const bool bearer = value.size() > scheme.size() &&
+                            net::equal_without_case(std::string_view(value).substr(0, scheme.size()), scheme);
+        token = bearer ? value.substr(scheme.size()) : std::string();
+    }
+    return token;
+}
+
+/// No token is longer, so nothing longer is looked up.
+constexpr std::size_t longest_token = 128;
+
+}  // namespace
+
+class Gate::Keeper {
+  public:
+    Keeper(FindSession find, const net::ThrottleRate& strangers)
+        : m_find(std::move(find)), m_strangers(strangers) {}
+
+    /// The call, or the answer that sends its sender away.
+    std::variant<ApiCall, Response> let_in(const ApiRoute& route, const Request& request) {
+        std::variant<Visitor, Response> met = meet(route, request);
+        if (auto* away = std::get_if<Response>(&met)) return std::move(*away);
+        ApiCall call{request, std::move(std::get<Visitor>(met)), Json::object(), Json::object()};
+        if (!route.body.empty() && !is_json(request))
+            return net::error_answer(bad_input("the body must be application/json", "Content-Type"), 415);
+        if (route.body.empty() && !request.body.empty())
+            return net::error_answer(bad_input("this takes no body"));
+        auto query = read_query(request.query, route.query);
+        if (!query) return net::error_answer(query.error());
+        call.query = *std::move(query);
+        if (route.body.empty()) return call;
+        auto body = read_body(request.body, route.body);
+        if (!body) return net::error_answer(body.error());
+        call.body = *std::move(body);
+        return call;
+    }
+
+  private:
+    static bool is_json(const Request& request) {
+        const std::string_view type = request.headers.get("Content-Type");
+        const std::string_view media = type.substr(0, type.find(';'));
+        return net::equal_without_case(media.substr(0, media.find_last_not_of(' ') + 1), "application/json");
+    }
+
+    std::variant<Visitor, Response> meet(const ApiRoute& route, const Request& request) {
+        if (changes_something(route) && !net::from_own_pages(request))
+            return declined(403, "a page of another server sent this", "Origin");
+        if (route.access.kind == Access::Kind::anyone) return stranger(route, request);
+        const auto token = shown_token(request);
+        const auto kept = token ? std::nullopt : request.cookie(session_cookie);
+        if (!token && !kept) return declined(401, "sign in first");
+        const std::string& shown = token ? *token : *kept;
+        if (shown.empty() || shown.size() > longest_token) return declined(401, "sign in first");
+        auto found = m_find(shown);
+        if (!found) return trouble_answer(found.error());
+        const Visitor visitor{*std::move(found), shown, request.peer};
+        const std::string& csrf = visitor.session.csrf;
+        const bool of_our_page = !csrf.empty() && equal_secrets(csrf, request.headers.get("X-CSRF-Token"));
+        if (kept && changes_something(route) && !of_our_page)
+            return declined(403, "the page's own token is missing; load the page again", "X-CSRF-Token");
+        if (!route.access.allows(visitor.caller())) return declined(403, "your roles do not allow this");
+        return visitor;
+    }
+
+    std::variant<Visitor, Response> stranger(const ApiRoute& route, const Request& request) {
+        Visitor nobody;
+        nobody.address = request.peer;
+        if (!changes_something(route) || m_strangers.take(request.peer)) return nobody;
+        Response response = declined(429, "too often from this address; wait a little");
+        response.headers.set("Retry-After", std::to_string(m_strangers.wait(request.peer).count()));
+        return response;
+    }
+
+    FindSession m_find;
+    net::Throttle m_strangers;
+};
+
+net::Response trouble_answer(const Error& error) {
+    const auto denial = denial_of(error);
+    if (!denial) return net::error_answer(error);
+    switch (*denial) {
+        case Denial::who:
+            return declined(401, error.message);
+        case Denial::password:
+        case Denial::rights:
+            break;
+        case Denial::absent:
+            return net::error_answer(error, 404);
+        case Denial::conflict:
+            return net::error_answer(error, 409);
+        case Denial::often:
+            return net::error_answer(error, 429);
+    }
+    return net::error_answer(error, 403);
+}
+
+Gate::Gate(FindSession find, const net::ThrottleRate& strangers)
+    : m_keeper(std::make_shared<Keeper>(std::move(find), strangers)) {}
+
+Result<net::Route> Gate::guarded(const ApiRoute& route, const ApiHandlers& handlers) const {
+    net::Route made{
+        route.name, route.method, api_root + route.path, route.description, route.body_bytes(), {}, {}};
+    if (route.is_socket) {
+        const auto found = handlers.sockets.find(route.name);
+        if (found == handlers.sockets.end()) return system_fault("nothing answers this route", route.name);
+        made.admission = [keeper = m_keeper, route,
+                          admit = found->second](const Request& request) -> net::WebSocketAdmission {
+            auto entered = keeper->let_in(route, request);
+            if (auto* away = std::get_if<Response>(&entered)) return std::move(*away);
+            return admit(std::get<ApiCall>(entered));
+        };
+        return made;
+    }
+    const auto found = handlers.answers.find(route.name);
+    if (found == handlers.answers.end()) return system_fault("nothing answers this route", route.name);
+    made.handler = [keeper = m_keeper, route, answer = found->second](const Request& request) {
+        auto entered = keeper->let_in(route, request);
+        auto* const away = std::get_if<Response>(&entered);
+        Response response = away != nullptr ? std::move(*away) : answer(std::get<ApiCall>(entered));
+        if (response.headers.find("Cache-Control") == nullptr)
+            response.headers.set("Cache-Control", "no-store");
+        return response;
+    };
+    return made;
+}
+
+}  // namespace weave::loomlink

@@ -1,0 +1,63 @@
+#include "temporary_folder.hpp"
+
+#include <weave/core/file.hpp>
+
+#include <loomlink/commands/config.hpp>
+
+using namespace weave;
+using namespace weave::loomlink;
+
+TEST_CASE("a configuration is read, and what it leaves out stays as it is") {
+    const auto config = parse_config(
+        R"({"site":"mill","address":"0.0.0.0","port":9000,"hosts":["loom.example","10.0.0.7"],"workers":2})");
+    REQUIRE(config);
+    CHECK(config->address == "0.0.0.0");
+    CHECK(config->port == 9000);
+    CHECK(config->hosts == std::vector<std::string>{"loom.example", "10.0.0.7"});
+    CHECK(client_hosts(*config) == config->hosts);
+    CHECK(config->workers == 2);
+    CHECK_FALSE(config->plain);
+    REQUIRE(parse_config("{}"));
+    CHECK(parse_config("{}")->port == 8443);
+}
+
+TEST_CASE("a configuration that is wrong is refused at its place") {
+    for (const auto& [text, where] : std::vector<std::pair<std::string, std::string>>{
+             {"", ""},
+             {"[]", ""},
+             {R"({"prot":9000})", "prot"},
+             {R"({"port":"9000"})", "port"},
+             {R"({"port":65536})", "port"},
+             {R"({"port":-1})", "port"},
+             {R"({"hosts":"x"})", "hosts"},
+             {R"({"hosts":["x",1]})", "hosts[1]"},
+             {R"({"workers":0})", "workers"},
+             {R"({"plain":1})", "plain"},
+             {R"({"site":""})", "site"},
+             {R"({"site":"a\nb"})", "site"},
+             {R"({"certificate":"x.pem"})", "key"},
+             {R"({"key":"x.key"})", "certificate"},
+             {R"({"plain":true,"certificate":"x.pem","key":"x.key"})", "plain"},
+         }) {
+        INFO(text);
+        const auto config = parse_config(text);
+        REQUIRE_FALSE(config);
+        CHECK(config.error().code == ErrorCode::bad_input);
+        if (!where.empty()) CHECK(config.error().where == where);
+    }
+}
+
+TEST_CASE("paths in a configuration count from its folder, and its errors name it") {
+    const weave::testing::TemporaryFolder folder;
+    const auto file = folder.path / "loomlink.json";
+    REQUIRE(write_file(file, R"({"certificate":"tls/x.pem","key":"/etc/x.key"})"));
+    const auto config = load_config(file);
+    REQUIRE(config);
+    CHECK(config->certificate == folder.path / "tls/x.pem");
+    CHECK(config->key == "/etc/x.key");
+    REQUIRE(write_file(file, R"({"port":"x"})"));
+    const auto wrong = load_config(file);
+    REQUIRE_FALSE(wrong);
+    CHECK(wrong.error().where == file.string() + ": port");
+    CHECK_FALSE(load_config(folder.path / "missing.json"));
+}

@@ -1,0 +1,121 @@
+#include "service_case.hpp"
+#include "temporary_folder.hpp"
+
+#include <weave/core/file.hpp>
+
+#include <csignal>
+#include <fcntl.h>
+#include <filesystem>
+#include <spawn.h>
+#include <sys/wait.h>
+#include <unistd.h>
+
+using namespace weave;
+using namespace weave::loomlink::testing;
+using weave::testing::TemporaryFolder;
+
+namespace {
+
+/// The program `loomlink` with its answer in a pipe and what it tells people in a file.
+class Program {
+  public:
+    Program(std::vector<std::string> words, const std::string& told) {
+        int ends[2];
+        REQUIRE(::pipe(ends) == 0);
+        posix_spawn_file_actions_t actions;
+        posix_spawn_file_actions_init(&actions);
+        posix_spawn_file_actions_adddup2(&actions, ends[1], STDOUT_FILENO);
+        posix_spawn_file_actions_addclose(&actions, ends[0]);
+        posix_spawn_file_actions_addopen(&actions, STDERR_FILENO, told.c_str(), O_WRONLY | O_CREAT | O_TRUNC,
+                                         0600);
+        words.insert(words.begin(),
+                     (std::filesystem::path(WEAVE_PROGRAM).parent_path() / "loomlink").string());
+        std::vector<char*> pointers;
+        for (auto& word : words) pointers.push_back(word.data());
+        pointers.push_back(nullptr);
+        REQUIRE(::posix_spawn(&m_process, pointers.front(), &actions, nullptr, pointers.data(), ::environ) ==
+                0);
+        posix_spawn_file_actions_destroy(&actions);
+        ::close(ends[1]);
+        m_answer = ends[0];
+    }
+    ~Program() {
+        if (m_process > 0) ::kill(m_process, SIGKILL), ::waitpid(m_process, nullptr, 0);
+        ::close(m_answer);
+    }
+    Program(const Program&) = delete;
+    Program& operator=(const Program&) = delete;
+
+    /// The first line of its answer; what there is of it where the program ends before.
+    [[nodiscard]] std::string line() const {
+        std::string text;
+        for (char c = 0; ::read(m_answer, &c, 1) == 1 && c != '\n';) text += c;
+        return text;
+    }
+    void end(int signal) const { ::kill(m_process, signal); }
+    int exit_code() {
+        int status = 0;
+        ::waitpid(m_process, &status, 0);
+        m_process = 0;
+        return WIFEXITED(status) ? WEXITSTATUS(status) : -1;
+    }
+
+  private:
+    pid_t m_process = 0;
+    int m_answer = -1;
+};
+
+}  // namespace
+
+TEST_CASE("one command makes a site, serves it, and ends in good order when asked to") {
+    const TemporaryFolder folder;
+    const std::string told = folder.path / "told.txt", site = folder.path / "site";
+    std::string code;
+    {
+        Program program({"serve", site, "--port", "0", "--host", "127.0.0.1", "--json"}, told);
+        const std::string line = program.line();
+        INFO(line << read_file(told).value());
+        const Json started = parse_json(line).value();
+        const auto url = started.at("url").get<std::string>();
+        auto options = net::parse_origin(url).value();
+        options.tls = net::Trust{{}, started.at("certificate_sha256").get<std::string>()};
+        net::HttpClient client(options);
+        CHECK(ask(client, "GET", "/healthz").status == 200);
+        code = started.at("invitation").get<std::string>();
+        REQUIRE(code.starts_with(url + "/join#"));
+        code = code.substr(code.find('#') + 1);
+        program.end(SIGTERM);
+        CHECK(program.exit_code() == 0);
+    }
+    const std::string log = read_file(told).value();
+    CHECK_THAT(log, Catch::Contains("ended"));
+    CHECK(log.find(code) == std::string::npos);
+}
+
+TEST_CASE("init makes a site once") {
+    const TemporaryFolder folder;
+    const std::string told = folder.path / "told.txt", site = folder.path / "site";
+    Program first({"init", site, "--site", "the mill", "--json"}, told);
+    const Json made = parse_json(first.line()).value();
+    CHECK(made.at("site") == "the mill");
+    CHECK(made.contains("code"));
+    CHECK(first.exit_code() == 0);
+    Program second({"init", site, "--json"}, told);
+    CHECK(parse_json(second.line()).value().at("error").at("exit") == 4);
+    CHECK(second.exit_code() == 4);
+}
+
+TEST_CASE("a configuration is checked without serving") {
+    const TemporaryFolder folder;
+    const std::string told = folder.path / "told.txt", config = folder.path / "loomlink.json";
+    REQUIRE(write_file(config, R"({"port":9000})"));
+    Program right({"serve", "--check-config", "--config", config, "--json"}, told);
+    CHECK(parse_json(right.line()).value() == Json{{"valid", true}});
+    CHECK(right.exit_code() == 0);
+    REQUIRE(write_file(config, R"({"prot":9000})"));
+    Program wrong({"serve", "--check-config", "--config", config}, told);
+    CHECK(wrong.exit_code() == 3);
+    CHECK_THAT(read_file(told).value(), Catch::Contains("prot"));
+    Program mixed({"serve", "--check-config", "--plain", "--cert", "x.pem", "--key", "x.key"}, told);
+    CHECK(mixed.exit_code() == 3);
+}
