@@ -155,16 +155,17 @@ Result<Json> ReleaseDesk::release(const Caller& caller, const Ask& ask, const Re
         m_desk->store().read([&](const Reader& reader) { return parts_of(reader, caller, *m_shelf, wish); });
     if (!parts) return refused(parts.error());
     WEAVE_TRY(const FeederMap feeders, feeder_map(parts->cloth->design, wish.feeders));
-    const Validation validation = validate(*parts->cloth, wish.loom, parts->profile);
+    const std::string stem = release_stem(wish.design, wish.revision);
+    const Validation validation = validate(*parts->cloth, wish.loom, parts->profile, feeders, stem);
     const Status sound = m_desk->store().read(
         [&](const Reader& reader) { return check_evidence(reader, *parts, validation); });
     if (!sound) return refused(sound.error());
-    const auto package = proven_package(*parts->cloth, parts->profile.profile, feeders,
-                                        wish.design + "-" + std::to_string(wish.revision));
+    const auto package = proven_package(*parts->cloth, parts->profile.profile, feeders, stem);
     if (!package) return refused(package.error());
     const ManifestTerms terms{m_desk->site(), wish.loom, wish.design, parts->number, m_desk->now()};
-    const Json body =
-        manifest_body(manifest_of(terms, parts->found.revision, *parts->cloth, parts->profile, *package));
+    const auto manifest = manifest_of(terms, parts->found.revision, parts->profile, *package);
+    if (!manifest) return refused(manifest.error());
+    const Json body = manifest_body(*manifest);
     deed.data["release"] = parts->number;
     deed.data["sha256"] = hash_hex(parts->found.revision.hash);
     deed.data["manifest_body_sha256"] = body_sha256({body, {}});

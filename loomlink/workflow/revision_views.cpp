@@ -219,7 +219,8 @@ Result<Json> DesignDesk::check(const Caller& caller, const std::string& design, 
                   WEAVE_TRY(const Loom found_loom, find_loom(reader, caller, loom));
                   return profile_in_force(reader, found_loom.id);
               }));
-    return to_json(check_for_loom(woven->design, woven->evaluation, profile.profile));
+    return to_json(check_with_file(*woven, profile.profile, straight_map(woven->design),
+                                   release_stem(design, number)));
 }
 
 Result<Json> DesignDesk::diff(const Caller& caller, const std::string& design, std::int64_t from,

@@ -1,6 +1,7 @@
 #include <algorithm>
 #include <loomlink/keys/codes.hpp>
 #include <loomlink/workflow/missing.hpp>
+#include <loomlink/workflow/release_files.hpp>
 #include <loomlink/workflow/steps.hpp>
 
 namespace weave::loomlink {
@@ -75,7 +76,8 @@ Result<std::vector<Validation>> Steps::validate_for(const FoundRevision& here,
         for (const Loom& loom : known) {
             if (!looms.empty() && std::find(looms.begin(), looms.end(), loom.name) == looms.end()) continue;
             WEAVE_TRY(const ProfileInForce profile, profile_in_force(reader, loom.id));
-            list.push_back(validate(*cloth, loom.name, profile));
+            list.push_back(validate(*cloth, loom.name, profile, straight_map(cloth->design),
+                                    release_stem(here.design.name, here.revision.number)));
         }
         return list;
     });

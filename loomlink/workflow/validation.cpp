@@ -54,8 +54,21 @@ Result<LoomProfile> profile_of_version(const Reader& reader, Id loom, std::int64
     return system_fault("the store is damaged: a loom profile is missing");
 }
 
-Validation validate(const RevisionCloth& cloth, const std::string& loom, const ProfileInForce& profile) {
-    const CheckReport report = check_for_loom(cloth.design, cloth.evaluation, profile.profile);
+FeederMap straight_map(const weave::Design& design) {
+    FeederMap map;
+    for (std::size_t k = 0; k < design.weft.feeders.size(); ++k) map[static_cast<std::uint32_t>(k)] = k;
+    return map;
+}
+
+CheckReport check_with_file(const RevisionCloth& cloth, const LoomProfile& profile, const FeederMap& feeders,
+                            const std::string& stem) {
+    return check_for_loom(cloth.design, cloth.evaluation, profile, {},
+                          read_back(cloth.design, cloth.evaluation, profile, feeders, {stem, stem}));
+}
+
+Validation validate(const RevisionCloth& cloth, const std::string& loom, const ProfileInForce& profile,
+                    const FeederMap& feeders, const std::string& stem) {
+    const CheckReport report = check_with_file(cloth, profile.profile, feeders, stem);
     Validation found;
     found.loom = loom;
     found.profile_version = profile.version;

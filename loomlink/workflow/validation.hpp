@@ -4,6 +4,7 @@
 #include <weave/loom/check.hpp>
 #include <weave/loom/profile.hpp>
 
+#include <loomlink/export/package.hpp>
 #include <loomlink/store/writer.hpp>
 #include <loomlink/workflow/cloths.hpp>
 #include <map>
@@ -32,8 +33,15 @@ struct Validation {
     std::string at;
 };
 
+/// Each of the design's feeders on the loom's of the same number, as long as nobody has said otherwise.
+FeederMap straight_map(const weave::Design& design);
+
+/// Every rule that libweave judges, with the controller's file written under the name `stem` and read again.
+CheckReport check_with_file(const RevisionCloth& cloth, const LoomProfile& profile, const FeederMap& feeders,
+                            const std::string& stem);
 /// Holds a cloth to a loom.
-Validation validate(const RevisionCloth& cloth, const std::string& loom, const ProfileInForce& profile);
+Validation validate(const RevisionCloth& cloth, const std::string& loom, const ProfileInForce& profile,
+                    const FeederMap& feeders, const std::string& stem);
 /// As `weave check --json`.
 Json to_json(const CheckReport& report);
 
