@@ -25,9 +25,11 @@ step() { # WHAT COMMAND...
     rm -f "$log"
 }
 
-build() { # PRESET
+# All of a build, or these targets of it.
+build() { # PRESET [TARGET...]
     step "Configuring build/$1" cmake --preset "$1"
-    step "Building build/$1 (the first time takes minutes)" cmake --build --preset "$1" -j "$(nproc)"
+    step "Building build/$1 (the first time takes minutes)" \
+        cmake --build --preset "$1" -j "$(nproc)" ${2:+--target "${@:2}"}
 }
 
 # A folder that a command makes again and again lists its own files in this one.
