@@ -83,10 +83,10 @@ std::string api_path(std::initializer_list<std::string> segments) {
     return path;
 }
 
-ApiClient::ApiClient(Session session, net::ClientOptions options)
+ApiClient::ApiClient(KeptSession session, net::ClientOptions options)
     : m_session(std::move(session)), m_options(options), m_http(std::move(options)) {}
 
-Result<ApiClient> ApiClient::of(Session session) {
+Result<ApiClient> ApiClient::of(KeptSession session) {
     WEAVE_TRY(net::ClientOptions options, client_options(session));
     return ApiClient(std::move(session), std::move(options));
 }

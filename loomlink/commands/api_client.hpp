@@ -20,7 +20,7 @@ std::string api_path(std::initializer_list<std::string> segments);
 class ApiClient {
   public:
     /// Errors as of client_options().
-    static Result<ApiClient> of(Session session);
+    static Result<ApiClient> of(KeptSession session);
 
     /// Asks for JSON; numbers and texts of the query come as they are.
     Result<Json> get(const std::string& path, const net::Parameters& query = {});
@@ -38,18 +38,18 @@ class ApiClient {
     /// A WebSocket.
     [[nodiscard]] Result<net::WebSocketClient> watch(const std::string& path) const;
 
-    [[nodiscard]] const Session& session() const { return m_session; }
+    [[nodiscard]] const KeptSession& session() const { return m_session; }
     /// Whether the last call was refused because nobody is signed in, or no longer.
     [[nodiscard]] bool is_signed_out() const { return m_signed_out; }
     /// From now on as this session says, of the same server.
-    void continue_as(Session session) { m_session = std::move(session); }
+    void continue_as(KeptSession session) { m_session = std::move(session); }
 
   private:
-    ApiClient(Session session, net::ClientOptions options);
+    ApiClient(KeptSession session, net::ClientOptions options);
     [[nodiscard]] net::Headers headers() const;
     Result<net::Response> send(const net::ClientRequest& request, const net::Sink* sink = nullptr);
 
-    Session m_session;
+    KeptSession m_session;
     net::ClientOptions m_options;
     net::HttpClient m_http;
     bool m_signed_out = false;

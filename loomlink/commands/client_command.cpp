@@ -10,7 +10,7 @@ Result<std::filesystem::path> ClientWish::session_path() const {
 
 Result<ApiClient> ClientWish::connect() const {
     WEAVE_TRY(const auto file, session_path());
-    WEAVE_TRY(Session session, load_session(file));
+    WEAVE_TRY(KeptSession session, load_session(file));
     return ApiClient::of(std::move(session));
 }
 

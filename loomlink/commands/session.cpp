@@ -17,10 +17,10 @@ namespace {
 constexpr const char* format = "loomlink-session";
 constexpr std::size_t most_bytes = 16384, longest_text = 2048;
 
-Result<Session> read_session(std::string_view bytes) {
+Result<KeptSession> read_session(std::string_view bytes) {
     WEAVE_TRY(const Json json, parse_json(bytes));
     JsonReader reader(json, "");
-    Session session;
+    KeptSession session;
     if (reader.text("format", std::string()) != format) reader.fail("is no session of loomlink", "format");
     static_cast<void>(reader.integer("version", 1, 1));
     session.origin = reader.text("origin", {}, longest_text);
@@ -63,7 +63,7 @@ Status make_folders_for(const fs::path& file) {
     return {};
 }
 
-Status save_session(const fs::path& file, const Session& session) {
+Status save_session(const fs::path& file, const KeptSession& session) {
     WEAVE_CHECK_OK(make_folders_for(file));
     const Json json{{"format", format},         {"version", 1},
                     {"origin", session.origin}, {"fingerprint", session.fingerprint},
@@ -72,7 +72,7 @@ Status save_session(const fs::path& file, const Session& session) {
     return write_private_file(file, json.dump(1, ' ', true, Json::error_handler_t::replace) + "\n");
 }
 
-Result<Session> load_session(const fs::path& file) {
+Result<KeptSession> load_session(const fs::path& file) {
     std::error_code code;
     if (!fs::exists(fs::symlink_status(file, code)))
         return Error{ErrorCode::refused, "you have not signed in here: loomlink login", file.string()};
@@ -82,9 +82,9 @@ Result<Session> load_session(const fs::path& file) {
     return session;
 }
 
-Result<Session> load_session_if_any(const fs::path& file) {
+Result<KeptSession> load_session_if_any(const fs::path& file) {
     std::error_code code;
-    if (!fs::exists(fs::symlink_status(file, code))) return Session{};
+    if (!fs::exists(fs::symlink_status(file, code))) return KeptSession{};
     return load_session(file);
 }
 
@@ -97,7 +97,7 @@ Result<std::string> parse_fingerprint(const std::string& text) {
     return bad_input("must be 64 hexadecimal digits, as the server tells them when it starts", "fingerprint");
 }
 
-Result<net::ClientOptions> client_options(const Session& session) {
+Result<net::ClientOptions> client_options(const KeptSession& session) {
     WEAVE_TRY(net::ClientOptions options, net::parse_origin(session.origin));
     if (options.tls) {
         options.tls->fingerprint = session.fingerprint;

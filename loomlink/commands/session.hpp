@@ -9,7 +9,7 @@
 namespace weave::loomlink {
 
 /// Which server the commands talk to and as whom, kept from one command to the next.
-struct Session {
+struct KeptSession {
     std::string origin;       ///< `https://host:port`
     std::string fingerprint;  ///< SHA-256 of the server's certificate; empty: the system's authorities decide
     std::string name;         ///< of the person who signed in; empty: nobody has
@@ -30,14 +30,14 @@ Status make_folders_for(const std::filesystem::path& file);
 
 /// Keeps a session in a file of mode 0600, whole or not at all; folders that are missing are made for the
 /// user alone. Refused where others may read the file that is there.
-Status save_session(const std::filesystem::path& file, const Session& session);
+Status save_session(const std::filesystem::path& file, const KeptSession& session);
 
 /// Reads what save_session() wrote. Error (refused) where it is missing: nobody has signed in; and where
 /// others may read it.
-Result<Session> load_session(const std::filesystem::path& file);
+Result<KeptSession> load_session(const std::filesystem::path& file);
 
 /// The same, but an empty session where there is no file.
-Result<Session> load_session_if_any(const std::filesystem::path& file);
+Result<KeptSession> load_session_if_any(const std::filesystem::path& file);
 
 /// The fingerprint of a certificate as a person gives it: 64 hexadecimal digits, with or without colons.
 /// Lower case. Errors: bad_input.
@@ -45,6 +45,6 @@ Result<std::string> parse_fingerprint(const std::string& text);
 
 /// How to reach the server of a session. Errors: bad_input for what is no origin; refused for plain HTTP to
 /// another machine, where passwords could be read on the way.
-Result<net::ClientOptions> client_options(const Session& session);
+Result<net::ClientOptions> client_options(const KeptSession& session);
 
 }  // namespace weave::loomlink

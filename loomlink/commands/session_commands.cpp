@@ -15,10 +15,10 @@ struct LoginWish {
 
 Status log_in(const ClientWish& wish, const LoginWish& login, CommandOutcome& outcome) {
     WEAVE_TRY(const auto file, wish.session_path());
-    WEAVE_TRY(const Session before, load_session_if_any(file));
+    WEAVE_TRY(const KeptSession before, load_session_if_any(file));
     const std::string& name = login.name.empty() ? before.name : login.name;
     if (name.empty()) return Error{ErrorCode::usage, "say who you are", "--name"};
-    WEAVE_TRY(const Session server, server_wished(login.origin, login.fingerprint, before));
+    WEAVE_TRY(const KeptSession server, server_wished(login.origin, login.fingerprint, before));
     WEAVE_TRY(ApiClient client, ApiClient::of(server));
     PasswordSource source(wish.password_file);
     WEAVE_TRY(std::string password, source.ask("Password of " + name));
@@ -50,7 +50,7 @@ void add_login(CLI::App& app, CommandOutcome& outcome) {
 
 Status log_out(ApiClient& client, const ClientWish& wish, CommandOutcome& outcome) {
     WEAVE_TRY(const Json answer, client.post("/logout"));
-    Session session = client.session();
+    KeptSession session = client.session();
     session.token.clear();
     WEAVE_TRY(const auto file, wish.session_path());
     WEAVE_CHECK_OK(save_session(file, session));

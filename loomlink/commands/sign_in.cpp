@@ -4,11 +4,11 @@
 
 namespace weave::loomlink {
 
-Result<Session> server_wished(const std::string& origin, const std::string& fingerprint,
-                              const Session& before) {
-    Session session = before;
+Result<KeptSession> server_wished(const std::string& origin, const std::string& fingerprint,
+                              const KeptSession& before) {
+    KeptSession session = before;
     session.token.clear();
-    if (!origin.empty() && origin != before.origin) session = Session{origin, {}, {}, {}, {}};
+    if (!origin.empty() && origin != before.origin) session = KeptSession{origin, {}, {}, {}, {}};
     if (session.origin.empty())
         return Error{ErrorCode::usage, "say which server, such as https://mill:8443", ""};
     if (!fingerprint.empty()) {
@@ -26,7 +26,7 @@ Result<Json> sign_in(ApiClient& client, const std::string& name, std::string pas
 }
 
 Status continue_as_told(ApiClient& client, const Json& answer, const std::string& name) {
-    Session session = client.session();
+    KeptSession session = client.session();
     WEAVE_TRY(session.token, text_member(answer, "token"));
     session.name = name;
     client.continue_as(std::move(session));

@@ -8,8 +8,8 @@ namespace weave::loomlink {
 /// The server that is meant, without anybody signed in: `origin`, or the one of the session before. The
 /// certificate is that of `fingerprint`, if given, else that of the session before where it is the same
 /// server. Errors: usage where no server is named; bad_input for what is no fingerprint.
-Result<Session> server_wished(const std::string& origin, const std::string& fingerprint,
-                              const Session& before = {});
+Result<KeptSession> server_wished(const std::string& origin, const std::string& fingerprint,
+                              const KeptSession& before = {});
 
 /// Signs in; the client goes on as this person. Gives the server's answer. The password is wiped.
 Result<Json> sign_in(ApiClient& client, const std::string& name, std::string password);

@@ -18,8 +18,8 @@ struct EnrolWish {
 /// Makes the machine's key, has the server list it, and keeps which server and site it is for.
 Status enrol(const ClientWish& client_wish, const EnrolWish& wish, CommandOutcome& outcome) {
     WEAVE_TRY(const auto file, client_wish.session_path());
-    WEAVE_TRY(const Session kept, load_session_if_any(file));
-    WEAVE_TRY(const Session server, server_wished(wish.origin, wish.fingerprint, kept));
+    WEAVE_TRY(const KeptSession kept, load_session_if_any(file));
+    WEAVE_TRY(const KeptSession server, server_wished(wish.origin, wish.fingerprint, kept));
     WEAVE_TRY(ApiClient client, ApiClient::of(server));
     WEAVE_CHECK_OK(make_folders_for(wish.key_file));
     WEAVE_TRY(const KeyPair pair, create_server_key(wish.key_file, ServerKeyRole::evidence));
@@ -30,7 +30,7 @@ Status enrol(const ClientWish& client_wish, const EnrolWish& wish, CommandOutcom
         std::filesystem::remove(wish.key_file, ignored);  // a key that nobody knows
         return answer.error();
     }
-    Session session = kept.origin == server.origin ? kept : server;
+    KeptSession session = kept.origin == server.origin ? kept : server;
     session.fingerprint = server.fingerprint;
     WEAVE_TRY(session.site, text_member(*answer, "site"));
     WEAVE_CHECK_OK(save_session(file, session));

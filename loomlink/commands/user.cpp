@@ -55,7 +55,7 @@ JoinWish without_link(JoinWish wish) {
 
 Status join(const ClientWish& wish, const JoinWish& join_wish, CommandOutcome& outcome) {
     WEAVE_TRY(const auto file, wish.session_path());
-    WEAVE_TRY(const Session server, server_wished(join_wish.origin, join_wish.fingerprint));
+    WEAVE_TRY(const KeptSession server, server_wished(join_wish.origin, join_wish.fingerprint));
     WEAVE_TRY(ApiClient client, ApiClient::of(server));
     PasswordSource source(wish.password_file);
     WEAVE_TRY(std::string password, source.ask_new("Password for " + join_wish.name + ", of 12 or more"));
