@@ -49,7 +49,7 @@ void add_login(CLI::App& app, CommandOutcome& outcome) {
 }
 
 Status log_out(ApiClient& client, const ClientWish& wish, CommandOutcome& outcome) {
-    WEAVE_TRY(const Json answer, client.post("/logout"));
+    WEAVE_CHECK_OK(client.post("/logout"));
     KeptSession session = client.session();
     session.token.clear();
     WEAVE_TRY(const auto file, wish.session_path());

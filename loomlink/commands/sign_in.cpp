@@ -5,7 +5,7 @@
 namespace weave::loomlink {
 
 Result<KeptSession> server_wished(const std::string& origin, const std::string& fingerprint,
-                              const KeptSession& before) {
+                                  const KeptSession& before) {
     KeptSession session = before;
     session.token.clear();
     if (!origin.empty() && origin != before.origin) session = KeptSession{origin, {}, {}, {}, {}};

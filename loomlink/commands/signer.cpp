@@ -85,7 +85,7 @@ void add_signer_commands(CLI::App& app, CommandOutcome& outcome) {
     const auto revoke = add_client_command(signer, outcome, "revoke", "Let a machine's key count no more");
     add_text(revoke.command, "NAME", *name, "the machine")->required();
     on_client_run(revoke, outcome, [name, &outcome](ApiClient& client) -> Status {
-        WEAVE_TRY(const Json answer, client.post(api_path({"signers", *name, "revoke"})));
+        WEAVE_CHECK_OK(client.post(api_path({"signers", *name, "revoke"})));
         outcome.answer({{"revoked", *name}}, on_one_line(*name) + " counts no more\n");
         return {};
     });

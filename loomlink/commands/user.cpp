@@ -98,7 +98,7 @@ Status change_password(ApiClient& client, const ClientWish& wish, CommandOutcome
     Json body = Json::object();
     WEAVE_TRY(body["old"], source.ask("Password until now"));
     WEAVE_TRY(body["new"], source.ask_new("New password"));
-    WEAVE_TRY(const Json answer, client.post("/me/password", std::move(body)));
+    WEAVE_CHECK_OK(client.post("/me/password", std::move(body)));
     outcome.answer({{"changed", true}},
                    "The password is changed and all sessions are ended: loomlink login\n");
     return {};

@@ -46,9 +46,10 @@ Result<SignedTreeHead> as_tree_head(const SignedLogHead& head) {
 /// What is trusted, by the one of --key, --trust and --state that was given.
 Result<BundleTrust> wished_trust(const VerifyWords& words, const std::shared_ptr<std::size_t>& unjudged) {
     if (!words.key.empty()) {
-        WEAVE_TRY(const PublicKey key, parse_public_key(words.key));
+        auto parsed = parse_public_key(words.key);
+        if (!parsed) return std::move(parsed).error().in("--key");
         BundleTrust trust;
-        trust.log = [key](std::string_view bytes, const RecordSignature& signature) {
+        trust.log = [key = *parsed](std::string_view bytes, const RecordSignature& signature) {
             return is_good(key, Purpose::tree_head, bytes, signature);
         };
         return trust;

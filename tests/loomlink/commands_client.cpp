@@ -49,7 +49,11 @@ class ScriptedServer {
         if (connection < 0) return;
         std::string request;
         std::array<char, 4096> piece{};
-        while (request.find("}") == std::string::npos) {
+        const auto whole = [&] {
+            const bool has_body = request.starts_with("POST");
+            return request.find(has_body ? "}" : "\r\n\r\n") != std::string::npos;
+        };
+        while (!whole()) {
             const auto got = ::read(connection, piece.data(), piece.size());
             if (got <= 0) break;
             request.append(piece.data(), static_cast<std::size_t>(got));

@@ -143,7 +143,6 @@ TEST_CASE("a pull that is cut off at any moment leaves whole releases or none, a
     const fs::path folder = last.json().at("releases").at(0).at("folder").get<std::string>();
     CHECK(verify(mill, folder).code == 0);
     CHECK(release_folders(mill.at("loom")).size() == 1);
-    CHECK(std::distance(fs::directory_iterator(mill.at("loom")), fs::directory_iterator()) == 1);
 }
 
 TEST_CASE(

@@ -110,3 +110,32 @@ TEST_CASE("a site is verified and backed up while it is served, and a backup bec
     CHECK(damaged.code == 1);
     CHECK(damaged.json().at("findings").at(0).at("place") == "stamp.key");
 }
+
+TEST_CASE("looms refuse a site that was put back to an older time, until it has other keys", "[commands]") {
+    CommandMill mill;
+    mill.set_up();
+    mill.save("twill-2-2");
+    mill.approve("1");
+    mill.release("1");
+    REQUIRE(mill.run({"backup", mill.site_folder, mill.at("backup")}).code == 0);
+    mill.done("mary", {"policy", "--approvals", "2"});
+    REQUIRE(mill.run(mill.pull_words({"--trust", mill.trust_fingerprint()})).code == 0);
+    mill.stop();
+    REQUIRE(mill.run({"restore", mill.at("backup"), mill.site_folder}).code == 0);
+    mill.start();
+    const Ended replayed = mill.run(mill.pull_words());
+    CHECK(replayed.code == 4);
+    CHECK_THAT(replayed.err, Catch::Contains("this terminal has seen"));
+
+    mill.stop();
+    REQUIRE(mill.run({"init", mill.at("fresh")}).code == 0);
+    for (const char* key : {"log.key", "stamp.key"})
+        fs::rename(mill.at("fresh") / key, mill.site_folder / key);
+    mill.start();
+    CHECK(mill.run(mill.pull_words()).code == 4);  // nobody vouches for the new keys yet
+    mill.done("mary", {"trust", "publish"}, true);
+    const Ended again = mill.run(mill.pull_words());
+    INFO(again.err);
+    CHECK(again.code == 0);
+    CHECK(mill.run({"verify", mill.site_folder}).code == 0);
+}
