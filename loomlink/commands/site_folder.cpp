@@ -31,15 +31,6 @@ Result<bool> holds_nothing(const fs::path& folder) {
     return true;
 }
 
-/// Refused: a folder with anything in it but a site, before anything is put into it.
-Status check_folder(const SiteFolder& folder) {
-    std::error_code trouble;
-    if (fs::exists(folder.store(), trouble)) return {};
-    WEAVE_TRY(const bool empty, holds_nothing(folder.path));
-    if (empty) return {};
-    return Error{ErrorCode::refused, "holds no store of loomlink, and is not empty", folder.path.string()};
-}
-
 Result<OpenSite> make_site(FolderLock lock, const SiteFolder& folder, const std::string& name) {
     WEAVE_TRY(KeyPair log, create_server_key(folder.log_key(), ServerKeyRole::log));
     WEAVE_TRY(KeyPair stamp, create_server_key(folder.stamp_key(), ServerKeyRole::stamp));
@@ -57,6 +48,14 @@ Result<OpenSite> open_old_site(FolderLock lock, const SiteFolder& folder) {
 }
 
 }  // namespace
+
+Status check_site_folder(const SiteFolder& folder) {
+    std::error_code trouble;
+    if (fs::exists(folder.store(), trouble)) return {};
+    WEAVE_TRY(const bool empty, holds_nothing(folder.path));
+    if (empty) return {};
+    return Error{ErrorCode::refused, "holds no store of loomlink, and is not empty", folder.path.string()};
+}
 
 Result<FolderLock> FolderLock::take(const fs::path& folder) {
     const fs::path path = folder / lock_name;
@@ -84,7 +83,7 @@ Result<OpenSite> open_site(const SiteFolder& folder, const ServeConfig& config) 
     std::error_code trouble;
     fs::create_directories(folder.path, trouble);
     if (trouble) return system_fault("cannot be made: " + trouble.message(), folder.path.string());
-    WEAVE_CHECK_OK(check_folder(folder));
+    WEAVE_CHECK_OK(check_site_folder(folder));
     WEAVE_TRY(FolderLock lock, FolderLock::take(folder.path));
     if (fs::exists(folder.store(), trouble)) return open_old_site(std::move(lock), folder);
     if (::chmod(folder.path.c_str(), 0700) != 0) return fault(folder.path, "close it to others");

@@ -35,6 +35,9 @@ struct SiteFolder {
     [[nodiscard]] net::TlsFiles tls() const { return {path / "tls.pem", path / "tls.key"}; }
 };
 
+/// Refused: a folder with anything in it but a site.
+Status check_site_folder(const SiteFolder& folder);
+
 /// A site that is open, for this process alone.
 struct OpenSite {
     FolderLock lock;

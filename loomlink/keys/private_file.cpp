@@ -1,4 +1,5 @@
 #include <weave/core/descriptor.hpp>
+#include <weave/core/file.hpp>
 
 #include <cerrno>
 #include <cstring>
@@ -89,6 +90,13 @@ Status create_private_file(const fs::path& path, std::string_view bytes) {
     }
     flush_folder(path.parent_path());
     return {};
+}
+
+Status write_private_file(const fs::path& path, std::string_view bytes) {
+    std::error_code code;
+    if (!fs::exists(fs::symlink_status(path, code))) return create_private_file(path, bytes);
+    WEAVE_CHECK_OK(check_private_file(path));
+    return write_file(path, bytes);  // which keeps the mode
 }
 
 Status check_private_file(const fs::path& path) {

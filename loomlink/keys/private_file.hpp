@@ -12,6 +12,10 @@ namespace weave::loomlink {
 /// fails. A file that is there already is never replaced: refused.
 Status create_private_file(const std::filesystem::path& path, std::string_view bytes);
 
+/// The same, in place of the private file that is there, if any. Refused where that is not private, see
+/// check_private_file().
+Status write_private_file(const std::filesystem::path& path, std::string_view bytes);
+
 /// Refused: a file that others than its owner may read or write, that belongs to somebody else than the user
 /// of this process, or that is no regular file (a symbolic link neither).
 Status check_private_file(const std::filesystem::path& path);

@@ -1,5 +1,7 @@
 #include <weave/core/sha256.hpp>
 
+#include <algorithm>
+#include <array>
 #include <loomlink/keys/hex.hpp>
 #include <loomlink/keys/private_file.hpp>
 #include <loomlink/keys/server_key.hpp>
@@ -14,8 +16,12 @@ namespace {
 // damage.
 constexpr std::size_t seed_characters = 2 * KeyPair::seed_bytes, id_characters = 64;
 
+constexpr std::array headings{std::string_view("weave server key v1 log\n"),
+                              std::string_view("weave server key v1 stamp\n"),
+                              std::string_view("weave server key v1 evidence\n")};
+
 std::string_view heading_of(ServerKeyRole role) {
-    return role == ServerKeyRole::log ? "weave server key v1 log\n" : "weave server key v1 stamp\n";
+    return headings[static_cast<std::size_t>(role)];
 }
 
 std::string_view view_of(const SecretBytes& bytes) {
@@ -42,10 +48,11 @@ Result<KeyPair> load_server_key(const std::filesystem::path& path, ServerKeyRole
     WEAVE_TRY(const SecretBytes bytes, read_private_file(path, most));
     std::string_view text = view_of(bytes);
     const std::string_view heading = heading_of(role);
-    const ServerKeyRole other = role == ServerKeyRole::log ? ServerKeyRole::stamp : ServerKeyRole::log;
-    if (text.starts_with(heading_of(other)))
-        return Error{ErrorCode::refused, "is a server key for another use", path.string()};
-    if (!text.starts_with(heading)) return bad_input("is not a server key of version 1", path.string());
+    const bool known = std::any_of(headings.begin(), headings.end(),
+                                   [&](std::string_view one) { return text.starts_with(one); });
+    if (known && !text.starts_with(heading))
+        return Error{ErrorCode::refused, "is a key for another use", path.string()};
+    if (!known) return bad_input("is not a server key of version 1", path.string());
     text.remove_prefix(heading.size());
     SecretBytes seed(KeyPair::seed_bytes);
     const bool shaped = text.size() == seed_characters + id_characters + 2 && text[seed_characters] == '\n' &&

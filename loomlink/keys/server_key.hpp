@@ -7,9 +7,10 @@
 
 namespace weave::loomlink {
 
-/// The keys that the server itself holds, in files of its data folder: one for the heads of the log, one for
-/// the freshness of release indexes. Neither can release anything.
-enum class ServerKeyRole : std::uint8_t { log, stamp };
+/// The keys that machines hold in files: the server's own, one for the heads of the log and one for the
+/// freshness of release indexes, in its data folder; and that of a machine whose simulations count. None can
+/// release anything.
+enum class ServerKeyRole : std::uint8_t { log, stamp, evidence };
 
 /// Makes a key and its file (mode 0600). Refused where the file exists already.
 Result<KeyPair> create_server_key(const std::filesystem::path& path, ServerKeyRole role);

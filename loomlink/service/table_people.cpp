@@ -157,7 +157,7 @@ std::vector<ApiRoute> key_table() {
          "/signers/enrol",
          access::anyone(),
          "Enrols a machine's key",
-         "`name`, `key`",
+         "`name`, `key`, and the `site` that it signs for",
          {},
          with_request(
              {{"code", "The code that the admin handed on", FieldKind::secret, true, 1, 64},

@@ -49,7 +49,7 @@ void look_for_more(const fs::path& folder, FolderReport& report) {
             name == manifest_name ||
             std::any_of(files.begin(), files.end(), [&](const auto& file) { return file.path == name; });
         if (listed) continue;
-        if (report.findings.size() >= most_findings) {
+        if (report.findings.size() >= most_folder_findings) {
             report.findings.push_back(
                 {FileTrouble::too_many, "", "there are more findings than are told here"});
             return;

@@ -33,7 +33,7 @@ struct FolderReport {
 };
 
 /// No more findings of one folder are told; the last one says so.
-inline constexpr std::size_t most_findings = 1000;
+inline constexpr std::size_t most_folder_findings = 1000;
 
 /// Holds a folder against the manifest in it, offline: its signatures under the newest trust document that is
 /// known here, every file by size and hash, and that nothing else lies there. Errors: a manifest that is

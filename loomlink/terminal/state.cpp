@@ -158,11 +158,7 @@ Result<TerminalState> read_state(std::string_view bytes) {
 }
 
 Status save_state(const std::filesystem::path& path, const TerminalState& state) {
-    std::error_code code;
-    if (!std::filesystem::exists(std::filesystem::symlink_status(path, code)))
-        return create_private_file(path, write_state(state));
-    WEAVE_CHECK_OK(check_private_file(path));
-    return write_file(path, write_state(state));  // which keeps the mode
+    return write_private_file(path, write_state(state));
 }
 
 Result<TerminalState> load_state(const std::filesystem::path& path) {

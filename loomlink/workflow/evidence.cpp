@@ -159,7 +159,7 @@ Result<Json> EvidenceDesk::enrol(const std::string& code, const std::string& pub
         row.created = event;
         WEAVE_CHECK_OK(writer.add_key(row));
         WEAVE_CHECK_OK(writer.use_invitation(hash, event));
-        return Json{{"name", *found->name}, {"key", row.id}};
+        return Json{{"name", *found->name}, {"key", row.id}, {"site", m_desk->site()}};
     });
     if (!answer) return m_desk->refuse("nobody", make_token(), deed, answer.error());
     return answer;

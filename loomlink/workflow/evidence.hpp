@@ -58,7 +58,7 @@ class EvidenceDesk {
 
     /// `code`, `expires`: for a machine to enrol with, told once.
     Result<Json> invite_signer(const Caller& caller, const Ask& ask, const std::string& name);
-    /// `name`, `key`.
+    /// `name`, `key`, and the `site` that the machine signs for.
     Result<Json> enrol(const std::string& code, const std::string& public_key, const std::string& address);
     Result<Json> revoke_signer(const Caller& caller, const Ask& ask, const std::string& name);
     /// `signers`: of each `name`, `key`, `revoked`.

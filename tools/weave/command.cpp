@@ -17,22 +17,6 @@ namespace weave::program {
 
 namespace {
 
-int exit_of(ErrorCode code) {
-    switch (code) {
-        case ErrorCode::usage:
-            return usage;
-        case ErrorCode::bad_input:
-            return bad_file;
-        case ErrorCode::invalid:
-            return findings;
-        case ErrorCode::refused:
-            return refused;
-        case ErrorCode::system:
-            return fault;
-    }
-    return fault;
-}
-
 namespace fs = std::filesystem;
 
 /// The place that a file of this name is written to: links are followed, to a file that is still missing too.
@@ -63,16 +47,9 @@ std::string lost_flip_line(const LostFlip& lost) {
 }  // namespace
 
 void Program::fail(const Error& error) {
-    exit_code = exit_of(error.code);
+    exit_code = exit_code_of(error.code);
     note(error.text());
     if (json && !m_answered) answer({{"error", error_json(error)}}, "");
-}
-
-Json error_json(const Error& error) {
-    return {{"kind", kind_of(error.code)},
-            {"where", error.where},
-            {"message", error.message},
-            {"exit", exit_of(error.code)}};
 }
 
 void Program::note(const std::string& line) const {

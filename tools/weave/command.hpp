@@ -1,5 +1,6 @@
 #pragma once
 
+#include <weave/core/exit_code.hpp>
 #include <weave/core/json.hpp>
 #include <weave/core/text.hpp>
 #include <weave/design/design.hpp>
@@ -41,9 +42,6 @@ struct Program {
   private:
     bool m_answered = false;
 };
-
-/// What a program is told of an error: kind, place, message, exit status.
-Json error_json(const Error& error);
 
 /// Adds a command; `run` is called with the program when it is chosen. Every command takes --json.
 CLI::App* add_command(CLI::App& app, Program& program, const std::string& name, const std::string& help);

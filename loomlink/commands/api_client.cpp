@@ -1,0 +1,164 @@
+#include <weave/core/text.hpp>
+#include <weave/net/target.hpp>
+
+#include <chrono>
+#include <loomlink/commands/api_client.hpp>
+#include <loomlink/keys/codes.hpp>
+#include <loomlink/keys/secret_bytes.hpp>
+#include <loomlink/service/table.hpp>
+#include <thread>
+#include <utility>
+
+namespace weave::loomlink {
+
+namespace {
+
+constexpr int most_tries = 3;
+constexpr std::chrono::milliseconds first_pause{500};
+
+ErrorCode code_of(const std::string& kind, int status) {
+    for (const ErrorCode code :
+         {ErrorCode::usage, ErrorCode::bad_input, ErrorCode::invalid, ErrorCode::refused, ErrorCode::system})
+        if (kind == kind_of(code)) return code;
+    return status >= 500 ? ErrorCode::system : ErrorCode::bad_input;
+}
+
+/// What an answer other than 200 says. A refusal's place is a word for programs, so people are told what was
+/// asked for instead.
+Error error_of(const net::Response& response, const std::string& path) {
+    const auto json = parse_json(response.body ? *response.body : "");
+    const Json told = json && json->is_object() ? json->value("error", Json::object()) : Json::object();
+    const auto text = [&](const char* member) {
+        return told.is_object() && told.contains(member) && told[member].is_string()
+                   ? told[member].get<std::string>()
+                   : std::string();
+    };
+    Error error{code_of(text("kind"), response.status), text("message"), text("where")};
+    if (error.message.empty())
+        error.message = "the server answers " + std::to_string(response.status) + " " +
+                        std::string(net::reason_of(response.status));
+    if (error.code == ErrorCode::refused || error.code == ErrorCode::system || error.where.empty())
+        error.where = path.substr(1);
+    if (response.status == 401 && path != "/login") error.message += " (loomlink login)";
+    return error;
+}
+
+Result<Json> json_of(const Result<net::Response>& response, const std::string& path) {
+    if (!response) return response.error();
+    if (response->status != 200) return error_of(*response, path);
+    auto json = parse_json(response->body ? *response->body : "");
+    if (json && json->is_object()) return json;
+    return bad_input("the server's answer is no JSON object", path.substr(1));
+}
+
+std::string target_of(const std::string& path, const net::Parameters& query) {
+    std::string target = api_root + path;
+    char before = '?';
+    for (const auto& [name, value] : query) {
+        target += before + name + "=" + net::percent_encoded(value);
+        before = '&';
+    }
+    return target;
+}
+
+void wipe_secrets(Json& body) {
+    for (const char* member : {"password", "old", "new", "code"})
+        if (body.contains(member) && body[member].is_string()) wipe(body[member].get_ref<std::string&>());
+}
+
+/// Whether it is worth asking again: nobody knows whether the request arrived, or it did not get a turn.
+bool may_have_failed(const Result<net::Response>& response) {
+    return response ? response->status == 503 : response.error().code == ErrorCode::system;
+}
+
+Error lacks(const std::string& member) {
+    return bad_input("the server's answer lacks it", member);
+}
+
+}  // namespace
+
+std::string api_path(std::initializer_list<std::string> segments) {
+    std::string path;
+    for (const std::string& segment : segments) path += "/" + net::percent_encoded(segment);
+    return path;
+}
+
+ApiClient::ApiClient(KeptSession session, net::ClientOptions options)
+    : m_session(std::move(session)), m_options(options), m_http(std::move(options)) {}
+
+Result<ApiClient> ApiClient::of(KeptSession session) {
+    WEAVE_TRY(net::ClientOptions options, client_options(session));
+    return ApiClient(std::move(session), std::move(options));
+}
+
+net::Headers ApiClient::headers() const {
+    net::Headers headers;
+    if (!m_session.token.empty()) headers.set("Authorization", "Bearer " + m_session.token);
+    return headers;
+}
+
+Result<net::Response> ApiClient::send(const net::ClientRequest& request, const net::Sink* sink) {
+    auto response = sink != nullptr ? m_http.send(request, *sink) : m_http.send(request);
+    m_signed_out = response && response->status == 401;
+    return response;
+}
+
+Result<Json> ApiClient::get(const std::string& path, const net::Parameters& query) {
+    return json_of(send({"GET", target_of(path, query), headers(), ""}), path);
+}
+
+Result<std::string> ApiClient::get_bytes(const std::string& path, const net::Parameters& query,
+                                         std::size_t most) {
+    std::string bytes;
+    const net::Sink keep = [&](std::string_view piece) -> Status {
+        if (piece.size() > most - bytes.size())
+            return bad_input("the answer has more than " + counted(most, "byte"), path.substr(1));
+        bytes += piece;
+        return {};
+    };
+    WEAVE_TRY(const net::Response response, send({"GET", target_of(path, query), headers(), ""}, &keep));
+    if (response.status != 200) return error_of(response, path);
+    return bytes;
+}
+
+Result<Json> ApiClient::change(const std::string& method, const std::string& path, Json body) {
+    body["request"] = make_token();
+    net::ClientRequest request{method, target_of(path, {}), headers(),
+                               body.dump(-1, ' ', false, Json::error_handler_t::replace)};
+    wipe_secrets(body);
+    request.headers.set("Content-Type", "application/json");
+    auto response = send(request);
+    auto pause = first_pause;
+    for (int tries = 1; tries < most_tries && may_have_failed(response); ++tries, pause *= 2) {
+        std::this_thread::sleep_for(pause);
+        response = send(request);
+    }
+    wipe(request.body);
+    return json_of(response, path);
+}
+
+Result<net::WebSocketClient> ApiClient::watch(const std::string& path) const {
+    return net::WebSocketClient::connect(m_options, target_of(path, {}), headers());
+}
+
+Result<std::string> text_member(const Json& answer, const std::string& member) {
+    if (!answer.contains(member) || !answer.at(member).is_string()) return lacks(member);
+    return answer.at(member).get<std::string>();
+}
+
+Result<std::int64_t> number_member(const Json& answer, const std::string& member) {
+    if (!answer.contains(member) || !answer.at(member).is_number_integer()) return lacks(member);
+    return answer.at(member).get<std::int64_t>();
+}
+
+Result<std::vector<std::string>> texts_member(const Json& answer, const std::string& member) {
+    if (!answer.contains(member) || !answer.at(member).is_array()) return lacks(member);
+    std::vector<std::string> texts;
+    for (const Json& entry : answer.at(member)) {
+        if (!entry.is_string()) return lacks(member);
+        texts.push_back(entry.get<std::string>());
+    }
+    return texts;
+}
+
+}  // namespace weave::loomlink

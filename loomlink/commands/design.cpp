@@ -1,0 +1,222 @@
+// design, save, export, diff: revisions in and out.
+
+#include <weave/core/file.hpp>
+#include <weave/core/text.hpp>
+
+#include <loomlink/commands/client_command.hpp>
+#include <loomlink/commands/revision_place.hpp>
+
+namespace weave::loomlink {
+
+namespace {
+
+constexpr std::uint64_t most_design_bytes = std::uint64_t{32} << 20;
+
+Status list_designs(ApiClient& client, CommandOutcome& outcome) {
+    WEAVE_TRY(const Json answer, client.get("/designs"));
+    std::vector<std::vector<std::string>> lines;
+    for (const Json& design : entries(answer, "designs")) {
+        const Json newest = design.value("newest", Json());
+        lines.push_back({told(design, "name"), told(newest, "number"), told(newest, "state"),
+                         told(newest, "at"), told(newest, "author"), told(newest, "message")});
+    }
+    outcome.answer(answer, in_columns(lines));
+    return {};
+}
+
+Status show_design(ApiClient& client, const std::string& design, CommandOutcome& outcome) {
+    WEAVE_TRY(const Json answer, client.get(api_path({"designs", design})));
+    outcome.answer(answer, in_columns(answer, "revisions",
+                                      {"number", "state", "branches", "parents", "at", "author", "message"}) +
+                               in_columns(answer, "releases", {"loom", "number", "state", "revision"}));
+    return {};
+}
+
+std::string revision_words(const Json& revision) {
+    std::string words =
+        in_columns({{"design", told(revision, "design") + ", revision " + told(revision, "number")},
+                    {"state", told(revision, "state")},
+                    {"message", told(revision, "message")},
+                    {"saved", told(revision, "at") + " by " + told(revision, "author_name")},
+                    {"parents", told(revision, "parents")},
+                    {"size", told(revision, "picks") + " picks, " + told(revision, "ends") + " ends"},
+                    {"SHA-256", told(revision, "sha256")},
+                    {"you may", told(revision, "may")}});
+    for (const Json& text : entries(revision, "missing"))
+        words += "missing  " + (text.is_string() ? on_one_line(text.get<std::string>()) : text.dump()) + "\n";
+    words += in_columns(revision, "decisions", {"what", "by", "at", "reason"});
+    words += in_columns(revision, "waivers", {"rule", "loom", "by", "reason"});
+    words += in_columns(revision, "comments", {"at", "by", "pick", "end", "text"});
+    return words + in_columns(revision, "evidence", {"kind", "covers", "result", "signer", "at", "stale"});
+}
+
+Status show_revision(ApiClient& client, const RevisionPlace& place, CommandOutcome& outcome) {
+    WEAVE_TRY(const Json answer, client.get(place.path()));
+    outcome.answer(answer, revision_words(answer));
+    return {};
+}
+
+struct SaveWords {
+    std::string file, design, branch = "main", message;
+    std::optional<std::int64_t> expected;
+    std::vector<std::int64_t> also;
+};
+
+/// Where a branch stands now; nothing where there is none of the name.
+Result<std::optional<std::int64_t>> head_of(ApiClient& client, const SaveWords& words) {
+    WEAVE_TRY(const Json design, client.get(api_path({"designs", words.design})));
+    for (const Json& branch : entries(design, "branches"))
+        if (branch.is_object() && branch.value("name", Json()) == words.branch) {
+            WEAVE_TRY(const std::int64_t head, number_member(branch, "head"));
+            return std::optional(head);
+        }
+    return std::optional<std::int64_t>();
+}
+
+Status save(ApiClient& client, const SaveWords& words, CommandOutcome& outcome) {
+    WEAVE_TRY(std::string document, read_file(words.file, most_design_bytes));
+    std::optional<std::int64_t> expected = words.expected;
+    if (!expected) {
+        WEAVE_TRY(expected, head_of(client, words));
+    }
+    Json body{{"document", std::move(document)}, {"branch", words.branch}, {"message", words.message}};
+    if (expected) body["expected"] = *expected;
+    if (!words.also.empty()) body["also"] = words.also;
+    auto answer = client.post(api_path({"designs", words.design, "revisions"}), std::move(body));
+    if (!answer && answer.error().code != ErrorCode::refused && answer.error().code != ErrorCode::system)
+        return std::move(answer).error().in(words.file);
+    if (!answer) return std::move(answer).error();
+    Json json = *answer;
+    json["branch"] = words.branch;
+    json["expected"] = expected ? Json(*expected) : Json(nullptr);
+    outcome.answer(json, on_one_line(words.design) + ": revision " + told(*answer, "number") + " on " +
+                             on_one_line(words.branch) + "\n");
+    return {};
+}
+
+void add_save(CLI::App& app, CommandOutcome& outcome) {
+    const auto command =
+        add_client_command(app, outcome, "save", "Save a .weave file as a revision of a design",
+                           "loomlink save shoe.weave shoe --message 'Toe a pick longer'");
+    const auto words = std::make_shared<SaveWords>();
+    add_text(command.command, "FILE", words->file, "the .weave file")->required();
+    add_text(command.command, "DESIGN", words->design, "the design")->required();
+    add_text(command.command, "-m,--message", words->message, "what changed")->required();
+    add_text(command.command, "--branch", words->branch, "the branch that it goes on; main if not given");
+    add_number(command.command, "--expected", words->expected,
+               "the revision that it was made from: refused where the branch has moved on since. If not "
+               "given, the branch as the server has it now");
+    add_numbers(command.command, "--also", words->also, "other parents, of a merge");
+    on_client_run(command, outcome,
+                  [words, &outcome](ApiClient& client) { return save(client, *words, outcome); });
+}
+
+/// The document alone, or, into a folder, document and evidence bundle.
+Status export_revision(ApiClient& client, const RevisionPlace& place, const std::string& out,
+                       CommandOutcome& outcome) {
+    constexpr std::size_t most_bundle = std::size_t{256} << 20;
+    const std::string name = place.design + "-" + std::to_string(place.revision());
+    WEAVE_TRY(const std::string document, client.get_bytes(place.path("document"), most_design_bytes));
+    Json files = Json::array();
+    if (lower_extension(out) == ".weave") {
+        WEAVE_CHECK_OK(write_file(out, document));
+        files.push_back(out);
+    } else {
+        WEAVE_TRY(const std::string bundle, client.get_bytes(place.path("bundle"), most_bundle));
+        const std::vector<std::pair<std::string, std::string>> content{{name + ".weave", document},
+                                                                       {name + "-bundle.json", bundle}};
+        WEAVE_CHECK_OK(write_folder(out, content));
+        for (const auto& [file, bytes] : content)
+            files.push_back((std::filesystem::path(out) / file).string());
+    }
+    std::string words;
+    for (const Json& file : files) words += on_one_line(file.get<std::string>()) + "\n";
+    outcome.answer({{"files", files}}, words);
+    return {};
+}
+
+struct DiffWords {
+    std::string design, out;
+    std::optional<std::int64_t> before, after;
+};
+
+Status diff(ApiClient& client, const DiffWords& words, CommandOutcome& outcome) {
+    const net::Parameters between{{"from", std::to_string(*words.before)},
+                                  {"to", std::to_string(*words.after)}};
+    const std::string path = api_path({"designs", words.design});
+    WEAVE_TRY(Json answer, client.get(path + "/diff", between));
+    if (!words.out.empty()) {
+        WEAVE_TRY(const std::string picture,
+                  client.get_bytes(path + "/diff.png", between, default_file_limit));
+        WEAVE_CHECK_OK(write_file(words.out, picture));
+        answer["file"] = words.out;
+    }
+    const bool equal = told(answer, "equal") == "true";
+    std::string text = equal ? "The same design.\n" : "";
+    for (const Json& line : entries(answer, "summary"))
+        text += (line.is_string() ? on_one_line(line.get<std::string>()) : line.dump()) + "\n";
+    if (!words.out.empty()) text += on_one_line(words.out) + ": the cards laid on each other\n";
+    outcome.answer(answer, text);
+    if (!equal) outcome.found_something();
+    return {};
+}
+
+void add_diff(CLI::App& app, CommandOutcome& outcome) {
+    const auto command = add_client_command(
+        app, outcome, "diff", "Tell in what two revisions differ (exit 0: the same design, 1: they differ)",
+        "loomlink diff shoe 3 5 -o changes.png");
+    const auto words = std::make_shared<DiffWords>();
+    add_text(command.command, "DESIGN", words->design, "the design")->required();
+    add_number(command.command, "BEFORE", words->before, "a revision")->required();
+    add_number(command.command, "AFTER", words->after, "the revision that is compared with it")->required();
+    add_text(command.command, "-o,--out", words->out, "draw both cards laid on each other, as PNG")
+        ->type_name("FILE");
+    on_client_run(command, outcome,
+                  [words, &outcome](ApiClient& client) { return diff(client, *words, outcome); });
+}
+
+void add_export(CLI::App& app, CommandOutcome& outcome) {
+    const auto command = add_client_command(app, outcome, "export",
+                                            "Write a revision: its .weave file, or a folder with it and "
+                                            "everything that is known of it, with proofs",
+                                            "loomlink export shoe 3 -o shoe.weave");
+    const auto place = add_revision_place(command.command);
+    const auto out = std::make_shared<std::string>();
+    add_text(command.command, "-o,--out", *out, "a name that ends in .weave, or a folder that must not exist")
+        ->type_name("FILE")
+        ->required();
+    on_client_run(command, outcome, [place, out, &outcome](ApiClient& client) {
+        return export_revision(client, *place, *out, outcome);
+    });
+}
+
+}  // namespace
+
+void add_design_commands(CLI::App& app, CommandOutcome& outcome) {
+    CLI::App& design = add_group(app, "design", "Designs and their revisions");
+    const auto list =
+        add_client_command(design, outcome, "list", "List all designs with their newest revision");
+    on_client_run(list, outcome, [&outcome](ApiClient& client) { return list_designs(client, outcome); });
+    const auto make = add_client_command(design, outcome, "make", "Make a design that has no revisions yet");
+    const auto name = std::make_shared<std::string>();
+    add_text(make.command, "NAME", *name, "its name")->required();
+    on_client_run(make, outcome, [name, &outcome](ApiClient& client) -> Status {
+        WEAVE_TRY(const Json answer, client.post("/designs", {{"name", *name}}));
+        outcome.answer(answer, "Made the design " + on_one_line(*name) + "\n");
+        return {};
+    });
+    const auto show = add_client_command(design, outcome, "show",
+                                         "Tell the revisions of a design, or all of one revision: its state, "
+                                         "decisions, evidence, and what it lacks",
+                                         "loomlink design show shoe 3");
+    const auto place = add_revision_place(show.command, false);
+    on_client_run(show, outcome, [place, &outcome](ApiClient& client) {
+        return place->number ? show_revision(client, *place, outcome)
+                             : show_design(client, place->design, outcome);
+    });
+    add_save(app, outcome);
+    add_export(app, outcome);
+    add_diff(app, outcome);
+}
+
+}  // namespace weave::loomlink

@@ -1,0 +1,66 @@
+// policy: what the site asks for before anything goes to a loom.
+
+#include <loomlink/commands/client_command.hpp>
+
+namespace weave::loomlink {
+
+namespace {
+
+struct PolicyWish {
+    std::optional<std::int64_t> approvals, release_signatures, index_valid_hours;
+    std::string simulation, fidelity;
+    std::optional<double> coverage;
+};
+
+/// The policy in force with what was given put in its place; nothing where nothing was given.
+std::optional<Json> changed(Json policy, const PolicyWish& wish) {
+    const Json before = policy;
+    if (wish.approvals) policy["approvals"] = *wish.approvals;
+    if (wish.release_signatures) policy["release_signatures"] = *wish.release_signatures;
+    if (!wish.simulation.empty()) policy["simulation"] = wish.simulation;
+    if (!wish.fidelity.empty()) policy["fidelity"] = wish.fidelity;
+    if (wish.coverage) policy["coverage"] = *wish.coverage;
+    if (wish.index_valid_hours) policy["index_valid_hours"] = *wish.index_valid_hours;
+    if (policy == before) return {};
+    return policy;
+}
+
+Status tell_policy(ApiClient& client, const PolicyWish& wish, CommandOutcome& outcome) {
+    WEAVE_TRY(Json policy, client.get("/policy"));
+    if (const auto wanted = changed(policy, wish)) {
+        WEAVE_TRY(policy, client.change("PUT", "/policy", *wanted));
+    }
+    std::vector<std::vector<std::string>> lines;
+    for (const auto& [name, value] : policy.items()) lines.push_back({name, told(policy, name)});
+    outcome.answer(policy, in_columns(lines));
+    return {};
+}
+
+}  // namespace
+
+void add_policy_command(CLI::App& app, CommandOutcome& outcome) {
+    const auto command = add_client_command(app, outcome, "policy",
+                                            "Tell the policy of the site, or put what is given in force",
+                                            "loomlink policy --approvals 2 --simulation optional");
+    const auto wish = std::make_shared<PolicyWish>();
+    add_number(command.command, "--approvals", wish->approvals, "different people who must approve");
+    add_number(command.command, "--release-signatures", wish->release_signatures,
+               "different people who must sign a release; a new trust document is due then");
+    command.command->add_option("--simulation", wish->simulation, "required or optional")
+        ->check(CLI::IsMember({"required", "optional"}))
+        ->type_name("WORD");
+    command.command
+        ->add_option("--fidelity", wish->fidelity, "the least that counts: draft, standard, reference")
+        ->check(CLI::IsMember({"draft", "standard", "reference"}))
+        ->type_name("WORD");
+    command.command
+        ->add_option("--coverage", wish->coverage, "least share of the crossings that is simulated, 0 to 1")
+        ->check(CLI::Range(0.0, 1.0))
+        ->type_name("SHARE");
+    add_number(command.command, "--index-valid-hours", wish->index_valid_hours,
+               "how long a loom may go on with its last index");
+    on_client_run(command, outcome,
+                  [wish, &outcome](ApiClient& client) { return tell_policy(client, *wish, outcome); });
+}
+
+}  // namespace weave::loomlink

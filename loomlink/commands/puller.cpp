@@ -1,0 +1,211 @@
+#include <weave/core/file.hpp>
+#include <weave/core/sha256.hpp>
+#include <weave/core/text.hpp>
+#include <weave/net/target.hpp>
+
+#include <algorithm>
+#include <loomlink/audit/tree.hpp>
+#include <loomlink/commands/puller.hpp>
+#include <loomlink/commands/trust_papers.hpp>
+#include <loomlink/workflow/desk.hpp>
+#include <utility>
+
+namespace weave::loomlink {
+
+namespace fs = std::filesystem;
+
+namespace {
+
+/// One pull, from its first question to the last file.
+class Pull {
+  public:
+    Pull(ApiClient& client, const PullWish& wish) : m_client(&client), m_wish(&wish) {}
+
+    Result<PullReport> run() {
+        WEAVE_TRY(TerminalState state, known_state());
+        WEAVE_TRY(CheckedIndex checked, fetch_index(std::move(state)));
+        WEAVE_CHECK_OK(save_state(m_wish->state_file, checked.state));
+        RecallReport recall = remove_recalled(checked.state, m_wish->to);
+        checked.state = std::move(recall.state);
+        WEAVE_CHECK_OK(save_state(m_wish->state_file, checked.state));
+        PullReport report{{}, std::move(recall.removed), std::move(recall.kept), checked.index.expires};
+        for (const std::uint64_t number : wanted(checked.index)) {
+            WEAVE_TRY(HeldRelease held, hold(checked, number));
+            report.releases.push_back(std::move(held));
+        }
+        return report;
+    }
+
+  private:
+    static Instant now() { return system_clock()(); }
+
+    [[nodiscard]] std::string path(std::initializer_list<std::string> below) const {
+        return api_path({"looms", m_wish->loom}) + api_path(below);
+    }
+
+    /// What the terminal remembers, or its first trust.
+    Result<TerminalState> known_state() {
+        std::error_code code;
+        if (fs::exists(fs::symlink_status(m_wish->state_file, code))) {
+            WEAVE_TRY(TerminalState state, load_state(m_wish->state_file));
+            if (state.loom == m_wish->loom) return state;
+            return Error{ErrorCode::refused, "is the state of the loom '" + state.loom + "'",
+                         m_wish->state_file.string()};
+        }
+        if (m_wish->trust.empty())
+            return Error{ErrorCode::usage,
+                         "this terminal trusts nobody yet: give the fingerprint of the site's trust document "
+                         "with --trust; ask an administrator for it, by another way than this network",
+                         m_wish->state_file.string()};
+        WEAVE_TRY(const auto papers, trust_papers(*m_client));
+        if (papers.empty())
+            return Error{ErrorCode::refused, "nobody has signed a trust document yet", "trust"};
+        const auto meant = std::find_if(papers.begin(), papers.end(), [&](const std::string& paper) {
+            const auto trust = read_trust(paper);
+            return trust && trust->fingerprint() == m_wish->trust;
+        });
+        return first_state(m_wish->loom, meant == papers.end() ? papers.back() : *meant, m_wish->trust);
+    }
+
+    /// The index with what the terminal needs to judge it. A head that the server cannot go on from is left
+    /// out the second time: check_index() then says what is wrong with that.
+    Result<Json> ask_for_index(const TerminalState& state) {
+        net::Parameters query{{"trust", std::to_string(state.trust.version)}};
+        if (!state.tree_head) return m_client->get(path({"index"}), query);
+        auto with_head = query;
+        with_head.emplace_back("head", std::to_string(state.tree_head->head.size));
+        auto answer = m_client->get(path({"index"}), with_head);
+        if (answer || answer.error().code != ErrorCode::bad_input) return answer;
+        return m_client->get(path({"index"}), query);
+    }
+
+    Result<CheckedIndex> fetch_index(TerminalState state) {
+        WEAVE_TRY(const Json answer, ask_for_index(state));
+        WEAVE_TRY(const std::string index, text_member(answer, "index"));
+        WEAVE_TRY(const auto documents, texts_member(answer, "trust"));
+        WEAVE_CHECK_OK(make_folders_for(m_wish->state_file));
+        if (!documents.empty()) {  // kept whatever comes of the index: it may revoke a key
+            WEAVE_TRY(state, adopt_trust(state, documents));
+            WEAVE_CHECK_OK(save_state(m_wish->state_file, state));
+        }
+        return check_index(state, index, now(), [&](const LogHead& older, const LogHead& newer) {
+            return check_growth(answer, older, newer);
+        });
+    }
+
+    static Status check_growth(const Json& answer, const LogHead& older, const LogHead& newer) {
+        WEAVE_TRY(const auto texts, texts_member(answer, "consistency"));
+        std::vector<Hash> proof;
+        for (const std::string& text : texts) {
+            const auto hash = parse_hash(text);
+            if (!hash) return bad_input("the proof is no list of hashes");
+            proof.push_back(*hash);
+        }
+        const auto old_root = parse_hash(older.root), root = parse_hash(newer.root);
+        if (old_root && root && verify_consistency(older.size, *old_root, newer.size, *root, proof))
+            return {};
+        return bad_input("the proof does not fit");
+    }
+
+    [[nodiscard]] std::vector<std::uint64_t> wanted(const ReleaseIndex& index) const {
+        if (m_wish->release) return {static_cast<std::uint64_t>(*m_wish->release)};
+        std::vector<std::uint64_t> numbers;
+        for (const IndexEntry& entry : index.releases)
+            if (entry.state == ReleaseState::released) numbers.push_back(entry.number);
+        if (!m_wish->all && numbers.size() > 1) numbers.erase(numbers.begin(), numbers.end() - 1);
+        return numbers;
+    }
+
+    /// Whether these very files lie there already.
+    [[nodiscard]] std::optional<fs::path> held_already(const CheckedIndex& checked,
+                                                       std::uint64_t number) const {
+        const IndexEntry* entry = checked.index.find(number);
+        if (entry == nullptr || entry->state != ReleaseState::released) return {};
+        for (const PlacedRelease& placed : checked.state.placed) {
+            const fs::path folder = m_wish->to / placed.folder;
+            if (placed.number != number) continue;
+            const auto manifest = read_file(folder / manifest_name, most_manifest_bytes);
+            if (!manifest || sha256_hex(*manifest) != entry->manifest_sha256) continue;
+            const auto report = verify_files(folder, checked.state.trust);
+            if (report && report->findings.empty()) return folder;
+        }
+        return {};
+    }
+
+    Result<HeldRelease> hold(CheckedIndex& checked, std::uint64_t number) {
+        if (auto folder = held_already(checked, number))
+            return HeldRelease{number, *std::move(folder), false};
+        WEAVE_CHECK_OK(check_listed(checked, number));
+        const std::string name = std::to_string(number);
+        WEAVE_TRY(const std::string bytes,
+                  m_client->get_bytes(path({"releases", name, "manifest"}), most_manifest_bytes));
+        auto manifest = open_manifest(bytes, checked.state.trust);
+        if (!manifest) return std::move(manifest).error().under("manifest");
+        std::vector<PulledFile> files;
+        for (const ReleasedFile& file : manifest->files) {
+            WEAVE_TRY(std::string content,
+                      m_client->get_bytes(path({"releases", name, "files", file.path}), file.size));
+            files.push_back({file.path, std::move(content)});
+        }
+        WEAVE_TRY(const CheckedRelease release,
+                  check_release(checked, number, bytes, std::move(files), now()));
+        WEAVE_TRY(fs::path folder, place_release(checked.state, release, m_wish->state_file, m_wish->to));
+        return HeldRelease{number, std::move(folder), true};
+    }
+
+    /// Nothing is asked for that may not be woven: check_release() would refuse it, and says why best.
+    Status check_listed(const CheckedIndex& checked, std::uint64_t number) const {
+        const IndexEntry* entry = checked.index.find(number);
+        if (entry != nullptr && entry->state == ReleaseState::released) return {};
+        const auto refusal = check_release(checked, number, "", {}, now());
+        return refusal ? Status() : Status(refusal.error());
+    }
+
+    ApiClient* m_client;
+    const PullWish* m_wish;
+};
+
+}  // namespace
+
+bool PullReport::has_news() const {
+    const bool came =
+        std::any_of(releases.begin(), releases.end(), [](const auto& one) { return one.is_new; });
+    return came || !removed.empty();
+}
+
+Json to_json(const PullReport& report, const std::string& loom) {
+    Json releases = Json::array(), kept = Json::array();
+    for (const HeldRelease& held : report.releases)
+        releases.push_back({{"number", held.number}, {"folder", held.folder.string()}, {"new", held.is_new}});
+    for (const FileFinding& finding : report.kept)
+        kept.push_back({{"file", finding.path}, {"message", finding.message}});
+    return {{"loom", loom},
+            {"releases", std::move(releases)},
+            {"removed", report.removed},
+            {"kept", std::move(kept)},
+            {"index_expires", utc_text(report.expires)}};
+}
+
+std::string in_words(const PullReport& report, const std::string& loom) {
+    std::string words;
+    for (const HeldRelease& held : report.releases)
+        words += on_one_line(loom) + ", release " + std::to_string(held.number) + ": " +
+                 on_one_line(held.folder.string()) + (held.is_new ? "\n" : " (as before)\n");
+    if (report.releases.empty()) words += on_one_line(loom) + ": no release is in force\n";
+    for (const std::string& file : report.removed) words += "recalled, removed: " + on_one_line(file) + "\n";
+    for (const FileFinding& finding : report.kept)
+        words +=
+            "RECALLED, still there: " + on_one_line(finding.path) + " " + on_one_line(finding.message) + "\n";
+    return words;
+}
+
+Result<fs::path> usual_state_file(const std::string& loom) {
+    WEAVE_TRY(const fs::path folder, user_folder("XDG_STATE_HOME", ".local/state"));
+    return folder / "loomlink" / (net::percent_encoded(loom) + ".json");
+}
+
+Result<PullReport> pull(ApiClient& client, const PullWish& wish) {
+    return Pull(client, wish).run();
+}
+
+}  // namespace weave::loomlink

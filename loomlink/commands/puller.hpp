@@ -1,0 +1,53 @@
+#pragma once
+
+#include <filesystem>
+#include <loomlink/commands/api_client.hpp>
+#include <loomlink/terminal/folder.hpp>
+#include <optional>
+#include <string>
+#include <vector>
+
+namespace weave::loomlink {
+
+/// What a loom's terminal is to have.
+struct PullWish {
+    std::string loom;
+    std::filesystem::path to;          ///< the folder of all its releases
+    std::filesystem::path state_file;  ///< what it trusts and has seen
+    std::string trust;                 ///< fingerprint to trust at first; empty: only a state is believed
+    std::optional<std::int64_t> release;
+    bool all = false;  ///< every release in force; else the one named, else the newest
+};
+
+/// A release that lies at the loom now.
+struct HeldRelease {
+    std::uint64_t number = 0;
+    std::filesystem::path folder;
+    bool is_new = false;  ///< came with this pull
+};
+
+/// What one pull did.
+struct PullReport {
+    std::vector<HeldRelease> releases;
+    std::vector<std::string> removed;  ///< files of recalled releases
+    std::vector<FileFinding> kept;     ///< of them, those that were left; a person has to look
+    Instant expires;                   ///< until when the index holds
+
+    /// Whether anything is other than before.
+    [[nodiscard]] bool has_news() const;
+};
+
+Json to_json(const PullReport& report, const std::string& loom);
+std::string in_words(const PullReport& report, const std::string& loom);
+
+/// Where the state of a loom's terminal lies if nobody says otherwise: `loomlink/LOOM.json` below
+/// $XDG_STATE_HOME, or below `.local/state` at home.
+Result<std::filesystem::path> usual_state_file(const std::string& loom);
+
+/// Pulls once: newer trust documents, the index, then what was recalled goes and what is wanted comes, each
+/// held to what the terminal trusts and remembers (loomlink/terminal). A release appears whole or not at all.
+/// Errors as of adopt_trust(), check_index(), check_release() and place_release(); usage where the terminal
+/// trusts nobody yet and no fingerprint is given.
+Result<PullReport> pull(ApiClient& client, const PullWish& wish);
+
+}  // namespace weave::loomlink

@@ -1,0 +1,24 @@
+#include <weave/core/text.hpp>
+
+#include <loomlink/commands/api_client.hpp>
+#include <loomlink/commands/revision_place.hpp>
+
+namespace weave::loomlink {
+
+std::string RevisionPlace::path(const std::string& below) const {
+    const std::string path = api_path({"designs", design, "revisions", std::to_string(revision())});
+    return below.empty() ? path : path + "/" + below;
+}
+
+std::string RevisionPlace::words() const {
+    return on_one_line(design) + ", revision " + std::to_string(revision());
+}
+
+std::shared_ptr<RevisionPlace> add_revision_place(CLI::App* command, bool needs_number) {
+    auto place = std::make_shared<RevisionPlace>();
+    add_text(command, "DESIGN", place->design, "the design")->required();
+    add_number(command, "REVISION", place->number, "the number of its revision")->required(needs_number);
+    return place;
+}
+
+}  // namespace weave::loomlink

@@ -1,0 +1,23 @@
+#pragma once
+
+#include <filesystem>
+#include <loomlink/commands/site_folder.hpp>
+#include <vector>
+
+namespace weave::loomlink {
+
+/// Whether everything in the folder of a site is as it was written: the store (verify_store() and
+/// verify_signatures()), and the keys and the certificate beside it. `retained`: a head kept from earlier.
+/// Changes nothing, also while the site is served. Error: there is no store.
+Result<std::vector<AuditFinding>> verify_site(const SiteFolder& site,
+                                              const std::optional<SignedTreeHead>& retained);
+
+/// Copies a site, served or not, into a new folder of mode 0700 that appears whole or not at all: the store,
+/// the server's keys and its certificate. Refused where `to` exists.
+Status back_up_site(const SiteFolder& site, const std::filesystem::path& to);
+
+/// Puts a backup into place, after verifying it; the folder may be missing, empty, or hold the site that is
+/// to be replaced. Keys that are there stay. Refused: a backup with findings, a folder that is being served.
+Status restore_site(const SiteFolder& backup, const SiteFolder& to);
+
+}  // namespace weave::loomlink

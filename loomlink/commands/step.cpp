@@ -1,0 +1,139 @@
+// submit, comment, request-changes, waive, approve, check: the way of a revision to its approval.
+
+#include <weave/core/text.hpp>
+
+#include <loomlink/commands/client_command.hpp>
+#include <loomlink/commands/revision_place.hpp>
+
+namespace weave::loomlink {
+
+namespace {
+
+struct StepWords {
+    std::string reason, rule, loom;
+    std::vector<std::string> looms;
+    std::optional<std::int64_t> pick, end;
+};
+
+/// A step that is signed, with DESIGN, REVISION and --reason.
+struct SignedStep {
+    ClientCommand client;
+    std::shared_ptr<RevisionPlace> place;
+    std::shared_ptr<StepWords> words;
+};
+
+SignedStep add_signed_step(CLI::App& app, CommandOutcome& outcome, const std::string& name,
+                           const std::string& help, const std::string& example) {
+    SignedStep step{add_client_command(app, outcome, name, help, example), nullptr,
+                    std::make_shared<StepWords>()};
+    step.place = add_revision_place(step.client.command);
+    add_text(step.client.command, "-r,--reason", step.words->reason, "why; it stands in the log")->required();
+    add_password_option(step.client);
+    return step;
+}
+
+void on_signed_step(const SignedStep& step, CommandOutcome& outcome, const std::string& below,
+                    std::function<Json(const StepWords&)> body_of) {
+    on_client_run(
+        step.client, outcome,
+        [=, wish = step.client.wish, place = step.place, words = step.words, body_of = std::move(body_of),
+         &outcome](ApiClient& client) -> Status {
+            WEAVE_TRY(const Json answer, sign_and_post(client, *wish, place->path(below), body_of(*words)));
+            outcome.answer(answer, place->words() + ": " +
+                                       (answer.contains("state")
+                                            ? told(answer, "state")
+                                            : told(answer, "rule") + " waived for " + told(answer, "loom")) +
+                                       "\n");
+            return {};
+        });
+}
+
+void add_submit(CLI::App& app, CommandOutcome& outcome) {
+    const auto step = add_signed_step(app, outcome, "submit", "Submit a revision for approval",
+                                      "loomlink submit shoe 3 --reason 'Ready to weave' --loom 'EP 1'");
+    step.client.command
+        ->add_option("--loom", step.words->looms,
+                     "a loom that it is meant for; may be repeated; all if not given")
+        ->allow_extra_args(false)
+        ->type_name("LOOM");
+    on_signed_step(step, outcome, "submit", [](const StepWords& words) {
+        Json body{{"reason", words.reason}};
+        if (!words.looms.empty()) body["looms"] = words.looms;
+        return body;
+    });
+}
+
+void add_waive(CLI::App& app, CommandOutcome& outcome) {
+    const auto step =
+        add_signed_step(app, outcome, "waive", "Let the findings of one rule for one loom pass",
+                        "loomlink waive shoe 3 --rule floats.warp --loom 'EP 1' --reason 'Wanted'");
+    add_text(step.client.command, "--rule", step.words->rule, "the rule, as check names it")->required();
+    add_text(step.client.command, "--loom", step.words->loom, "the loom")->required();
+    on_signed_step(step, outcome, "waive", [](const StepWords& words) {
+        return Json{{"rule", words.rule}, {"loom", words.loom}, {"reason", words.reason}};
+    });
+}
+
+void add_decisions(CLI::App& app, CommandOutcome& outcome) {
+    const auto reason_alone = [](const StepWords& words) { return Json{{"reason", words.reason}}; };
+    const auto approve = add_signed_step(app, outcome, "approve", "Approve exactly this revision",
+                                         "loomlink approve shoe 3 --reason 'Looked at face, floats and toe'");
+    on_signed_step(approve, outcome, "approve", reason_alone);
+    const auto changes = add_signed_step(app, outcome, "request-changes", "Ask for changes",
+                                         "loomlink request-changes shoe 3 --reason 'The toe floats'");
+    on_signed_step(changes, outcome, "request-changes", reason_alone);
+}
+
+void add_comment(CLI::App& app, CommandOutcome& outcome) {
+    const auto command =
+        add_client_command(app, outcome, "comment", "Comment on a revision, or on a place of its card",
+                           "loomlink comment shoe 3 'Is this float wanted?' --pick 120 --end 7");
+    const auto place = add_revision_place(command.command);
+    const auto words = std::make_shared<StepWords>();
+    add_text(command.command, "TEXT", words->reason, "the comment")->required();
+    add_number(command.command, "--pick", words->pick, "the pick that it is about");
+    add_number(command.command, "--end", words->end, "the end that it is about");
+    on_client_run(command, outcome, [place, words, &outcome](ApiClient& client) -> Status {
+        Json body{{"text", words->reason}};
+        if (words->pick) body["pick"] = *words->pick;
+        if (words->end) body["end"] = *words->end;
+        WEAVE_TRY(const Json answer, client.post(place->path("comment"), std::move(body)));
+        outcome.answer(answer, place->words() + ": the comment stands\n");
+        return {};
+    });
+}
+
+Status check(ApiClient& client, const RevisionPlace& place, const std::string& loom,
+             CommandOutcome& outcome) {
+    WEAVE_TRY(const Json answer, client.get(place.path("check"), {{"loom", loom}}));
+    outcome.answer(answer, in_columns(answer, "findings", {"severity", "rule", "message"}) +
+                               in_columns(answer, "not_evaluated", {"rule", "reason"}) + "On " +
+                               on_one_line(loom) + ": errors " + told(answer, "errors") + ", warnings " +
+                               told(answer, "warnings") + "\n");
+    if (told(answer, "errors") != "0") outcome.found_something();
+    return {};
+}
+
+void add_check(CLI::App& app, CommandOutcome& outcome) {
+    const auto command = add_client_command(
+        app, outcome, "check", "Hold a revision to a loom; exit status 1 where a rule finds an error",
+        "loomlink check shoe 3 --loom 'EP 1'");
+    const auto place = add_revision_place(command.command);
+    const auto loom = std::make_shared<std::string>();
+    add_text(command.command, "--loom", *loom, "the loom")->required();
+    on_client_run(command, outcome, [place, loom, &outcome](ApiClient& client) {
+        return check(client, *place, *loom, outcome);
+    });
+}
+
+}  // namespace
+
+void add_step_commands(CLI::App& app, CommandOutcome& outcome) {
+    add_check(app, outcome);
+    add_submit(app, outcome);
+    add_comment(app, outcome);
+    add_decisions(app, outcome);
+    add_waive(app, outcome);
+}
+
+}  // namespace weave::loomlink

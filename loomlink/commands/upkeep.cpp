@@ -1,0 +1,83 @@
+// verify, backup, restore: a site as files, on the machine that serves it.
+
+#include <weave/core/file.hpp>
+#include <weave/core/text.hpp>
+
+#include <loomlink/commands/command.hpp>
+#include <loomlink/commands/finding_words.hpp>
+#include <loomlink/commands/site_copy.hpp>
+#include <memory>
+
+namespace weave::loomlink {
+
+namespace {
+
+Status verify(const std::string& folder, const std::string& retained_file, CommandOutcome& outcome) {
+    std::optional<SignedTreeHead> retained;
+    if (!retained_file.empty()) {
+        constexpr std::uint64_t most_head = 65536;
+        WEAVE_TRY(const std::string bytes, read_file(retained_file, most_head));
+        auto head = parse_signed_head(bytes);
+        if (!head) return std::move(head).error().in(retained_file);
+        retained = *std::move(head);
+    }
+    WEAVE_TRY(const auto findings, verify_site({folder}, retained));
+    outcome.answer({{"clean", findings.empty()},
+                    {"retained", retained.has_value()},
+                    {"findings", findings_json(findings)}},
+                   findings.empty() ? on_one_line(folder) + ": everything is as it was written\n"
+                                    : findings_words(findings));
+    if (!findings.empty()) outcome.found_something();
+    return {};
+}
+
+void add_verify(CLI::App& app, CommandOutcome& outcome) {
+    CLI::App* const command = add_command(app, outcome, "verify",
+                                          "Look at everything a site keeps once more: pages, objects, "
+                                          "records, signatures, keys; also while it is "
+                                          "served. Exit status 1 where something is not as it was written",
+                                          "loomlink verify /srv/mill --retained head.json");
+    const auto folder = std::make_shared<std::string>();
+    const auto retained = std::make_shared<std::string>();
+    add_text(command, "FOLDER", *folder, "the folder of the site")->required();
+    add_text(command, "--retained", *retained,
+             "a head kept from earlier, as audit head -o wrote it: a log that was rewritten is found out")
+        ->type_name("FILE");
+    on_run(command, outcome, [folder, retained, &outcome] { return verify(*folder, *retained, outcome); });
+}
+
+}  // namespace
+
+void add_upkeep_commands(CLI::App& app, CommandOutcome& outcome) {
+    add_verify(app, outcome);
+    const auto from = std::make_shared<std::string>();
+    const auto to = std::make_shared<std::string>();
+    CLI::App* const backup = add_command(
+        app, outcome, "backup",
+        "Copy a site into a new folder, also while it is served. It holds the server's keys: keep it as "
+        "safe as the site itself",
+        "loomlink backup /srv/mill /backup/mill-monday");
+    add_text(backup, "FOLDER", *from, "the folder of the site")->required();
+    add_text(backup, "TO", *to, "the folder to make")->required();
+    on_run(backup, outcome, [from, to, &outcome]() -> Status {
+        WEAVE_CHECK_OK(back_up_site({*from}, *to));
+        outcome.answer({{"folder", *to}}, on_one_line(*to) + ": the site as it is now\n");
+        return {};
+    });
+    CLI::App* const restore = add_command(
+        app, outcome, "restore", "Put a backup into place, after verifying it; the site must not be served",
+        "loomlink restore /backup/mill-monday /srv/mill");
+    add_text(restore, "FROM", *from, "the folder that backup made")->required();
+    add_text(restore, "FOLDER", *to, "the folder of the site: missing, empty, or the site to replace")
+        ->required();
+    on_run(restore, outcome, [from, to, &outcome]() -> Status {
+        WEAVE_CHECK_OK(restore_site({*from}, {*to}));
+        outcome.answer({{"folder", *to}},
+                       on_one_line(*to) +
+                           ": the site as it was. Looms refuse a log that is shorter than they have "
+                           "seen: see loomlink/commands/README.md\n");
+        return {};
+    });
+}
+
+}  // namespace weave::loomlink

@@ -1,0 +1,191 @@
+#include "commands_case.hpp"
+
+#include <algorithm>
+#include <chrono>
+#include <loomlink/keys/release_manifest.hpp>
+#include <support/random.hpp>
+#include <thread>
+
+using namespace weave;
+using namespace weave::loomlink;
+using namespace weave::loomlink::testing;
+using weave::testing::for_all;
+using weave::testing::Random;
+
+namespace fs = std::filesystem;
+
+namespace {
+
+/// Folders of releases below a loom's folder; a file whose name begins with a point is none.
+std::vector<fs::path> release_folders(const fs::path& loom) {
+    std::vector<fs::path> list;
+    std::error_code code;
+    for (fs::directory_iterator entry(loom, code), end; !code && entry != end; entry.increment(code))
+        if (!entry->path().filename().string().starts_with('.')) list.push_back(entry->path());
+    return list;
+}
+
+/// Waits for what another program does, as long as that takes; gives up after two minutes.
+template <class What>
+bool comes_true(What what) {
+    for (int k = 0; k < 2400 && !what(); ++k) std::this_thread::sleep_for(std::chrono::milliseconds(50));
+    return what();
+}
+
+Ended verify(const CommandMill& mill, const fs::path& folder) {
+    return mill.run({"verify-files", folder, "--state", mill.at("state"), "--json"});
+}
+
+/// The first file of a release beside its manifest.
+fs::path some_file(const fs::path& folder) {
+    for (const auto& entry : fs::directory_iterator(folder))
+        if (entry.path().filename() != manifest_name) return entry.path();
+    FAIL("the release has no file");
+    return {};
+}
+
+}  // namespace
+
+TEST_CASE("a loom pulls what was released, finds what was altered, and gives up what was recalled",
+          "[commands]") {
+    CommandMill mill;
+    mill.set_up();
+    mill.save("twill-2-2");
+    mill.approve("1");
+    mill.release("1");
+    const Ended unknown = mill.run(mill.pull_words());
+    CHECK(unknown.code == 2);
+    CHECK_THAT(unknown.err, Catch::Contains("--trust"));
+    const Ended false_trust = mill.run(mill.pull_words({"--trust", std::string(64, 'a')}));
+    CHECK(false_trust.code == 4);
+    CHECK(release_folders(mill.at("loom")).empty());
+
+    const Ended pulled = mill.run(mill.pull_words({"--trust", mill.trust_fingerprint()}));
+    INFO(pulled.err);
+    REQUIRE(pulled.code == 0);
+    const Json held = pulled.json().at("releases").at(0);
+    CHECK(held.at("new") == true);
+    const fs::path folder = held.at("folder").get<std::string>();
+    CHECK(mode_of(mill.at("state")) == 0600);
+    CHECK(mill.run(mill.pull_words({"--all"})).json().at("releases").at(0).at("new") == false);
+    CHECK(mill.run(mill.pull_words({"--release", "9"})).code == 4);
+    CHECK(mill.as("emil", {"pull", "eight", "--to", mill.at("loom"), "--state", mill.at("state")}).code == 4);
+
+    CHECK(verify(mill, folder).code == 0);
+    mill.done("mary", {"trust", "show", "-o", mill.at("trust.json")});
+    CHECK(mill.run({"verify-files", folder, "--trust", mill.at("trust.json")}).code == 0);
+    const fs::path file = some_file(folder);
+    flip(file, 0);
+    const Ended altered = verify(mill, folder);
+    CHECK(altered.code == 1);
+    CHECK(altered.json().at("findings").at(0).at("file") == file.filename().string());
+    CHECK(mill.run(mill.pull_words()).code == 4);  // not written over: a person has to look
+    flip(file, 0);
+    REQUIRE(write_file(folder / "more.txt", "more"));
+    CHECK(verify(mill, folder).json().at("findings").at(0).at("trouble") == "too many");
+    fs::remove(folder / "more.txt");
+    flip(folder / manifest_name, read_file(folder / manifest_name).value().find("\"picks\":") + 8);
+    CHECK(verify(mill, folder).code == 4);
+    flip(folder / manifest_name, read_file(folder / manifest_name).value().find("\"picks\":") + 8);
+    CHECK(verify(mill, folder).code == 0);
+
+    mill.signs("emil", {"withdraw", "seven", "1"});
+    fs::copy(folder, mill.at("kept"), fs::copy_options::recursive);
+    const Ended recalled = mill.run(mill.pull_words());
+    CHECK(recalled.code == 0);
+    CHECK_FALSE(recalled.json().at("removed").empty());
+    CHECK_FALSE(fs::exists(folder));
+    const Ended kept = verify(mill, mill.at("kept"));
+    CHECK(kept.code == 4);
+    CHECK_THAT(kept.err, Catch::Contains("must not be woven"));
+    CHECK(mill.run(mill.pull_words({"--release", "1"})).code == 4);
+}
+
+TEST_CASE("a recalled file that somebody changed stays, is told, and the pull ends with 1", "[commands]") {
+    CommandMill mill;
+    mill.set_up();
+    mill.save("twill-2-2");
+    mill.approve("1");
+    mill.release("1");
+    const Ended pulled = mill.run(mill.pull_words({"--trust", mill.trust_fingerprint()}));
+    REQUIRE(pulled.code == 0);
+    const fs::path file = some_file(pulled.json().at("releases").at(0).at("folder").get<std::string>());
+    flip(file, 0);
+    mill.signs("abel", {"withdraw", "seven", "1"});
+    const Ended recalled = mill.run(mill.pull_words());
+    CHECK(recalled.code == 1);
+    CHECK(recalled.json().at("kept").size() == 1);
+    CHECK(fs::exists(file));
+}
+
+TEST_CASE("a pull that is cut off at any moment leaves whole releases or none, and the next one ends it",
+          "[commands]") {
+    CommandMill mill;
+    mill.set_up();
+    mill.save("twill-2-2");
+    mill.approve("1");
+    mill.release("1");
+    const std::string trust = mill.trust_fingerprint();
+    const auto cut_off = [&](Random& random) {
+        constexpr std::size_t longest_ms = 150;
+        fs::remove_all(mill.at("loom"));
+        fs::remove(mill.at("state"));
+        Running pull(mill.pull_words({"--trust", trust}), mill.folder.path);
+        std::this_thread::sleep_for(std::chrono::milliseconds(random.between(0, longest_ms)));
+        pull.end(SIGKILL);
+        pull.wait();
+        for (const fs::path& folder : release_folders(mill.at("loom"))) CHECK(verify(mill, folder).code == 0);
+    };
+    for_all(cut_off, 30);
+    const Ended last = mill.run(mill.pull_words({"--trust", trust}));
+    INFO(last.err);
+    REQUIRE(last.code == 0);
+    const fs::path folder = last.json().at("releases").at(0).at("folder").get<std::string>();
+    CHECK(verify(mill, folder).code == 0);
+    CHECK(release_folders(mill.at("loom")).size() == 1);
+}
+
+TEST_CASE(
+    "a watching loom takes what is released and drops what is recalled, through an outage and a lost session",
+    "[commands]") {
+    CommandMill mill;
+    mill.set_up();
+    mill.save("twill-2-2");
+    mill.approve("1");
+    Running watch(mill.pull_words({"--trust", mill.trust_fingerprint(), "--all", "--watch", "--every", "2",
+                                   "--password-file", mill.at("password")}),
+                  mill.folder.path);
+    const auto holds = [&](std::size_t number) {
+        return [&, number] { return release_folders(mill.at("loom")).size() == number; };
+    };
+    mill.release("1");
+    CHECK(comes_true(holds(1)));
+    mill.signs("emil", {"withdraw", "seven", "1"});
+    CHECK(comes_true(holds(0)));
+
+    mill.stop();
+    CHECK(comes_true([&] { return watch.told().find("trying on") != std::string::npos; }));
+    mill.start();
+    mill.done("otto", {"logout"});  // which leaves the watching one without its session
+    mill.save("plain");
+    mill.approve("2");
+    mill.release("2");
+    CHECK(comes_true(holds(1)));
+    CHECK(watch.is_alive());
+    CHECK_THAT(watch.told(), Catch::Contains("the server answers again"));
+    // A line for each change, and none for pulls that changed nothing.
+    const std::string lines = watch.so_far();
+    CHECK(std::count(lines.begin(), lines.end(), '\n') <= 5);
+    CHECK(parse_json(lines.substr(0, lines.find('\n'))));
+    watch.end(SIGTERM);
+    watch.wait();
+}
+
+TEST_CASE("a watch whose call is wrong ends at once", "[commands]") {
+    CommandMill mill;
+    mill.set_up();
+    CHECK(mill.run(mill.pull_words({"--watch", "--trust", std::string(64, 'b')})).code == 4);
+    CHECK(mill.run(mill.pull_words({"--watch"})).code == 2);
+    CHECK(mill.run(mill.pull_words({"--every", "5"})).code == 2);
+    CHECK(mill.run(mill.pull_words({"--release", "1", "--all"})).code == 2);
+}

@@ -1,0 +1,145 @@
+#include "commands_case.hpp"
+
+using namespace weave;
+using namespace weave::loomlink;
+using namespace weave::loomlink::testing;
+
+TEST_CASE("a call that makes no sense ends with 2 and says what is missing", "[commands]") {
+    const TemporaryFolder folder;
+    struct Call {
+        std::vector<std::string> words;
+        std::string says;
+    };
+    const std::vector<Call> calls{
+        {{}, "name a command"},
+        {{"weave"}, "there is no command 'weave'"},
+        {{"--loud"}, "there is no option '--loud'"},
+        {{"user"}, "name what to do"},
+        {{"user", "bake"}, "there is no command 'bake' of user"},
+        {{"login", "--name", "dora"}, "say which server"},
+        {{"login", "https://127.0.0.1:1"}, "say who you are"},
+        {{"login", "https://127.0.0.1:1", "--name", "dora"}, "--password-file"},
+        {{"login", "http://127.0.0.1:1", "--name", "d", "--fingerprint", std::string(64, 'a')}, "https://"},
+        {{"user", "invite", "king"}, "king"},
+        {{"approve", "cloth", "1"}, "--reason"},
+        {{"approve", "cloth", "one", "--reason", "x"}, "'one' is not a whole number"},
+        {{"approve", "cloth", "0", "--reason", "x"}, "'0' is not a whole number"},
+        {{"release", "cloth", "1", "--loom", "x", "--reason", "x", "--feeders", "1,x"}, "'x' is not"},
+        {{"save", "a.weave", "cloth"}, "--message"},
+        {{"audit", "verify", "x"}, "one of --key, --trust and --state"},
+        {{"audit", "verify", "x", "--key", "a", "--trust", "b"}, "one of --key, --trust and --state"},
+        {{"verify-files", "x"}, "one of --state, --loom and --trust"},
+        {{"log", "--from", "-1"}, "--from"},
+    };
+    for (const Call& call : calls) {
+        const Ended ended = Running(call.words, folder.path).wait();
+        INFO((call.words.empty() ? "" : call.words.front()) << ": " << ended.err);
+        CHECK(ended.code == 2);
+        CHECK(ended.out.empty());
+        CHECK_THAT(ended.err, Catch::Contains(call.says));
+    }
+}
+
+TEST_CASE("every command explains itself with an example or in words", "[commands]") {
+    const TemporaryFolder folder;
+    const Ended all = Running({"--help"}, folder.path).wait();
+    CHECK(all.code == 0);
+    for (const char* command :
+         {"init",   "serve",    "login",   "logout",          "me",           "user",    "loom",
+          "key",    "submit",   "comment", "request-changes", "waive",        "approve", "release",
+          "sign",   "withdraw", "pull",    "evidence",        "export",       "log",     "diff",
+          "audit",  "verify",   "backup",  "restore",         "verify-files", "save",    "design",
+          "policy", "trust",    "signer",  "faults",          "check"}) {
+        INFO(command);
+        CHECK_THAT(all.out, Catch::Contains(std::string("\n  ") + command + " "));
+        const Ended one = Running({command, "--help"}, folder.path).wait();
+        CHECK(one.code == 0);
+        CHECK_THAT(one.out, Catch::Contains("Exit status"));
+    }
+}
+
+TEST_CASE("who has not signed in, or not rightly, is refused with 4", "[commands]") {
+    CommandMill mill;
+    mill.first_joins();
+    const Ended nobody = mill.as("nobody", {"design", "list"});
+    CHECK(nobody.code == 4);
+    CHECK_THAT(nobody.err, Catch::Contains("loomlink login"));
+    CHECK(nobody.json().at("error").at("kind") == "refused");
+
+    const auto wrong = mill.put_private("wrong", "not the password\n");
+    const Ended denied = mill.as("mary", {"login", "--password-file", wrong});
+    CHECK(denied.code == 4);
+    CHECK(mill.as("mary", {"me"}).code == 0);  // a log-in that fails leaves the session as it is
+    CHECK(mill.as("mary", {"trust", "publish", "--password-file", wrong}).code == 4);
+    CHECK(mill.as("mary", {"design", "make", "cloth"}).code == 4);
+
+    REQUIRE(::chmod(mill.at("mary").c_str(), 0644) == 0);
+    const Ended open_to_all = mill.as("mary", {"me"});
+    CHECK(open_to_all.code == 4);
+    CHECK_THAT(open_to_all.err, Catch::Contains("0600"));
+    REQUIRE(::chmod(mill.at("password").c_str(), 0644) == 0);
+    CHECK(mill.as("eve", {"login", mill.url(), "--name", "mary", "--fingerprint", mill.fingerprint()}, true)
+              .code == 4);
+}
+
+TEST_CASE("a server that is not the one that is meant gets no password", "[commands]") {
+    CommandMill mill;
+    mill.first_joins();
+    const auto log_in = [&](std::vector<std::string> more) {
+        std::vector<std::string> words{"login", mill.url(), "--name", "mary"};
+        words.insert(words.end(), more.begin(), more.end());
+        return mill.as("other", words, true);
+    };
+    const Ended untrusted = log_in({});
+    CHECK(untrusted.code == 4);
+    CHECK_THAT(untrusted.err, Catch::Contains("not trusted"));
+    CHECK(log_in({"--fingerprint", std::string(64, 'a')}).code == 4);
+    CHECK(log_in({"--fingerprint", "4f3a"}).code == 3);
+    CHECK_FALSE(std::filesystem::exists(mill.at("other")));
+    std::string colons;
+    for (const char c : mill.fingerprint())
+        colons += (colons.size() % 3 == 2 ? ":" : "") +
+                  std::string(1, c >= 'a' && c <= 'f' ? static_cast<char>(c - 'a' + 'A') : c);
+    CHECK(log_in({"--fingerprint", colons}).code == 0);
+    CHECK(mode_of(mill.at("other")) == 0600);
+    CHECK(mill.as("far", {"login", "http://mill.example:8443", "--name", "mary"}, true).code == 4);
+    CHECK(mill.as("far", {"login", "mill:8443", "--name", "mary"}, true).code == 3);
+    mill.stop();
+    const Ended gone = mill.as("other", {"me"});
+    CHECK(gone.code == 5);
+    CHECK(gone.json().at("error").at("kind") == "system");
+}
+
+TEST_CASE("without a word about it the session lies at home, for its owner alone", "[commands]") {
+    CommandMill mill(true);
+    const auto link = mill.introduction.at("invitation").get<std::string>();
+    const Ended joined = mill.run({"user", "join", link, "--name", "mary", "--full-name", "Mary",
+                                   "--password-file", mill.at("password")});
+    INFO(joined.err);
+    REQUIRE(joined.code == 0);
+    CHECK(mode_of(mill.at(".config") / "loomlink" / "session.json") == 0600);
+    CHECK(mode_of(mill.at(".config") / "loomlink") == 0700);
+    const Ended me = mill.run({"me"});
+    CHECK(me.code == 0);
+    CHECK_THAT(me.out, Catch::Contains("mary (Mary): admin"));
+}
+
+TEST_CASE("files that cannot be understood are bad input, with their name", "[commands]") {
+    CommandMill mill;
+    mill.set_up();
+    mill.done("dora", {"design", "make", "cloth"});
+    REQUIRE(write_file(mill.at("bad.weave"), "{}"));
+    for (const std::vector<std::string>& words : std::vector<std::vector<std::string>>{
+             {"save", mill.at("bad.weave"), "cloth", "-m", "x"},
+             {"save", mill.at("none.weave"), "cloth", "-m", "x"},
+         }) {
+        const Ended ended = mill.as("dora", words);
+        CHECK(ended.code == 3);
+        CHECK_THAT(ended.err, Catch::Contains(std::filesystem::path(words[1]).filename().string()));
+    }
+    const Ended profile = mill.as("mary", {"loom", "add", "eight", mill.at("bad.weave")});
+    CHECK(profile.code == 3);
+    CHECK_THAT(profile.err, Catch::Contains("bad.weave"));
+    CHECK(mill.as("dora", {"design", "show", "nothing"}).code == 4);
+    CHECK(mill.as("dora", {"design", "make", "a/b"}).code == 3);
+}

@@ -1,0 +1,151 @@
+#include "commands_case.hpp"
+
+using namespace weave;
+using namespace weave::loomlink;
+using namespace weave::loomlink::testing;
+
+TEST_CASE("a design goes from a first file to the loom and back by commands alone", "[commands]") {
+    CommandMill mill;
+    mill.set_up();
+    CHECK(mode_of(mill.at("dora")) == 0600);
+    CHECK(read_file(mill.at("dora")).value().find(CommandMill::password) == std::string::npos);
+    CHECK(mill.done("mary", {"user", "list"}).at("people").size() == 5);
+    CHECK(mill.done("mary", {"trust", "pending"}).at("changes").empty());
+
+    CHECK(mill.save("twill-2-2").at("number") == 1);
+    const Json second = mill.save("plain");
+    CHECK(second.at("number") == 2);
+    CHECK(second.at("expected") == 1);
+    CHECK(mill.done("emil", {"design", "show", "cloth"}).at("revisions").size() == 2);
+    CHECK(mill.done("dora", {"check", "cloth", "1", "--loom", "seven"}).at("errors") == 0);
+    mill.done("dora", {"comment", "cloth", "1", "Is this wanted?", "--pick", "2"});
+    CHECK(mill.signs("dora", {"submit", "cloth", "1", "--loom", "seven"}).at("state") == "submitted");
+    const Ended own = mill.as("dora", {"approve", "cloth", "1", "--reason", "Mine"}, true);
+    CHECK(own.code == 4);
+    CHECK(own.json().at("error").at("exit") == 4);
+    CHECK(mill.done("abel", {"me"}).at("waiting").size() == 1);
+    CHECK(mill.signs("abel", {"approve", "cloth", "1"}).at("state") == "approved");
+    CHECK(mill.release("1").at("state") == "released");
+
+    const Json revision = mill.done("emil", {"design", "show", "cloth", "1"});
+    CHECK(revision.at("state") == "released");
+    CHECK(revision.at("comments").size() == 1);
+    mill.done("emil", {"export", "cloth", "1", "-o", mill.at("back.weave")});
+    CHECK(read_file(mill.at("back.weave")).value() == read_file(mill.at("twill-2-2.weave")).value());
+    mill.done("emil", {"export", "cloth", "1", "-o", mill.at("bundle")});
+    CHECK(parse_json(read_file(mill.at("bundle") / "cloth-1-bundle.json").value()));
+    const Ended differs = mill.as("emil", {"diff", "cloth", "1", "2", "-o", mill.at("diff.png")});
+    CHECK(differs.code == 1);
+    CHECK(read_file(mill.at("diff.png")).value().starts_with("\x89PNG"));
+    CHECK(mill.as("emil", {"diff", "cloth", "1", "1"}).code == 0);
+    const Json log = mill.done("emil", {"log", "--design", "cloth", "--limit", "3"});
+    CHECK(log.at("events").size() == 3);
+    CHECK(mill.done("emil", {"log", "--from", "0", "--limit", "2"}).at("events")[0].at("seq") == 0);
+}
+
+TEST_CASE("a step that the server knows of already is refused with its reason", "[commands]") {
+    CommandMill mill;
+    mill.set_up();
+    mill.save("twill-2-2");
+    mill.approve("1");
+    const Ended again = mill.as("dora", {"submit", "cloth", "1", "--reason", "Again"}, true);
+    CHECK(again.code == 4);
+    CHECK_THAT(again.err, Catch::Contains("designs/cloth/revisions/1/submit"));
+    mill.save("plain");
+    const Ended late =
+        mill.as("dora", {"save", mill.at("plain.weave"), "cloth", "-m", "Late", "--expected", "1"});
+    CHECK(late.code == 4);
+    CHECK_THAT(late.err, Catch::Contains("moved on"));
+    mill.release("1");
+    const Ended beside = mill.as(
+        "abel", {"release", "cloth", "1", "--loom", "seven", "--feeders", "1", "--reason", "More"}, true);
+    CHECK(beside.code == 4);
+    CHECK_THAT(beside.err, Catch::Contains("supersedes"));
+    CHECK(mill.signs("emil", {"withdraw", "seven", "1"}).at("state") == "withdrawn");
+    CHECK(mill.signs("dora", {"submit", "cloth", "2"}).at("state") == "submitted");
+    CHECK(mill.signs("abel", {"request-changes", "cloth", "2"}).at("state") == "changes_requested");
+    CHECK(mill.done("emil", {"faults", "seven"}).contains("faults"));
+}
+
+TEST_CASE("two people sign where the policy asks for two", "[commands]") {
+    CommandMill mill;
+    mill.set_up();
+    mill.invite("anna", {"approver"});
+    CHECK(mill.done("mary", {"policy", "--release-signatures", "2"}).at("release_signatures") == 2);
+    CHECK_FALSE(mill.done("mary", {"trust", "pending"}).at("changes").empty());
+    mill.done("mary", {"trust", "publish"}, true);
+    mill.save("twill-2-2");
+    mill.approve("1");
+    CHECK(mill.release("1").at("state") == "awaiting");
+    CHECK(mill.signs("anna", {"sign", "seven", "1"}).at("state") == "released");
+    const Json keys = mill.done("otto", {"key", "list"});
+    CHECK(keys.at("keys").size() == 6);
+    const std::string id = keys.at("keys")[0].at("id").get<std::string>();
+    CHECK(mill.done("otto", {"key", "show", id.substr(0, 16)}).at("id") == id);
+}
+
+TEST_CASE("what a simulation found is signed by the machine that was enrolled, and counts", "[commands]") {
+    CommandMill mill;
+    mill.set_up();
+    mill.done("mary", {"policy", "--simulation", "required"});
+    mill.save("twill-2-2");
+    mill.signs("dora", {"submit", "cloth", "1"});
+    CHECK(mill.as("abel", {"approve", "cloth", "1", "--reason", "Good"}, true).code == 4);
+
+    const Json code = mill.done("mary", {"signer", "invite", "gpu-1"});
+    const std::string key = mill.at("evidence.key");
+    const Json enrolled =
+        mill.done("machine", {"signer", "enrol", code.at("code").get<std::string>(), "--server", mill.url(),
+                              "--fingerprint", mill.fingerprint(), "--key-file", key});
+    CHECK(enrolled.at("name") == "gpu-1");
+    CHECK(mode_of(key) == 0600);
+    const Json revision = mill.done("emil", {"design", "show", "cloth", "1"});
+    const Json found{
+        {"design_sha256", revision.at("design_sha256")},
+        {"scene_sha256", revision.at("scene_sha256")},
+        {"coverage",
+         {{"of", {{"picks", revision.at("picks")}, {"ends", revision.at("ends")}}}, {"whole", true}}},
+        {"solver", "relax"},
+        {"fidelity", "standard"},
+        {"residual", 1e-4},
+        {"converged", true},
+        {"order_kept", true}};
+    REQUIRE(write_file(mill.at("result.json"), found.dump()));
+    mill.done("machine", {"evidence", "add", "cloth", "1", mill.at("result.json"), "--key-file", key});
+    CHECK(mill.signs("abel", {"approve", "cloth", "1"}).at("state") == "approved");
+    CHECK(mill.done("emil", {"evidence", "list", "cloth", "1"}).at("evidence").back().at("signer") ==
+          "gpu-1");
+
+    Json other = found;
+    other["design_sha256"] = std::string(64, '0');
+    REQUIRE(write_file(mill.at("other.json"), other.dump()));
+    CHECK(mill.as("machine", {"evidence", "add", "cloth", "1", mill.at("other.json"), "--key-file", key})
+              .code == 4);
+    mill.done("mary", {"signer", "revoke", "gpu-1"});
+    // What was approved on evidence that counts no more does not validate for the loom.
+    CHECK(mill.as("abel", {"release", "cloth", "1", "--loom", "seven", "--reason", "Go"}, true).code == 1);
+}
+
+TEST_CASE("accounts are kept by commands: roles, passwords, a lost password", "[commands]") {
+    CommandMill mill;
+    mill.first_joins();
+    mill.invite("dora", {"designer"});
+    CHECK(mill.done("mary", {"user", "roles", "dora", "designer", "engineer"}).at("roles").size() == 2);
+    mill.done("mary", {"user", "disable", "dora"});
+    CHECK(mill.as("dora", {"design", "list"}).code == 4);
+    mill.done("mary", {"user", "enable", "dora"});
+    const std::string origin = mill.url();
+    mill.done("dora", {"login"}, true);  // whoever signed in last, where that was
+    const auto both = mill.put_private("both", std::string(CommandMill::password) + "\nquite another one\n");
+    CHECK(mill.as("dora", {"user", "password", "--password-file", both}).code == 0);
+    CHECK(mill.as("dora", {"login", "--name", "dora"}, true).code == 4);
+    const Ended by_input = mill.run({"login", origin, "--session", mill.at("dora"), "--password-file", "-"},
+                                    "quite another one\n");
+    INFO(by_input.err);
+    CHECK(by_input.code == 0);
+    const Json anew = mill.done("mary", {"user", "reset", "dora"});
+    CHECK(mill.as("dora", {"me"}).code == 4);
+    mill.join(anew.at("link").get<std::string>(), "dora");
+    CHECK(mill.done("dora", {"logout"}).at("signed_in") == false);
+    CHECK(mill.as("dora", {"me"}).code == 4);
+}

@@ -1,0 +1,141 @@
+#include "commands_case.hpp"
+
+#include <algorithm>
+#include <loomlink/keys/hex.hpp>
+#include <loomlink/keys/key.hpp>
+#include <support/random.hpp>
+
+using namespace weave;
+using namespace weave::loomlink;
+using namespace weave::loomlink::testing;
+using weave::testing::for_all;
+using weave::testing::Random;
+
+namespace fs = std::filesystem;
+
+namespace {
+
+/// The public key of the log, as the newest trust document lists it.
+std::string log_key_of(const CommandMill& mill) {
+    for (const Json& key : mill.done("otto", {"key", "list"}).at("keys"))
+        if (key.at("roles") == Json::array({"log"})) return key.at("public").get<std::string>();
+    return {};
+}
+
+}  // namespace
+
+TEST_CASE("the log as a bundle is verified offline; one flipped bit is found and the record named",
+          "[commands]") {
+    CommandMill mill;
+    mill.set_up();
+    mill.done("emil", {"audit", "head", "-o", mill.at("head.json")});
+    mill.done("emil", {"audit", "bundle", "-o", mill.at("log.json")});
+    mill.done("otto", {"trust", "show", "-o", mill.at("trust.json")});
+    const std::string key = log_key_of(mill);
+    mill.done("mary", {"policy", "--approvals", "2"});
+    CHECK(mill.run(mill.pull_words({"--trust", mill.trust_fingerprint()})).code == 0);
+    mill.stop();
+
+    const auto verify = [&](std::vector<std::string> by) {
+        std::vector<std::string> words{"audit", "verify", mill.at("log.json"), "--json"};
+        words.insert(words.end(), by.begin(), by.end());
+        return mill.run(words);
+    };
+    const Ended by_key = verify({"--key", key, "--retained", mill.at("head.json")});
+    INFO(by_key.err);
+    CHECK(by_key.code == 0);
+    CHECK(by_key.json().at("retained") == true);
+    CHECK(verify({"--trust", mill.at("trust.json")}).code == 0);
+    CHECK(verify({"--key", std::string(64, '0')}).code == 3);
+    CHECK(verify({"--key", to_hex(KeyPair::generate().public_key())}).code == 1);
+    // The terminal has seen a newer log than this copy.
+    CHECK(verify({"--state", mill.at("state")}).code == 1);
+
+    const std::string whole = read_file(mill.at("log.json")).value();
+    const std::size_t from = whole.find("\"records\":["), to = whole.rfind("]}");
+    const auto one_bit = [&](Random& random) {
+        const std::size_t at = random.between(from + 12, to - 2);
+        flip(mill.at("log.json"), at);
+        const Ended flipped = verify({"--key", key});
+        INFO("byte " << at << ": " << flipped.out);
+        CHECK(flipped.code == 1);
+        const Json found = flipped.json().at("findings");
+        const auto line =
+            static_cast<std::uint64_t>(std::count(whole.begin() + static_cast<std::ptrdiff_t>(from) + 12,
+                                                  whole.begin() + static_cast<std::ptrdiff_t>(at), '\n'));
+        CHECK(
+            std::any_of(found.begin(), found.end(), [&](const Json& one) { return one.at("seq") == line; }));
+        REQUIRE(write_file(mill.at("log.json"), whole));
+    };
+    for_all(one_bit, 20);
+}
+
+TEST_CASE("a site is verified and backed up while it is served, and a backup becomes a site again",
+          "[commands]") {
+    CommandMill mill;
+    mill.set_up();
+    mill.save("twill-2-2");
+    mill.approve("1");
+    mill.release("1");
+    mill.done("emil", {"audit", "head", "-o", mill.at("head.json")});
+    const auto verify = [&](const fs::path& folder, std::vector<std::string> more = {}) {
+        std::vector<std::string> words{"verify", folder, "--json"};
+        words.insert(words.end(), more.begin(), more.end());
+        return mill.run(words);
+    };
+    const Ended sound = verify(mill.site_folder, {"--retained", mill.at("head.json")});
+    INFO(sound.out << sound.err);
+    CHECK(sound.code == 0);
+    CHECK(mill.run({"backup", mill.site_folder, mill.at("backup")}).code == 0);
+    CHECK(mode_of(mill.at("backup")) == 0700);
+    CHECK(mode_of(mill.at("backup") / "log.key") == 0600);
+    CHECK(mill.run({"backup", mill.site_folder, mill.at("backup")}).code == 4);
+    CHECK(mill.run({"restore", mill.at("backup"), mill.site_folder}).code == 4);  // it is being served
+    CHECK(verify(mill.at("backup")).code == 0);
+    CHECK(verify(mill.at("nothing")).code == 3);
+    fs::create_directory(mill.at("letters"));
+    REQUIRE(write_file(mill.at("letters") / "letter.txt", "dear"));
+    CHECK(mill.run({"restore", mill.at("backup"), mill.at("letters")}).code == 4);
+    CHECK(fs::exists(mill.at("letters") / "letter.txt"));
+
+    mill.stop();
+    CHECK(mill.run({"restore", mill.at("backup"), mill.at("again")}).code == 0);
+    CHECK(verify(mill.at("again"), {"--retained", mill.at("head.json")}).code == 0);
+    CHECK(mill.run({"restore", mill.at("backup"), mill.site_folder}).code == 0);
+    mill.start();
+    CHECK(mill.done("emil", {"design", "show", "cloth", "1"}).at("state") == "released");
+
+    flip(mill.at("backup") / "stamp.key", 30);
+    const Ended damaged = verify(mill.at("backup"));
+    CHECK(damaged.code == 1);
+    CHECK(damaged.json().at("findings").at(0).at("place") == "stamp.key");
+}
+
+TEST_CASE("looms refuse a site that was put back to an older time, until it has other keys", "[commands]") {
+    CommandMill mill;
+    mill.set_up();
+    mill.save("twill-2-2");
+    mill.approve("1");
+    mill.release("1");
+    REQUIRE(mill.run({"backup", mill.site_folder, mill.at("backup")}).code == 0);
+    mill.done("mary", {"policy", "--approvals", "2"});
+    REQUIRE(mill.run(mill.pull_words({"--trust", mill.trust_fingerprint()})).code == 0);
+    mill.stop();
+    REQUIRE(mill.run({"restore", mill.at("backup"), mill.site_folder}).code == 0);
+    mill.start();
+    const Ended replayed = mill.run(mill.pull_words());
+    CHECK(replayed.code == 4);
+    CHECK_THAT(replayed.err, Catch::Contains("this terminal has seen"));
+
+    mill.stop();
+    REQUIRE(mill.run({"init", mill.at("fresh")}).code == 0);
+    for (const char* key : {"log.key", "stamp.key"})
+        fs::rename(mill.at("fresh") / key, mill.site_folder / key);
+    mill.start();
+    CHECK(mill.run(mill.pull_words()).code == 4);  // nobody vouches for the new keys yet
+    mill.done("mary", {"trust", "publish"}, true);
+    const Ended again = mill.run(mill.pull_words());
+    INFO(again.err);
+    CHECK(again.code == 0);
+    CHECK(mill.run({"verify", mill.site_folder}).code == 0);
+}
