@@ -1,6 +1,6 @@
 // Which view a path shows, and the bar above all of them.
 import { h, link, say } from './parts/dom.js';
-import { get, post, on_signed_out, remember } from './parts/api.js';
+import { get, post, may_be_known, on_signed_out, remember } from './parts/api.js';
 
 const views = [
     ['/join', 'join'], ['/', 'home'], ['/designs', 'designs'], ['/designs/:design', 'design'],
@@ -114,9 +114,9 @@ on_signed_out(() => {
 signed_in_before();
 async function signed_in_before() {
     try {
-        const answer = await get('/me');
-        remember(answer);
-        me = answer.person;
-    } catch { /* not signed in */ }
+        if (may_be_known()) signed_in(await get('/me'));
+    } catch (error) {
+        if (error.status === 401) signed_in(null);
+    }
     show();
 }

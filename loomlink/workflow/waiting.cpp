@@ -1,3 +1,5 @@
+#include <weave/core/text.hpp>
+
 #include <algorithm>
 #include <loomlink/workflow/looms.hpp>
 #include <loomlink/workflow/releases.hpp>
@@ -52,6 +54,29 @@ Status add_releases(const Reader& reader, const Loom& loom, ReleaseStage stage, 
     return {};
 }
 
+/// Releases of own revisions that are woven and with which somebody at a loom had trouble.
+Status add_faults(const Reader& reader, const Caller& caller, Json& items) {
+    WEAVE_TRY(const auto looms, reader.looms());
+    for (const Loom& loom : looms) {
+        WEAVE_TRY(const auto releases, reader.releases(loom.id));
+        for (const Release& release : releases) {
+            if (release.state != ReleaseStage::released) continue;
+            WEAVE_TRY(const auto faults, reader.faults(release.id));
+            WEAVE_TRY(const FoundRevision found, revision_of(reader, release));
+            if (faults.empty() || !is_author(caller, found.revision)) continue;
+            WEAVE_TRY(const EventRecord newest, reader.record(faults.back().event));
+            items.push_back({{"design", found.design.name},
+                             {"revision", found.revision.number},
+                             {"loom", loom.name},
+                             {"release", release.number},
+                             {"state", release_word(release.state)},
+                             {"what", counted(faults.size(), "fault") + " reported at the loom"},
+                             {"since", newest.statement.at}});
+        }
+    }
+    return {};
+}
+
 Status add_for_approver(const Reader& reader, const Caller& caller, Json& items) {
     const auto not_mine = [&](const Revision& revision) { return !is_author(caller, revision); };
     WEAVE_CHECK_OK(add_revisions(reader, RevisionState::submitted, "to approve, or to ask for changes",
@@ -97,6 +122,7 @@ Result<Json> waiting_for(Desk& desk, const Caller& caller) {
                                          mine, items));
             WEAVE_CHECK_OK(
                 add_revisions(reader, RevisionState::draft, "a draft, not submitted yet", mine, items));
+            WEAVE_CHECK_OK(add_faults(reader, caller, items));
         }
         if (caller.is(PersonRole::approver)) WEAVE_CHECK_OK(add_for_approver(reader, caller, items));
         if (caller.is(PersonRole::operator_)) WEAVE_CHECK_OK(add_for_operator(reader, caller, items));

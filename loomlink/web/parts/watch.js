@@ -25,6 +25,8 @@ export function watch_loom(loom, on_change) {
     return () => {
         stopped = true;
         clearTimeout(again);
-        socket.close();
+        socket.onmessage = null;
+        socket.onopen = () => socket.close(); // one that is only being opened cannot be closed in silence
+        if (socket.readyState === WebSocket.OPEN) socket.close();
     };
 }
