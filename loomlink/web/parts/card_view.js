@@ -101,7 +101,7 @@ export function card_view({ source, picks, ends, on_place = () => {}, label }) {
     function outline(pen) {
         pen.strokeStyle = colours.mark;
         pen.lineWidth = 2 * scale;
-        pen.strokeRect((cursor.end - 1 - x) * zoom, (picks - cursor.pick - y) * zoom, Math.max(3, zoom), Math.max(3, zoom));
+        pen.strokeRect(Math.round((cursor.end - 1 - x) * zoom), Math.round((picks - cursor.pick - y) * zoom), Math.max(3, Math.round(zoom)), Math.max(3, Math.round(zoom)));
         pen.lineWidth = 1;
     }
 

@@ -38,6 +38,7 @@ export class Person {
     async refused(act) {
         this.allowed.push(/status of 4\d\d/);
         await act();
+        await this.page.evaluate(() => 0); // what the console has to say has come by then
         this.allowed.pop();
     }
 
@@ -48,7 +49,7 @@ export class Person {
     heading(name) { return this.page.getByRole('heading', { name }); }
     region(name) { return this.page.locator('section', { has: this.page.getByRole('heading', { name, exact: true }) }); }
     dialog() { return this.page.getByRole('dialog'); }
-    async sees(...texts) { for (const text of texts) await this.page.getByText(text).first().waitFor(); }
+    async sees(...texts) { for (const text of texts) await this.page.getByText(text).filter({ visible: true }).first().waitFor(); }
     async sees_heading(name) { await this.heading(name).first().waitFor(); }
 
     /** Goes by the bar at the top. */
@@ -61,8 +62,8 @@ export class Person {
         await this.sees_heading('Hello, ' + this.full_name);
     }
 
-    /** Opens the link of an invitation and fills in who joins. */
-    async join(link) {
+    /** Opens the link of an invitation, says who joins, and sends it. */
+    async ask_to_join(link) {
         await this.page.goto(link);
         await this.sees_heading('Join with an invitation');
         await this.page.getByLabel('Name to sign in with').fill(this.name);
@@ -70,6 +71,9 @@ export class Person {
         await this.page.getByLabel('Password', { exact: true }).fill(this.password);
         await this.page.getByLabel('Password again').fill(this.password);
         await this.button('Join').click();
+    }
+    async join(link) {
+        await this.ask_to_join(link);
         await this.sees_heading('Hello, ' + this.full_name);
     }
 
