@@ -14,8 +14,8 @@ export async function show({ loom, me, refresh }) {
             h('h2', {}, 'Released for this loom'),
             current.length === 0 ? h('p', { class: 'empty' }, 'Nothing is released for this loom. As soon as something is, it stands here by itself.')
                 : h('ul', { class: 'tiles' }, current.map(release => h('li', {}, tile(loom, release, content.loaded)))),
-            content.faults.length === 0 ? null : [h('h2', {}, 'Faults reported'), h('ul', { class: 'plain card' }, content.faults.map(fault => h('li', {},
-                link(at('looms', loom, fault.release), {}, `Release ${fault.release}${fault.pick ? ', pick ' + grouped(fault.pick) : ''}`), `: ${fault.text}`, h('p', { class: 'soft' }, `${fault.by}, `, when(fault.at)))))],
+            content.faults.length === 0 ? null : [h('h2', {}, 'Faults reported'), h('section', { class: 'card' }, h('ul', { class: 'plain' }, content.faults.map(fault => h('li', {},
+                link(at('looms', loom, fault.release), {}, `Release ${fault.release}${fault.pick ? ', pick ' + grouped(fault.pick) : ''}`), `: ${fault.text}`, h('p', { class: 'soft' }, `${fault.by}, `, when(fault.at))))))],
             past.length === 0 ? null : h('details', {}, h('summary', {}, 'No longer to be woven, or not yet'), table('Past releases', ['Release', 'Design', 'State', 'Since', 'Why'],
                 past.map(release => [link(at('looms', loom, release.number), {}, `Release ${release.number}`), `${release.design}, revision ${release.revision}`, state(release.state), when(release.since), release.reason]))),
             h('details', {}, h('summary', {}, 'Profile of the loom'), h('section', { class: 'card' }, facts([['Profile', content.profile_name], ['Version here', content.profile_version], ['Hash', hash(content.profile_sha256)],

@@ -40,7 +40,8 @@ async function look_at(person, [name, path, heading], device, is_tablet) {
         await person.button('Check for this loom').click();
         await person.sees(/0 errors/);
     }
-    for (const summary of await person.page.locator('details:not([open]) > summary').all()) await summary.click();
+    const folded = person.page.locator('details:not([open]) > summary');
+    while (await folded.count()) await folded.first().click();
     await picture(person.page, `${device}-${name.replaceAll(' ', '-')}`, { whole: true });
     await accessible(person.page, `${name}, ${device}`);
     if (is_tablet) await large_targets(person.page, `${name}, ${device}`);
