@@ -81,7 +81,7 @@ function pulling(loom, source, content) {
         content.label ? h('p', { class: 'soft' }, content.label) : null,
         h('ul', { class: 'files' }, content.files.map(file => h('li', {}, pull(file.name, `/files/${encodeURIComponent(file.name)}`), h('span', {}, size(file.size)), hash(file.sha256))),
             h('li', {}, pull('manifest.json', '/manifest'), h('span', {}, 'signed'), hash(content.manifest_sha256))),
-        h('p', { class: 'hint' }, 'Pull all of them into one folder, then check it before loading: ', h('code', {}, 'loomlink verify-files FOLDER'),
+        h('p', { class: 'hint' }, 'Pull all of them into one folder, then check it before loading: ', h('code', {}, `loomlink verify-files FOLDER --loom '${loom}'`),
             '. The program does both at once: ', h('code', {}, `loomlink pull '${loom}' --release ${content.number} --to FOLDER`)));
 }
 
