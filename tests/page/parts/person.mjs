@@ -4,6 +4,7 @@ import { chromium } from 'playwright-core';
 
 export const desk = { viewport: { width: 1440, height: 900 } };
 export const tablet = { viewport: { width: 1024, height: 768 }, hasTouch: true, isMobile: true };
+const patience = 60000; // nothing here depends on speed
 const password_of = name => `the warp and the weft of ${name}`;
 
 /** Chromium takes this server's certificate alone, and finds no other host. */
@@ -16,11 +17,11 @@ export class Person {
     /** `device` is `desk` or `tablet`. */
     static async enter(browser, mill, { name, full_name, device = desk }) {
         const person = new Person();
-        Object.assign(person, { mill, name, full_name, password: password_of(name), troubles: [], allowed: [] });
+        Object.assign(person, { mill, name, full_name, password: password_of(name), troubles: [], allowed: [], in_flight: 0 });
         person.context = await browser.newContext({ ...device, locale: 'en-GB', timezoneId: 'UTC', acceptDownloads: true });
         await person.context.grantPermissions(['clipboard-write', 'clipboard-read'], { origin: mill.origin });
         person.page = await person.context.newPage();
-        person.page.setDefaultTimeout(20000);
+        person.page.setDefaultTimeout(patience);
         person.watch();
         return person;
     }
@@ -31,6 +32,8 @@ export class Person {
         this.page.on('console', message => { if (['error', 'warning'].includes(message.type())) tell(`console: ${message.text()}`); });
         this.page.on('pageerror', error => tell(`script: ${error.message}`));
         this.page.on('request', request => { if (!/^(blob|data):/.test(request.url()) && new URL(request.url()).origin !== this.mill.origin) tell(`asked elsewhere: ${request.url()}`); });
+        this.page.on('request', () => { ++this.in_flight; });
+        for (const end of ['requestfinished', 'requestfailed']) this.page.on(end, () => { --this.in_flight; });
         this.page.on('response', response => { if (response.status() >= 500) tell(`${response.status()} of ${response.url()}`); });
     }
 
@@ -40,6 +43,11 @@ export class Person {
         await act();
         await this.page.evaluate(() => 0); // what the console has to say has come by then
         this.allowed.pop();
+    }
+
+    /** Waits until nothing has been asked of the server for a while: what follows a click is there then. */
+    async settled() {
+        for (let calm = 0; calm < 3; calm = this.in_flight > 0 ? 0 : calm + 1) await this.page.waitForTimeout(100);
     }
 
     quiet() { assert.deepEqual(this.troubles, []); }

@@ -45,6 +45,7 @@ async function add_loom(admin) {
     await admin.sees('Nothing is released for this loom');
     await admin.button('Operators …').click();
     await admin.answered('Set', { 'Names to sign in with, with commas between': 'otto' });
+    await admin.settled();
     await admin.page.getByText('Profile of the loom').click();
     await admin.page.getByRole('definition').getByText('otto', { exact: true }).waitFor();
 }

@@ -24,7 +24,7 @@ async function sign_in(person) {
 
 async function submit_and_compare(designer) {
     const { page } = designer;
-    await press(designer, page.getByRole('link', { name: 'Designs' }));
+    await press(designer, designer.link('Designs'));
     await press(designer, designer.link('toddler'));
     await designer.sees_heading('toddler');
     await press(designer, designer.button('Save a revision …'));
@@ -59,7 +59,7 @@ async function submit_and_compare(designer) {
 
 async function go_to_a_pick(operator) {
     const { page } = operator;
-    await press(operator, page.getByRole('link', { name: 'Looms' }));
+    await press(operator, operator.link('Looms'));
     await press(operator, page.getByRole('link', { name: loom }));
     await press(operator, page.getByRole('link', { name: /Release 1, revision 2/ }));
     await operator.sees_heading('toddler, release 1');
@@ -75,7 +75,7 @@ async function go_to_a_pick(operator) {
 
 /** Escape leaves a dialog, and the focus is where it was. */
 async function leave_a_dialog(admin) {
-    await press(admin, admin.page.getByRole('link', { name: 'People' }));
+    await press(admin, admin.link('People'));
     await press(admin, admin.button('Change the policy …'));
     await admin.dialog().waitFor();
     await admin.page.keyboard.press('Escape');

@@ -29,13 +29,13 @@ async function enter_with_all_roles({ browser, mill, people }) {
     await mary.page.getByRole('link', { name: loom }).click();
     await mary.button('Operators …').click();
     await mary.answered('Set', { 'Names to sign in with, with commas between': 'otto, vera' });
-    await mary.sees('The operators are set');
+    await mary.settled();
 }
 
 async function look_at(person, [name, path, heading], device, is_tablet) {
     await person.page.goto(person.mill.origin + path);
     await person.sees_heading(heading);
-    await person.page.waitForLoadState('networkidle');
+    await person.settled();
     if (name === 'a revision') {
         await person.button('Check for this loom').click();
         await person.sees(/0 errors/);
