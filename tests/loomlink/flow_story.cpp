@@ -274,4 +274,23 @@ TEST_CASE("a fault at the loom waits for who made the revision, as long as the r
     CHECK(waiting("dora").empty());
 }
 
+TEST_CASE("what a newer revision follows waits for its designer no more") {
+    FlowSite site;
+    Workflow& flow = *site.flow;
+    got(flow.designs().add(site.people.at("dora"), site.ask(), "shoe"));
+    const auto waiting = [&] { return got(flow.waiting(site.people.at("dora"))).at("items"); };
+    site.save("dora", {});
+    site.save("dora", 1, "twill again");
+    REQUIRE(waiting().size() == 1);
+    CHECK(waiting()[0].at("revision") == 2);
+    got(flow.steps().submit(site.people.at("dora"), site.ask("dora"), {"shoe", 2, "ready"}, {}));
+    CHECK(waiting().empty());
+    got(flow.steps().request_changes(site.people.at("abe"), site.ask("abe"), {"shoe", 2, "no"}));
+    REQUIRE(waiting().size() == 1);
+    CHECK(waiting()[0].at("what") == "changes were requested");
+    site.save("dora", 2, "satin");
+    REQUIRE(waiting().size() == 1);
+    CHECK(waiting()[0].at("what") == "a draft, not submitted yet");
+}
+
 }  // namespace weave::loomlink::testing

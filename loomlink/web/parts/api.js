@@ -1,8 +1,9 @@
 // Talks to /api/v1. A failure is an ApiError whose text can be shown as it is.
+import { sentence } from './dom.js';
 
 export class ApiError extends Error {
     constructor(status, error) {
-        super(error?.message ?? `The server answered ${status}`);
+        super(sentence(error?.message ?? `The server answered ${status}`));
         this.status = status;
         this.where = error?.where ?? '';
     }

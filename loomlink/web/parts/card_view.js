@@ -13,7 +13,7 @@ export function card_view({ source, picks, ends, on_place = () => {}, label }) {
     const canvas = h('canvas', { tabindex: 0, role: 'application', 'aria-label': label + '. Arrow keys move, plus and minus zoom, Home shows all.' });
     const place = h('output', { class: 'place', 'aria-live': 'polite' });
     const tiles = new Map();
-    let zoom = 1, x = 0, y = 0, cursor = null, waiting = false, scale = devicePixelRatio || 1;
+    let zoom = 1, x = 0, y = 0, cursor = null, waiting = false, first = true, wanted = null, scale = devicePixelRatio || 1;
 
     const fit = () => Math.min(canvas.width / ends, canvas.height / picks);
     const clamp = () => {
@@ -125,6 +125,10 @@ export function card_view({ source, picks, ends, on_place = () => {}, label }) {
     }
 
     function show_pick(pick) {
+        if (first) { // there is no size to draw in yet
+            wanted = pick;
+            return;
+        }
         const was_whole = zoom < 6 * scale;
         cursor = { pick, end: cursor?.end ?? 1 };
         zoom = Math.max(zoom, 6 * scale);
@@ -194,13 +198,15 @@ export function card_view({ source, picks, ends, on_place = () => {}, label }) {
     canvas.addEventListener('pointerup', lift);
     canvas.addEventListener('pointercancel', lift);
 
-    let first = true;
     const watch = new ResizeObserver(() => {
         scale = devicePixelRatio || 1;
         canvas.width = Math.max(1, Math.round(canvas.clientWidth * scale));
         canvas.height = Math.max(1, Math.round(canvas.clientHeight * scale));
-        if (first) show_all();
-        first = false;
+        if (first) {
+            first = false;
+            if (wanted === null) show_all();
+            else show_pick(wanted);
+        }
         draw_soon();
     });
     watch.observe(canvas);

@@ -39,6 +39,9 @@ export function hash(text, shown = 12) {
     }, text.slice(0, shown));
 }
 
+/** The server's words, which begin small, where they stand alone. */
+export const sentence = text => text.charAt(0).toUpperCase() + text.slice(1);
+
 /** 1234 → "1,234", as all numbers of picks and ends are written here. */
 export const grouped = number => number.toLocaleString('en');
 

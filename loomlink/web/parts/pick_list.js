@@ -17,8 +17,8 @@ export const pick_words = entry => [`Pick ${grouped(entry.pick)}`, feeders(entry
 export function pick_cells(entry) {
     const swatch = h('span', { class: 'swatch', 'aria-hidden': 'true' });
     if (entry.colour) swatch.style.background = entry.colour;
-    return [swatch, h('span', { class: 'weft' }, h('span', { class: 'feeder' }, feeders(entry) + (entry.take_up ? '' : ', no take-up')),
-        h('span', { class: 'soft' }, entry.yarn ?? '')),
+    return [swatch, h('span', { class: 'weft' }, h('span', { class: 'feeder' }, feeders(entry)),
+        h('span', { class: 'soft' }, [entry.take_up ? null : 'no take-up', entry.yarn].filter(Boolean).join(', '))),
     h('span', { class: 'direction', role: 'img', 'aria-label': direction(entry) }, arrow(entry))];
 }
 

@@ -1,4 +1,4 @@
-import { h, link, state, when } from '../parts/dom.js';
+import { h, link, state, when, sentence } from '../parts/dom.js';
 import { get, at } from '../parts/api.js';
 
 /** What waits for this person, by role. */
@@ -14,7 +14,7 @@ export async function show({ me }) {
 
 const tile = item => link(item.release ? at('looms', item.loom, item.release) : at('designs', item.design, item.revision), { class: 'tile' },
     h('strong', {}, item.release ? `${item.design} for ${item.loom}` : `${item.design}, revision ${item.revision}`), state(item.state),
-    h('span', {}, item.what.charAt(0).toUpperCase() + item.what.slice(1)), h('span', { class: 'soft' }, 'since ', when(item.since)));
+    h('span', {}, sentence(item.what)), h('span', { class: 'soft' }, 'since ', when(item.since)));
 
 /** Releases are signed by keys that looms trust; whose those are, an administrator signs. */
 async function keys_to_publish(me) {

@@ -1,4 +1,4 @@
-import { h, table, facts, say, hash } from '../parts/dom.js';
+import { h, table, facts, say, hash, sentence } from '../parts/dom.js';
 import { get, post, put, at } from '../parts/api.js';
 import { ask, hand_over } from '../parts/dialog.js';
 
@@ -13,7 +13,7 @@ export async function show({ refresh }) {
         title: 'People',
         body: [h('div', { class: 'head' }, h('h1', {}, 'People'), h('button', { type: 'button', class: 'main', onclick: () => invite(refresh) }, 'Invite …')),
             table('People', ['Name', 'Full name', 'Roles', 'Key', 'Change'], people.map(person => [person.name, person.full_name,
-                person.active ? person.roles.map(role => role_words.get(role)).join(', ') : h('span', { class: 'state' }, 'Disabled'), person.key ? hash(person.key) : 'none', changes_of(person, done, refresh)])),
+                person.active ? person.roles.map(role => role_words.get(role)).join(', ') : h('span', { class: 'state' }, 'Disabled'), person.key ? hash(person.key, 8) : 'none', changes_of(person, done, refresh)])),
             trust(changes, done), h('div', { class: 'two' }, policy_card(policy, done), machines(signers, done, refresh))],
     };
 }
@@ -44,7 +44,7 @@ function trust(changes, done) {
     }).then(done('The new list is signed'));
     return h('section', { class: changes.length ? 'notice' : 'card' }, h('h2', {}, 'Keys that looms trust'),
         changes.length === 0 ? h('p', {}, 'The signed list is as people are now.')
-            : [h('p', {}, 'The signed list is not as people are now:'), h('ul', {}, changes.map(text => h('li', {}, text.charAt(0).toUpperCase() + text.slice(1)))),
+            : [h('p', {}, 'The signed list is not as people are now:'), h('ul', {}, changes.map(text => h('li', {}, sentence(text)))),
                 h('button', { type: 'button', class: 'main', onclick: publish }, 'Sign the list …')]);
 }
 

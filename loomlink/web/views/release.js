@@ -79,8 +79,8 @@ function pulling(loom, source, content) {
     const pull = (name, path) => h('a', { class: 'button', href: `/api/v1${source}${path}`, download: name, onclick: () => say(`${name} is on its way to the downloads`) }, 'Pull ' + name);
     return h('section', { class: 'card' }, h('h2', {}, 'Files for the controller'),
         content.label ? h('p', { class: 'soft' }, content.label) : null,
-        h('ul', { class: 'files' }, content.files.map(file => h('li', {}, pull(file.name, `/files/${encodeURIComponent(file.name)}`), h('span', {}, size(file.size)), hash(file.sha256))),
-            h('li', {}, pull('manifest.json', '/manifest'), h('span', {}, 'signed'), hash(content.manifest_sha256))),
+        h('ul', { class: 'files' }, content.files.map(file => h('li', {}, pull(file.name, `/files/${encodeURIComponent(file.name)}`), h('span', {}, size(file.size)), hash(file.sha256, 8))),
+            h('li', {}, pull('manifest.json', '/manifest'), h('span', {}, 'signed'), hash(content.manifest_sha256, 8))),
         h('p', { class: 'hint' }, 'Pull all of them into one folder, then check it before loading: ', h('code', {}, `loomlink verify-files FOLDER --loom '${loom}'`),
             '. The program does both at once: ', h('code', {}, `loomlink pull '${loom}' --release ${content.number} --to FOLDER`)));
 }
@@ -110,7 +110,7 @@ function buttons(loom, content, is_loaded, desk, refresh) {
     const button = (name, text, kind, act) => (may.includes(name) ? h('button', { type: 'button', class: kind, onclick: act }, text) : null);
     const path = at('looms', loom, 'releases', content.number);
     return h('div', { class: 'buttons' },
-        button('loaded', is_loaded ? 'Loaded again …' : 'Confirm loaded …', is_loaded ? null : 'main', () => ask({ title: 'Loaded on the loom?', text: `You confirm that ${content.design}, release ${content.number}, was verified and is loaded on ${loom}.`, button: 'Yes, it is loaded', act: () => post(at('looms', loom, 'loaded'), { release: content.number }) }).then(done('Confirmed'))),
+        button('loaded', 'Confirm loaded …', is_loaded ? null : 'main', () => ask({ title: 'Loaded on the loom?', text: `You confirm that ${content.design}, release ${content.number}, was verified and is loaded on ${loom}.`, button: 'Yes, it is loaded', act: () => post(at('looms', loom, 'loaded'), { release: content.number }) }).then(done('Confirmed'))),
         button('fault', 'Report a fault …', null, () => ask({ title: 'Report a fault', button: 'Send to the designer', fields: [{ name: 'text', label: 'What is wrong', kind: 'area' }, { name: 'pick', label: 'Pick', kind: 'number', required: false, value: desk?.pick() }, { name: 'end', label: 'End', kind: 'number', required: false }], act: values => post(at('looms', loom, 'faults'), { release: content.number, ...values }) }).then(done('The designer is told'))),
         button('sign', 'Sign …', 'main', () => sign({ title: 'Sign the release', button: 'Sign', act: values => post(`${path}/sign`, values) }).then(done('Signed'))),
         button('withdraw', 'Withdraw …', 'danger', () => sign({ title: 'Withdraw this release', text: 'No loom can pull it any more; terminals in watch mode remove its files.', danger: true, button: 'Sign and withdraw', act: values => post(`${path}/withdraw`, values) }).then(done('Withdrawn'))));

@@ -1,4 +1,4 @@
-import { h, link, state, when, facts, hash, table, counted, grouped, say, field } from '../parts/dom.js';
+import { h, link, state, when, facts, hash, table, counted, grouped, say, field, sentence } from '../parts/dom.js';
 import { get, post, at } from '../parts/api.js';
 import { ask, sign } from '../parts/dialog.js';
 import { card_view } from '../parts/card_view.js';
@@ -20,7 +20,7 @@ export async function show({ design, revision, me, refresh }) {
             h('div', { class: 'head' }, h('h1', {}, `${design}, revision ${revision} `, state(content.state)), actions(path, content, looms, refresh)),
             content.message ? h('p', {}, content.message) : null,
             missing(content),
-            h('div', { class: 'two wide_left' }, pictures(path, card), h('div', {}, what_it_is(design, path, content, me), decisions(content), comments(path, content, place, refresh))),
+            h('div', { class: 'two wide_left' }, h('div', {}, pictures(path, card), comments(path, content, place, refresh)), h('div', {}, what_it_is(design, path, content, me), decisions(content))),
             checks(path, content, looms, refresh), evidence(content)],
     };
 }
@@ -28,7 +28,7 @@ export async function show({ design, revision, me, refresh }) {
 /** What still stands between this revision and the loom. */
 function missing(content) {
     if (!content.missing.length) return null;
-    return h('section', { class: 'notice' }, h('h2', {}, 'Still missing'), h('ul', {}, content.missing.map(text => h('li', {}, text.charAt(0).toUpperCase() + text.slice(1)))));
+    return h('section', { class: 'notice' }, h('h2', {}, 'Still missing'), h('ul', {}, content.missing.map(text => h('li', {}, sentence(text)))));
 }
 
 function what_it_is(design, path, content, me) {
@@ -99,7 +99,7 @@ function evidence(content) {
 
 function decisions(content) {
     return h('section', { class: 'card' }, h('h2', {}, 'Decisions'), content.decisions.length === 0 ? h('p', { class: 'soft' }, 'None yet.')
-        : h('ul', { class: 'plain' }, content.decisions.map(decision => h('li', {}, h('strong', {}, decision.what.charAt(0).toUpperCase() + decision.what.slice(1)), ` by ${decision.by}, `, when(decision.at), h('p', {}, decision.reason)))));
+        : h('ul', { class: 'plain' }, content.decisions.map(decision => h('li', {}, h('strong', {}, sentence(decision.what)), ` by ${decision.by}, `, when(decision.at), h('p', {}, decision.reason)))));
 }
 
 /** Comments; a new one can be about the place that is marked in the card. */

@@ -16,8 +16,9 @@ export async function clear_pictures() {
     for (const name of await readdir(pictures)) if (/\.png$/.test(name)) await rm(path.join(pictures, name));
 }
 
-/** Keeps a picture of what the person sees; `whole`: of the page to its end. */
-export async function picture(page, name, { whole = false } = {}) {
+/** Keeps a picture of what the person sees; `whole`: of the page to its end; `calm`: when nothing is told in passing any more. */
+export async function picture(page, name, { whole = false, calm = false } = {}) {
+    if (calm) await page.waitForFunction(() => !document.querySelector('#said.shown'));
     await page.evaluate(() => document.fonts.ready);
     await page.screenshot({ path: path.join(pictures, `${String(++taken).padStart(2, '0')}-${name}.png`), fullPage: whole, animations: 'disabled' });
 }

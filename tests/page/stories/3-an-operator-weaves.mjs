@@ -46,7 +46,7 @@ async function inspect(operator) {
     await operator.settled();
     await card.tap({ position: { x: 250, y: 200 } });
     await operator.sees(/Pick [\d,]+, end \d+/);
-    await picture(operator.page, 'single-crossings');
+    await picture(operator.page, 'single-crossings', { calm: true });
     assert.ok(await colours(card) <= 6, 'single crossings are blurred');
     await operator.button('Show all').tap();
 }
@@ -66,7 +66,7 @@ async function go_to_1234(operator, files) {
     await operator.sees(`Pick 1,234, feeder ${expected.feeder}, ${expected.direction}, ${expected.yarn}`);
     await operator.sees(/^Pick 1,234, end \d+$/);
     await operator.settled();
-    await picture(operator.page, 'pick-1234');
+    await picture(operator.page, 'pick-1234', { calm: true });
     await operator.button('One pick on').tap();
     await operator.page.getByRole('option', { selected: true }).getByText('1,235').waitFor();
     await operator.button('One pick back').tap();
@@ -92,7 +92,7 @@ export async function run({ people: { otto, dora } }) {
     await otto.sees_heading('toddler, release 1');
     await otto.page.getByRole('option').first().waitFor();
     await otto.settled();
-    await picture(otto.page, 'a-release-at-the-loom');
+    await picture(otto.page, 'a-release-at-the-loom', { calm: true });
     await inspect(otto);
     const files = await pull_all(otto);
     assert.ok([...files.keys()].some(name => name.endsWith('.ep')) && files.has('manifest.json'), [...files.keys()].join(', '));

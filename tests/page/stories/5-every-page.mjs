@@ -42,6 +42,7 @@ async function look_at(person, [name, path, heading], device, is_tablet) {
     }
     const folded = person.page.locator('details:not([open]) > summary');
     while (await folded.count()) await folded.first().click();
+    await person.page.evaluate(() => scrollTo(0, 0));
     await picture(person.page, `${device}-${name.replaceAll(' ', '-')}`, { whole: true });
     await accessible(person.page, `${name}, ${device}`);
     if (is_tablet) await large_targets(person.page, `${name}, ${device}`);
