@@ -17,7 +17,7 @@ export async function show({ loom, me, refresh }) {
             content.faults.length === 0 ? null : [h('h2', {}, 'Faults reported'), h('section', { class: 'card' }, h('ul', { class: 'plain' }, content.faults.map(fault => h('li', {},
                 link(at('looms', loom, fault.release), {}, `Release ${fault.release}${fault.pick ? ', pick ' + grouped(fault.pick) : ''}`), `: ${fault.text}`, h('p', { class: 'soft' }, `${fault.by}, `, when(fault.at))))))],
             past.length === 0 ? null : h('details', {}, h('summary', {}, 'No longer to be woven, or not yet'), table('Past releases', ['Release', 'Design', 'State', 'Since', 'Why'],
-                past.map(release => [link(at('looms', loom, release.number), {}, `Release ${release.number}`), `${release.design}, revision ${release.revision}`, state(release.state), when(release.since), release.reason]))),
+                past.map(release => [link(at('looms', loom, release.number), {}, `Release\u00a0${release.number}`), `${release.design}, revision ${release.revision}`, state(release.state), when(release.since), release.reason]))),
             h('details', {}, h('summary', {}, 'Profile of the loom'), h('section', { class: 'card' }, facts([['Profile', content.profile_name], ['Version here', content.profile_version], ['Hash', hash(content.profile_sha256)],
                 ['Hooks', grouped(content.hooks)], ['Feeders', content.feeders], ['File', content.output.toUpperCase()], ['Operators', content.operators.join(', ') || 'none']])))],
     };
