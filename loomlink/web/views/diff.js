@@ -24,7 +24,7 @@ function card(diff, path, query, from, to) {
     if (!diff.pixels.compared) return h('section', { class: 'card' }, h('h2', {}, 'Card image'), h('p', { class: 'empty' }, 'The cards are not compared: ' + diff.pixels.why_not));
     const picture = `/api/v1${path}.png${query}`;
     return h('section', { class: 'card' }, h('h2', {}, 'Card image'),
-        h('img', { class: 'pixels', src: picture, alt: `The card images of revisions ${from} and ${to}, laid on each other` }),
+        h('img', { class: 'drawing', src: picture, alt: `The card images of revisions ${from} and ${to}, laid on each other` }),
         h('p', {}, h('a', { class: 'button', href: picture, download: `compared-${from}-${to}.png` }, 'Download the picture')));
 }
 

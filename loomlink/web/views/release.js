@@ -1,4 +1,4 @@
-import { h, link, state, when, facts, hash, size, counted, grouped, say, field } from '../parts/dom.js';
+import { h, link, state, when, facts, hash, size, counted, grouped, say, field, sentence } from '../parts/dom.js';
 import { get, post, put, at } from '../parts/api.js';
 import { ask, sign } from '../parts/dialog.js';
 import { card_view } from '../parts/card_view.js';
@@ -78,7 +78,7 @@ function weaving(loom, source, content) {
 function pulling(loom, source, content) {
     const pull = (name, path) => h('a', { class: 'button', href: `/api/v1${source}${path}`, download: name, onclick: () => say(`${name} is on its way to the downloads`) }, 'Pull ' + name);
     return h('section', { class: 'card' }, h('h2', {}, 'Files for the controller'),
-        content.label ? h('p', { class: 'soft' }, content.label) : null,
+        content.label ? h('p', { class: 'soft' }, sentence(content.label)) : null,
         h('ul', { class: 'files' }, content.files.map(file => h('li', {}, pull(file.name, `/files/${encodeURIComponent(file.name)}`), h('span', {}, size(file.size)), hash(file.sha256, 8))),
             h('li', {}, pull('manifest.json', '/manifest'), h('span', {}, 'signed'), hash(content.manifest_sha256, 8))),
         h('p', { class: 'hint' }, 'Pull all of them into one folder, then check it before loading: ', h('code', {}, `loomlink verify-files FOLDER --loom '${loom}'`),

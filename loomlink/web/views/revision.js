@@ -43,7 +43,7 @@ function what_it_is(design, path, content, me) {
 
 function pictures(path, card) {
     const place = h('div', { class: 'picture' }, card.element);
-    const picture = h('img', { class: 'pixels', alt: '' });
+    const picture = h('img', { class: 'drawing', alt: '' });
     const show_view = (view, name) => {
         if (view === 'card') return place.replaceChildren(card.element);
         picture.src = `/api/v1${path}/picture?view=${view}`;
@@ -83,12 +83,12 @@ function report_of(path, content, loom, report, refresh) {
         title: `Waive ${rule} for ${loom}`, text: 'All findings of this rule for this loom pass. Your reason stands in the log.', button: 'Sign and waive',
         act: values => post(`${path}/waive`, { rule, loom, ...values }),
     }).then(answer => { if (answer) { say('Waived'); refresh(); } });
-    const row = finding => [h('span', { class: 'severity ' + finding.severity }, finding.severity), finding.rule, finding.pick ? grouped(finding.pick) : '', finding.end ? grouped(finding.end) : '', finding.message,
+    const row = finding => [h('span', { class: 'severity ' + finding.severity }, finding.severity), finding.rule, finding.pick ? grouped(finding.pick) : '', finding.end ? grouped(finding.end) : '', sentence(finding.message),
         ...(may_waive ? [finding.severity === 'error' ? h('button', { type: 'button', 'aria-label': `Waive ${finding.rule}`, onclick: () => waive(finding.rule) }, 'Waive …') : ''] : [])];
     return [h('p', { role: 'status', class: report.errors ? 'trouble' : 'good' }, `${counted(report.errors, 'error')}, ${counted(report.warnings, 'warning')}, ${counted(report.not_evaluated.length, 'rule')} not evaluated.`),
         report.findings.length === 0 ? h('p', {}, 'Nothing was found.') : table('Findings', ['Severity', 'Rule', 'Pick', 'End', 'What', ...(may_waive ? ['Let it pass'] : [])], report.findings.map(row)),
         report.not_evaluated.length === 0 ? '' : h('details', {}, h('summary', {}, 'Rules that could not be judged, and why'),
-            table('Rules not evaluated', ['Rule', 'Why'], report.not_evaluated.map(rule => [rule.rule, rule.reason])))];
+            table('Rules not evaluated', ['Rule', 'Why'], report.not_evaluated.map(rule => [rule.rule, sentence(rule.reason)])))];
 }
 
 function evidence(content) {
