@@ -17,7 +17,7 @@ export class Person {
     /** `device` is `desk` or `tablet`. */
     static async enter(browser, mill, { name, full_name, device = desk }) {
         const person = new Person();
-        Object.assign(person, { mill, name, full_name, password: password_of(name), troubles: [], allowed: [], in_flight: 0 });
+        Object.assign(person, { mill, name, full_name, password: password_of(name), troubles: [], refusals: 0, is_refused: false, in_flight: 0 });
         person.context = await browser.newContext({ ...device, locale: 'en-GB', timezoneId: 'UTC', acceptDownloads: true });
         await person.context.grantPermissions(['clipboard-write', 'clipboard-read'], { origin: mill.origin });
         person.page = await person.context.newPage();
@@ -28,7 +28,10 @@ export class Person {
 
     /** What a person does not see, but what must not be: errors on the console, and requests to elsewhere. */
     watch() {
-        const tell = text => { if (!this.allowed.some(pattern => pattern.test(text))) this.troubles.push(`${this.name} at ${this.page.url()}: ${text}`); };
+        const tell = text => {
+            if (this.is_refused && /status of 4\d\d/.test(text)) ++this.refusals;
+            else this.troubles.push(`${this.name} at ${this.page.url()}: ${text}`);
+        };
         this.page.on('console', message => { if (['error', 'warning'].includes(message.type())) tell(`console: ${message.text()}`); });
         this.page.on('pageerror', error => tell(`script: ${error.message}`));
         this.page.on('request', request => { if (!/^(blob|data):/.test(request.url()) && new URL(request.url()).origin !== this.mill.origin) tell(`asked elsewhere: ${request.url()}`); });
@@ -37,12 +40,14 @@ export class Person {
         this.page.on('response', response => { if (response.status() >= 500) tell(`${response.status()} of ${response.url()}`); });
     }
 
-    /** Does something that the server refuses; the browser may say so on its console. */
+    /** Does something that the server must refuse; the browser says so on its console, perhaps a little later. */
     async refused(act) {
-        this.allowed.push(/status of 4\d\d/);
+        const before = this.refusals;
+        this.is_refused = true;
         await act();
-        await this.page.evaluate(() => 0); // what the console has to say has come by then
-        this.allowed.pop();
+        while (this.refusals === before) await this.page.waitForTimeout(100);
+        await this.settled();
+        this.is_refused = false;
     }
 
     /** Waits until nothing has been asked of the server for a while: what follows a click is there then. */
