@@ -1,6 +1,6 @@
 // Which view a path shows, and the bar above all of them.
 import { h, link, say } from './parts/dom.js';
-import { get, post, on_signed_out, remember } from './parts/api.js';
+import { get, post, may_be_known, on_signed_out, remember } from './parts/api.js';
 
 const views = [
     ['/join', 'join'], ['/', 'home'], ['/designs', 'designs'], ['/designs/:design', 'design'],
@@ -11,6 +11,7 @@ const views = [
 
 let me = null;
 let shown = { leave() {} };
+let latest = 0; // which of several views that are on their way is wanted
 
 function found(path) {
     for (const [pattern, name] of views) {
@@ -28,30 +29,41 @@ export function go(to, { replace = false } = {}) {
     return show();
 }
 
-async function show() {
-    shown.leave?.();
-    shown = { leave() {} };
+/** Shows what the path names. `again`: what is there stays until the new is ready, and where the reader was. */
+async function show({ again = false } = {}) {
+    const mine = ++latest;
     const main = document.getElementById('main');
     const target = found(location.pathname);
     const name = !target ? 'lost' : !me && target.name !== 'join' ? 'login' : target.name;
-    const view = await import(`./views/${name}.js`);
     bar();
-    main.replaceChildren(h('p', { class: 'waiting' }, 'Loading …'));
-    const here = location.href;
-    try {
-        const content = await view.show({ ...target?.names, me, go, refresh: show, signed_in, search: new URLSearchParams(location.search) });
-        if (here !== location.href) return;
-        shown = content;
-        main.replaceChildren(...[content.body].flat(3).filter(Boolean));
-        document.title = content.title + ' · loomlink';
-    } catch (error) {
-        if (here !== location.href) return;
-        main.replaceChildren(h('h1', {}, 'That did not work'), h('p', { class: 'trouble', role: 'alert' }, error.message));
-        document.title = 'Trouble · loomlink';
+    if (!again) {
+        shown.leave?.();
+        shown = { leave() {} };
+        main.replaceChildren(h('p', { class: 'waiting' }, 'Loading …'));
     }
+    let content;
+    try {
+        const view = await import(`./views/${name}.js`);
+        content = await view.show({ ...target?.names, me, go, refresh: () => show({ again: true }), signed_in, search: new URLSearchParams(location.search) });
+    } catch (error) {
+        if (again && error.status === 0) return say(error.message); // the line is down: what is there stays
+        content = trouble(error);
+    }
+    if (mine !== latest) return content.leave?.();
+    shown.leave?.();
+    shown = content;
+    main.replaceChildren(...[content.body].flat(3).filter(Boolean));
+    document.title = content.title + ' · loomlink';
+    if (again && document.activeElement !== document.body) return;
     main.focus({ preventScroll: true });
-    scrollTo(0, 0);
+    if (!again) scrollTo(0, 0);
 }
+
+const trouble = error => ({
+    title: 'Trouble',
+    body: [h('h1', {}, 'That did not work'), h('p', { class: 'trouble', role: 'alert' }, error.message),
+        h('p', { class: 'buttons' }, h('button', { type: 'button', class: 'main', onclick: () => show() }, 'Try again'), link('/', { class: 'button' }, 'To the start'))],
+});
 
 function signed_in(answer) {
     remember(answer);
@@ -79,7 +91,7 @@ function bar() {
             entry('/looms', 'Looms'),
             has('engineer') ? entry('/log', 'Log') : null,
             has('admin') ? entry('/people', 'People') : null),
-        h('div', { class: 'who' }, entry('/account', me.full_name), h('button', { type: 'button', onclick: sign_out }, 'Sign out')));
+        h('div', { class: 'who' }, entry('/account', h('span', { class: 'cut' }, me.full_name)), h('button', { type: 'button', onclick: sign_out }, 'Sign out')));
 }
 
 document.addEventListener('click', event => {
@@ -91,7 +103,7 @@ document.addEventListener('click', event => {
     event.preventDefault();
     go(url.pathname + url.search);
 });
-addEventListener('popstate', show);
+addEventListener('popstate', () => show());
 on_signed_out(() => {
     if (!me) return;
     signed_in(null);
@@ -102,9 +114,9 @@ on_signed_out(() => {
 signed_in_before();
 async function signed_in_before() {
     try {
-        const answer = await get('/me');
-        remember(answer);
-        me = answer.person;
-    } catch { /* not signed in */ }
+        if (may_be_known()) signed_in(await get('/me'));
+    } catch (error) {
+        if (error.status === 401) signed_in(null);
+    }
     show();
 }

@@ -1,8 +1,11 @@
+#include <weave/core/text.hpp>
+
 #include <algorithm>
 #include <loomlink/workflow/looms.hpp>
 #include <loomlink/workflow/releases.hpp>
 #include <loomlink/workflow/rules.hpp>
 #include <loomlink/workflow/waiting.hpp>
+#include <set>
 
 namespace weave::loomlink {
 
@@ -52,6 +55,51 @@ Status add_releases(const Reader& reader, const Loom& loom, ReleaseStage stage, 
     return {};
 }
 
+/// Releases of own revisions that are woven and with which somebody at a loom had trouble.
+Status add_faults(const Reader& reader, const Caller& caller, Json& items) {
+    WEAVE_TRY(const auto looms, reader.looms());
+    for (const Loom& loom : looms) {
+        WEAVE_TRY(const auto releases, reader.releases(loom.id));
+        for (const Release& release : releases) {
+            if (release.state != ReleaseStage::released) continue;
+            WEAVE_TRY(const auto faults, reader.faults(release.id));
+            WEAVE_TRY(const FoundRevision found, revision_of(reader, release));
+            if (faults.empty() || !is_author(caller, found.revision)) continue;
+            WEAVE_TRY(const EventRecord newest, reader.record(faults.back().event));
+            items.push_back({{"design", found.design.name},
+                             {"revision", found.revision.number},
+                             {"loom", loom.name},
+                             {"release", release.number},
+                             {"state", release_word(release.state)},
+                             {"what", counted(faults.size(), "fault") + " reported at the loom"},
+                             {"since", newest.statement.at}});
+        }
+    }
+    return {};
+}
+
+/// The heads of all branches: what is followed by another revision waits for nobody.
+Result<std::set<Id>> heads_of_branches(const Reader& reader) {
+    std::set<Id> heads;
+    WEAVE_TRY(const auto designs, reader.designs());
+    for (const Design& design : designs) {
+        WEAVE_TRY(const auto branches, reader.branches(design.id));
+        for (const Branch& branch : branches) heads.insert(branch.head);
+    }
+    return heads;
+}
+
+Status add_for_designer(const Reader& reader, const Caller& caller, Json& items) {
+    WEAVE_TRY(const auto heads, heads_of_branches(reader));
+    const auto mine = [&](const Revision& revision) {
+        return revision.author == caller.id && heads.contains(revision.id);
+    };
+    WEAVE_CHECK_OK(
+        add_revisions(reader, RevisionState::changes_requested, "changes were requested", mine, items));
+    WEAVE_CHECK_OK(add_revisions(reader, RevisionState::draft, "a draft, not submitted yet", mine, items));
+    return add_faults(reader, caller, items);
+}
+
 Status add_for_approver(const Reader& reader, const Caller& caller, Json& items) {
     const auto not_mine = [&](const Revision& revision) { return !is_author(caller, revision); };
     WEAVE_CHECK_OK(add_revisions(reader, RevisionState::submitted, "to approve, or to ask for changes",
@@ -91,13 +139,7 @@ Status add_for_operator(const Reader& reader, const Caller& caller, Json& items)
 Result<Json> waiting_for(Desk& desk, const Caller& caller) {
     return desk.store().read([&](const Reader& reader) -> Result<Json> {
         Json items = Json::array();
-        const auto mine = [&](const Revision& revision) { return revision.author == caller.id; };
-        if (caller.is(PersonRole::designer)) {
-            WEAVE_CHECK_OK(add_revisions(reader, RevisionState::changes_requested, "changes were requested",
-                                         mine, items));
-            WEAVE_CHECK_OK(
-                add_revisions(reader, RevisionState::draft, "a draft, not submitted yet", mine, items));
-        }
+        if (caller.is(PersonRole::designer)) WEAVE_CHECK_OK(add_for_designer(reader, caller, items));
         if (caller.is(PersonRole::approver)) WEAVE_CHECK_OK(add_for_approver(reader, caller, items));
         if (caller.is(PersonRole::operator_)) WEAVE_CHECK_OK(add_for_operator(reader, caller, items));
         return Json{{"items", std::move(items)}};

@@ -241,4 +241,56 @@ TEST_CASE("two people sign where the policy asks for two; a revoked key has to b
     CHECK(open_manifest(manifest, got(read_trust(newest))));
 }
 
+TEST_CASE("a fault at the loom waits for who made the revision, as long as the release is woven") {
+    FlowSite site;
+    Workflow& flow = *site.flow;
+    site.set_policy();
+    site.set_up_loom();
+    got(flow.designs().add(site.people.at("dora"), site.ask(), "shoe"));
+    site.save("dora", {});
+    site.approve(1);
+    got(flow.releases().release(site.people.at("abe"), site.ask("abe"), {"shoe", 1, "EP 1", {1}, {}, "go"}));
+    const auto waiting = [&](const char* name) {
+        return got(flow.waiting(site.people.at(name))).at("items");
+    };
+    CHECK(waiting("dora").empty());
+    const auto report = [&](const char* text) {
+        got(flow.looms().report_fault(site.people.at("otto"), site.ask(), "EP 1", 1, text, 2, 3));
+    };
+    report("it floats");
+    site.time += std::chrono::minutes(1);
+    report("it floats again");
+    const Json items = waiting("dora");
+    REQUIRE(items.size() == 1);
+    CHECK(items[0] == Json{{"design", "shoe"},
+                           {"revision", 1},
+                           {"loom", "EP 1"},
+                           {"release", 1},
+                           {"state", "released"},
+                           {"what", "2 faults reported at the loom"},
+                           {"since", "2026-11-26T08:01:00.000Z"}});
+    CHECK(waiting("eve").empty());
+    got(flow.releases().withdraw(site.people.at("abe"), site.ask("abe"), "EP 1", 1, "it floats"));
+    CHECK(waiting("dora").empty());
+}
+
+TEST_CASE("what a newer revision follows waits for its designer no more") {
+    FlowSite site;
+    Workflow& flow = *site.flow;
+    got(flow.designs().add(site.people.at("dora"), site.ask(), "shoe"));
+    const auto waiting = [&] { return got(flow.waiting(site.people.at("dora"))).at("items"); };
+    site.save("dora", {});
+    site.save("dora", 1, "twill again");
+    REQUIRE(waiting().size() == 1);
+    CHECK(waiting()[0].at("revision") == 2);
+    got(flow.steps().submit(site.people.at("dora"), site.ask("dora"), {"shoe", 2, "ready"}, {}));
+    CHECK(waiting().empty());
+    got(flow.steps().request_changes(site.people.at("abe"), site.ask("abe"), {"shoe", 2, "no"}));
+    REQUIRE(waiting().size() == 1);
+    CHECK(waiting()[0].at("what") == "changes were requested");
+    site.save("dora", 2, "satin");
+    REQUIRE(waiting().size() == 1);
+    CHECK(waiting()[0].at("what") == "a draft, not submitted yet");
+}
+
 }  // namespace weave::loomlink::testing

@@ -1,24 +1,29 @@
 // Talks to /api/v1. A failure is an ApiError whose text can be shown as it is.
+import { sentence } from './dom.js';
 
 export class ApiError extends Error {
     constructor(status, error) {
-        super(error?.message ?? `The server answered ${status}`);
+        super(sentence(error?.message ?? `The server answered ${status}`));
         this.status = status;
         this.where = error?.where ?? '';
     }
 }
 
-let csrf = sessionStorage.getItem('csrf') ?? '';
+let csrf = '';
 let leave = () => {};
+const known = 'signed-in';
 
 /** What to do when the server no longer knows us. */
 export const on_signed_out = action => { leave = action; };
 
 export function remember(signed_in) {
     csrf = signed_in?.csrf ?? '';
-    if (csrf) sessionStorage.setItem('csrf', csrf);
-    else sessionStorage.removeItem('csrf');
+    if (csrf) localStorage.setItem(known, 'yes');
+    else localStorage.removeItem(known);
 }
+
+/** Whether somebody signed in with this browser and did not sign out, so that the server may know who it is. */
+export const may_be_known = () => localStorage.getItem(known) !== null;
 
 /** Every call that changes something has an id of its own, so that a repeated one changes nothing twice. */
 export function request_id() {

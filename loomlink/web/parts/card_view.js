@@ -1,5 +1,5 @@
 // A card image of any size, from the whole of it down to single crossings: tiles come from the server as they are needed.
-import { h } from './dom.js';
+import { h, grouped } from './dom.js';
 
 const tile = 512;
 const most_zoom = 40; // screen pixels a crossing
@@ -13,7 +13,7 @@ export function card_view({ source, picks, ends, on_place = () => {}, label }) {
     const canvas = h('canvas', { tabindex: 0, role: 'application', 'aria-label': label + '. Arrow keys move, plus and minus zoom, Home shows all.' });
     const place = h('output', { class: 'place', 'aria-live': 'polite' });
     const tiles = new Map();
-    let zoom = 1, x = 0, y = 0, marked = null, cursor = null, waiting = false, scale = devicePixelRatio || 1;
+    let zoom = 1, x = 0, y = 0, cursor = null, waiting = false, first = true, wanted = null, scale = devicePixelRatio || 1;
 
     const fit = () => Math.min(canvas.width / ends, canvas.height / picks);
     const clamp = () => {
@@ -56,6 +56,10 @@ export function card_view({ source, picks, ends, on_place = () => {}, label }) {
         const span = tile * step;
         const left = Math.max(0, Math.floor(x / span)), right = Math.min(Math.ceil(ends / span), Math.ceil((x + canvas.width / zoom) / span));
         const top = Math.max(0, Math.floor(y / span)), bottom = Math.min(Math.ceil(picks / span), Math.ceil((y + canvas.height / zoom) / span));
+        // The whole card at its coarsest lies below, so that nothing is blank while its parts are on their way.
+        const coarsest = 2 ** Math.max(0, Math.ceil(Math.log2(Math.max(ends, picks) / tile)));
+        const whole = tile_at(0, 0, coarsest);
+        if (whole.ready) pen.drawImage(whole.image, Math.round(-x * zoom), Math.round(-y * zoom), Math.round(ends * zoom), Math.round(picks * zoom));
         for (let row = top; row < bottom; ++row) {
             for (let column = left; column < right; ++column) {
                 const { image, ready } = tile_at(column, row, step);
@@ -66,8 +70,10 @@ export function card_view({ source, picks, ends, on_place = () => {}, label }) {
             }
         }
         if (zoom >= 8) grid(pen);
-        if (marked !== null) band(pen, picks - marked, colours.mark);
-        if (cursor) outline(pen);
+        if (cursor) {
+            band(pen, picks - cursor.pick);
+            outline(pen);
+        }
     }
 
     function grid(pen) {
@@ -84,8 +90,8 @@ export function card_view({ source, picks, ends, on_place = () => {}, label }) {
         pen.stroke();
     }
 
-    function band(pen, row, colour) {
-        pen.strokeStyle = colour;
+    function band(pen, row) {
+        pen.strokeStyle = colours.mark;
         pen.lineWidth = 2 * scale;
         const from = Math.round((row - y) * zoom), high = Math.max(2, Math.round(zoom));
         pen.strokeRect(Math.max(1, -x * zoom), from, Math.min(canvas.width - 2, ends * zoom), high);
@@ -95,12 +101,12 @@ export function card_view({ source, picks, ends, on_place = () => {}, label }) {
     function outline(pen) {
         pen.strokeStyle = colours.mark;
         pen.lineWidth = 2 * scale;
-        pen.strokeRect((cursor.end - 1 - x) * zoom, (picks - cursor.pick - y) * zoom, Math.max(3, zoom), Math.max(3, zoom));
+        pen.strokeRect(Math.round((cursor.end - 1 - x) * zoom), Math.round((picks - cursor.pick - y) * zoom), Math.max(3, Math.round(zoom)), Math.max(3, Math.round(zoom)));
         pen.lineWidth = 1;
     }
 
     function tell() {
-        place.textContent = cursor ? `Pick ${cursor.pick.toLocaleString('en')}, end ${cursor.end.toLocaleString('en')}` : '';
+        place.textContent = cursor ? `Pick ${grouped(cursor.pick)}, end ${grouped(cursor.end)}` : '';
         if (cursor) on_place(cursor.pick, cursor.end);
     }
 
@@ -119,10 +125,15 @@ export function card_view({ source, picks, ends, on_place = () => {}, label }) {
     }
 
     function show_pick(pick) {
-        marked = pick;
-        zoom = Math.max(zoom, 6 * scale);
-        y = picks - pick - canvas.height / zoom / 2;
+        if (first) { // there is no size to draw in yet
+            wanted = pick;
+            return;
+        }
+        const was_whole = zoom < 6 * scale;
         cursor = { pick, end: cursor?.end ?? 1 };
+        zoom = Math.max(zoom, 6 * scale);
+        if (was_whole) x = cursor.end - 0.5 - canvas.width / zoom / 2;
+        y = picks - pick + 0.5 - canvas.height / zoom / 2;
         tell();
         draw_soon();
     }
@@ -132,7 +143,7 @@ export function card_view({ source, picks, ends, on_place = () => {}, label }) {
         cursor = { pick: Math.min(Math.max(cursor.pick + picks_on, 1), picks), end: Math.min(Math.max(cursor.end + ends_on, 1), ends) };
         const cx = (cursor.end - 0.5 - x) * zoom, cy = (picks - cursor.pick + 0.5 - y) * zoom;
         if (cx < 0 || cx > canvas.width) x = cursor.end - canvas.width / zoom / 2;
-        if (cy < 0 || cy > canvas.height) y = picks - cursor.pick - canvas.height / zoom / 2;
+        if (cy < 0 || cy > canvas.height) y = picks - cursor.pick + 0.5 - canvas.height / zoom / 2;
         tell();
         draw_soon();
     }
@@ -187,13 +198,15 @@ export function card_view({ source, picks, ends, on_place = () => {}, label }) {
     canvas.addEventListener('pointerup', lift);
     canvas.addEventListener('pointercancel', lift);
 
-    let first = true;
     const watch = new ResizeObserver(() => {
         scale = devicePixelRatio || 1;
         canvas.width = Math.max(1, Math.round(canvas.clientWidth * scale));
         canvas.height = Math.max(1, Math.round(canvas.clientHeight * scale));
-        if (first) show_all();
-        first = false;
+        if (first) {
+            first = false;
+            if (wanted === null) show_all();
+            else show_pick(wanted);
+        }
         draw_soon();
     });
     watch.observe(canvas);
@@ -201,7 +214,8 @@ export function card_view({ source, picks, ends, on_place = () => {}, label }) {
     const button = (text, name, act) => h('button', { type: 'button', 'aria-label': name, title: name, onclick: act }, text);
     return {
         element: h('div', { class: 'card_view' }, canvas, h('div', { class: 'card_bar' },
-            button('+', 'Zoom in', () => zoom_by(2)), button('−', 'Zoom out', () => zoom_by(0.5)), button('All', 'Show all', show_all), place)),
+            button('+', 'Zoom in', () => zoom_by(2)), button('−', 'Zoom out', () => zoom_by(0.5)), button('All', 'Show all', show_all), place),
+        h('p', { class: 'hint' }, 'Dark: the end is lifted. Pick 1 is at the bottom, end 1 at the left. Drag to move, pinch or turn the wheel to zoom.')),
         show_pick, leave: () => watch.disconnect(),
     };
 }

@@ -4,7 +4,7 @@ import { h, field } from './dom.js';
 /**
  * Asks for the fields and runs `act(values)`; an error that it throws is shown and the dialog stays. Resolves to what act gave, or
  * undefined where the person left it.
- * fields: [{name, label, hint, kind: 'text' | 'area' | 'password' | 'number' | 'choice', choices, value, required}]
+ * fields: [{name, label, hint, kind: 'text' | 'area' | 'password' | 'number' | 'choice' | 'checks' | 'file', choices, value, required}]
  */
 export function ask({ title, text, fields = [], button, danger = false, act }) {
     return new Promise(resolve => {
@@ -33,7 +33,7 @@ export function ask({ title, text, fields = [], button, danger = false, act }) {
         const dialog = h('dialog', { 'aria-labelledby': 'asked', onclose: () => { dialog.remove(); resolve(result); } }, form);
         document.body.append(dialog);
         dialog.showModal();
-        (inputs.values().next().value ?? go).focus();
+        (form.querySelector('input, textarea, select') ?? go).focus();
     });
 }
 
@@ -60,6 +60,25 @@ function value_of(input) {
     if (input.type === 'file') return input.files[0];
     if (input.type === 'number') return input.value === '' ? undefined : Number(input.value);
     return input.value;
+}
+
+/** Shows a text that has to be handed on and is told only once, such as a link. */
+export function hand_over({ title, text, label, value }) {
+    return new Promise(resolve => {
+        const shown = h('input', { readonly: true, value, onfocus: () => shown.select() });
+        const copied = h('p', { class: 'good', role: 'status' });
+        const copy = () => {
+            shown.select();
+            navigator.clipboard.writeText(value).then(() => { copied.textContent = 'Copied'; }, () => { copied.textContent = 'Selected: copy it with the keyboard'; });
+        };
+        const dialog = h('dialog', { 'aria-labelledby': 'handed', onclose: () => { dialog.remove(); resolve(true); } },
+            h('h2', { id: 'handed' }, title), h('p', {}, text), field(label, shown), copied,
+            h('div', { class: 'buttons' }, h('button', { type: 'button', onclick: copy }, 'Copy'),
+                h('button', { type: 'button', class: 'main', onclick: () => dialog.close() }, 'Done')));
+        document.body.append(dialog);
+        dialog.showModal();
+        shown.focus();
+    });
 }
 
 /** A step that is signed: why, and the password again. */

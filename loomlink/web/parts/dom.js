@@ -23,12 +23,12 @@ function fill(element, properties, children) {
 /** A link that the page follows by itself. */
 export const link = (to, properties, ...children) => h('a', { href: to, ...properties }, ...children);
 
-/** A time as the reader's clock shows it, with the exact one on hover. */
+/** A time by the reader's clock, with the month in letters, so that nobody takes it for the day; the exact one on hover. */
 export function when(iso, to_the_second = false) {
     const time = new Date(iso);
     if (Number.isNaN(time.getTime())) return h('span', {}, String(iso));
     return h('time', { datetime: iso, title: iso },
-        time.toLocaleString(undefined, { dateStyle: 'medium', timeStyle: to_the_second ? 'medium' : 'short' }));
+        time.toLocaleString('en-GB', { dateStyle: 'medium', timeStyle: to_the_second ? 'medium' : 'short' }));
 }
 
 /** The first characters of a hash; the whole of it is read out and copied by its button. */
@@ -39,13 +39,19 @@ export function hash(text, shown = 12) {
     }, text.slice(0, shown));
 }
 
+/** The server's words, which begin small, where they stand alone. */
+export const sentence = text => text.charAt(0).toUpperCase() + text.slice(1);
+
+/** 1234 → "1,234", as all numbers of picks and ends are written here. */
+export const grouped = number => number.toLocaleString('en');
+
 /** 2097152 → "2.1 MB". */
 export function size(bytes) {
     if (bytes < 1000) return bytes + ' B';
     return bytes < 1e6 ? (bytes / 1e3).toFixed(1) + ' kB' : (bytes / 1e6).toFixed(1) + ' MB';
 }
 
-export const counted = (number, one, many = one + 's') => `${number.toLocaleString('en')} ${number === 1 ? one : many}`;
+export const counted = (number, one, many = one + 's') => `${grouped(number)} ${number === 1 ? one : many}`;
 
 let hushed;
 /** Tells something in passing; screen readers read it out. */
@@ -75,8 +81,12 @@ export function table(caption, heads, rows, properties = {}) {
 export const facts = pairs => h('dl', { class: 'facts' },
     pairs.filter(Boolean).map(([name, ...value]) => h('div', {}, h('dt', {}, name), h('dd', {}, ...value))));
 
-/** A labelled field. */
+/** A labelled field; a group of choices has its label as a legend. */
 export function field(label, input, hint) {
+    if (input.tagName === 'FIELDSET') {
+        input.prepend(h('legend', {}, label));
+        return h('div', { class: 'field' }, input, hint ? h('p', { class: 'hint' }, hint) : null);
+    }
     input.id ||= 'f' + Math.random().toString(36).slice(2);
     if (hint) input.setAttribute('aria-describedby', input.id + 'h');
     return h('div', { class: 'field' }, h('label', { for: input.id }, label), input,

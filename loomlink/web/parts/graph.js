@@ -48,7 +48,7 @@ export function history(design, revisions, { chosen, on_choose }) {
             onchange: event => on_choose(revision.number, event.target.checked),
         })),
         link(at('designs', design, revision.number), { class: 'revision' }, h('strong', {}, 'Revision ' + revision.number), ' ', revision.message || 'no message'),
-        h('span', { class: 'soft by' }, revision.author, ', ', when(revision.at)),
+        h('span', { class: 'soft by' }, when(revision.at), ', ', revision.author),
         revision.branches.map(branch => h('span', { class: 'branch' }, branch)), state(revision.state))));
     return h('div', { class: 'history' }, drawing, list);
 }

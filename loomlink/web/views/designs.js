@@ -15,7 +15,7 @@ export async function show({ me, go }) {
         title: 'Designs',
         body: [h('div', { class: 'head' }, h('h1', {}, 'Designs'),
             me.roles.includes('designer') ? h('button', { type: 'button', class: 'main', onclick: make }, 'New design …') : null),
-        designs.length === 0 ? h('p', { class: 'empty' }, 'There is no design yet. Save one with the studio, or with: loomlink save DESIGN.weave')
+        designs.length === 0 ? h('p', { class: 'empty' }, 'There is no design yet.' + (me.roles.includes('designer') ? ' Make one here, and save its first revision from a .weave file.' : ' Designers save them; they stand here then.'))
             : table('Designs', ['Design', 'Newest revision', 'State', 'Changed', 'Size'], designs.map(design => [
                 link(at('designs', design.name), {}, h('strong', {}, design.name)),
                 design.newest ? `${design.newest.number}, ${design.newest.message}` : 'none yet', design.newest ? state(design.newest.state) : '',
