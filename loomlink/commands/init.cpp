@@ -28,7 +28,7 @@ Status make_new_site(const SiteFolder& folder, const ServeConfig& config, Comman
 }  // namespace
 
 void add_init_command(CLI::App& app, CommandOutcome& outcome) {
-    CLI::App* const command = add_command(app, outcome, "init", "make a site in an empty folder");
+    CLI::App* const command = add_command(app, outcome, "init", "Make a site in an empty folder");
     auto folder = std::make_shared<std::string>(".");
     auto config = std::make_shared<ServeConfig>();
     command->add_option("folder", *folder, "the folder of the site; the current one if not given");

@@ -95,7 +95,7 @@ Status serve(const ServeOptions& options, CommandOutcome& outcome) {
 
 void add_serve_command(CLI::App& app, CommandOutcome& outcome) {
     CLI::App* const command =
-        add_command(app, outcome, "serve", "serve a site; in an empty folder, make it first");
+        add_command(app, outcome, "serve", "Serve a site; in an empty folder, make it first");
     auto options = std::make_shared<ServeOptions>();
     options->command = command;
     command->add_option("folder", options->folder, "the folder of the site; the current one if not given");

@@ -53,6 +53,7 @@ class Running {
                                          0600);
         posix_spawn_file_actions_addopen(&actions, 2, name(".err").c_str(), O_WRONLY | O_CREAT | O_TRUNC,
                                          0600);
+        posix_spawn_file_actions_addclosefrom_np(&actions, 3);  // the sockets of a site in this process
         posix_spawnattr_t attributes;
         posix_spawnattr_init(&attributes);
         posix_spawnattr_setflags(&attributes, POSIX_SPAWN_SETSID);

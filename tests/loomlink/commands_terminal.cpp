@@ -20,6 +20,7 @@ class AtTerminal {
         const auto word_list = pointers(words), variables = pointers(environment);
         m_process = ::forkpty(&m_terminal, nullptr, nullptr, nullptr);
         if (m_process == 0) {
+            ::close_range(3, ~0U, 0);  // the sockets of a site in this process
             ::execve(word_list.front(), word_list.data(), variables.data());
             ::_exit(127);
         }

@@ -17,7 +17,8 @@ namespace {
 
 /// The public key of the log, as the newest trust document lists it.
 std::string log_key_of(const CommandMill& mill) {
-    for (const Json& key : mill.done("otto", {"key", "list"}).at("keys"))
+    const Json listed = mill.done("otto", {"key", "list"});
+    for (const Json& key : listed.at("keys"))
         if (key.at("roles") == Json::array({"log"})) return key.at("public").get<std::string>();
     return {};
 }
