@@ -9,7 +9,7 @@ namespace weave::loomlink {
 /// certificate is that of `fingerprint`, if given, else that of the session before where it is the same
 /// server. Errors: usage where no server is named; bad_input for what is no fingerprint.
 Result<KeptSession> server_wished(const std::string& origin, const std::string& fingerprint,
-                              const KeptSession& before = {});
+                                  const KeptSession& before = {});
 
 /// Signs in; the client goes on as this person. Gives the server's answer. The password is wiped.
 Result<Json> sign_in(ApiClient& client, const std::string& name, std::string password);

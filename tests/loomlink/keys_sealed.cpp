@@ -122,7 +122,7 @@ TEST_CASE("a server key lies in a file of its own that nobody else may read, and
     CHECK(facts.st_nlink == 1);
     CHECK(folder.entries() == 1);
     CHECK(load_server_key(path, ServerKeyRole::log).value().public_key() == pair.public_key());
-    check_refused(load_server_key(path, ServerKeyRole::stamp), "is a server key for another use");
+    check_refused(load_server_key(path, ServerKeyRole::stamp), "is a key for another use");
     check_refused(create_server_key(path, ServerKeyRole::log), "exists already");
     CHECK(load_server_key(path, ServerKeyRole::log).value().public_key() == pair.public_key());
     CHECK(folder.entries() == 1);
