@@ -7,6 +7,7 @@
 #include <loomlink/commands/password_source.hpp>
 #include <loomlink/keys/private_file.hpp>
 #include <loomlink/keys/secret_bytes.hpp>
+#include <poll.h>
 #include <sys/stat.h>
 #include <termios.h>
 #include <unistd.h>
@@ -30,8 +31,13 @@ class HiddenTyping {
   public:
     explicit HiddenTyping(int terminal) : m_terminal(terminal) {
         signal_that_came = 0;
+        // Held back but while waits_for_input() waits: one that came just before it would be slept through.
+        sigset_t held;
+        sigemptyset(&held);
+        for (const int signal : signals) sigaddset(&held, signal);
+        sigprocmask(SIG_BLOCK, &held, &m_mask_before);
         struct sigaction remember {};
-        remember.sa_handler = remember_signal;  // without SA_RESTART, so that read() returns
+        remember.sa_handler = remember_signal;
         for (std::size_t k = 0; k < signals.size(); ++k) sigaction(signals[k], &remember, &m_before[k]);
         m_hidden = ::tcgetattr(terminal, &m_shown) == 0;
         struct termios quiet = m_shown;
@@ -41,11 +47,19 @@ class HiddenTyping {
     ~HiddenTyping() {
         if (m_hidden) ::tcsetattr(m_terminal, TCSAFLUSH, &m_shown);
         for (std::size_t k = 0; k < signals.size(); ++k) sigaction(signals[k], &m_before[k], nullptr);
+        sigprocmask(SIG_SETMASK, &m_mask_before, nullptr);
         if (signal_that_came != 0) std::raise(signal_that_came);
     }
     HiddenTyping(const HiddenTyping&) = delete;
     HiddenTyping& operator=(const HiddenTyping&) = delete;
     [[nodiscard]] bool is_hidden() const { return m_hidden; }
+    /// Until there is something to read; false where a signal came instead.
+    [[nodiscard]] bool waits_for_input() const {
+        struct pollfd there {
+            m_terminal, POLLIN, 0
+        };
+        return ::ppoll(&there, 1, nullptr, &m_mask_before) == 1;
+    }
 
   private:
     static constexpr std::array signals{SIGINT, SIGTERM, SIGHUP, SIGQUIT, SIGTSTP};
@@ -53,6 +67,7 @@ class HiddenTyping {
     bool m_hidden = false;
     struct termios m_shown {};
     std::array<struct sigaction, 5> m_before{};
+    sigset_t m_mask_before{};
 };
 
 Error no_terminal() {
@@ -75,7 +90,9 @@ Result<std::string> typed(const std::string& prompt) {
     std::string line;
     line.reserve(most_lines_bytes);  // so that no copy of it is left behind
     char c = 0;
-    while (line.size() <= longest_password && ::read(terminal.number(), &c, 1) == 1 && c != '\n') line += c;
+    while (line.size() <= longest_password && hidden.waits_for_input() &&
+           ::read(terminal.number(), &c, 1) == 1 && c != '\n')
+        line += c;
     WEAVE_CHECK_OK(write_all(terminal, "\n", "/dev/tty"));
     if (signal_that_came != 0) return Error{ErrorCode::refused, "interrupted", ""};
     WEAVE_CHECK_OK(check_length(line, "password"));

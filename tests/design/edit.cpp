@@ -305,7 +305,7 @@ TEST_CASE("in any sequence each possible flip changes one pixel, its own, and lo
                 REQUIRE(design == undo.back().second);
             }
         },
-        std::max<std::size_t>(property_cases() / 4, 100));
+        std::max<std::size_t>(property_cases() / 4, 1000));
     CHECK(made > 0);
     CHECK(again > 0);
     CHECK(lost > 0);
