@@ -130,7 +130,8 @@ class Api {
         net::ClientOptions options;
         options.port = m_server->port();
         m_client.emplace(options);
-        m_token = got(site.flow->accounts().log_in("abe", FlowSite::password("abe"), "10.0.0.1")).at("token");
+        const Json session = got(site.flow->accounts().log_in("abe", FlowSite::password("abe"), "10.0.0.1"));
+        m_token = session.at("token").get<std::string>();
     }
 
     Result<Json> operator()(const Attempt& one) {
@@ -200,7 +201,8 @@ void try_the_matrix(FlowSite& site, Attempting attempt, bool may_turn_away) {
                     if (!outcome) UNSCOPED_INFO(outcome.error().text());
                     REQUIRE(bool(outcome) == allowed(row, state, roles, own));
                     ++(outcome ? done : refused);
-                    if (outcome && row.action == "release") on_the_loom = outcome->at("number");
+                    if (outcome && row.action == "release")
+                        on_the_loom = outcome->at("number").get<std::int64_t>();
                     if (outcome) continue;
                     REQUIRE(site.dump() == before);
                     const auto kinds = site.kinds(size);
