@@ -49,6 +49,7 @@ Result<ReleaseIndex> listed(const Reader& reader, const Desk& desk, const Loom& 
     index.loom = loom.name;
     index.trust = trust->version;
     WEAVE_TRY(const auto paper, reader.latest_trust());
+    if (!paper) return system_fault("the store is damaged: its newest trust document is gone");
     index.epoch = std::max<std::uint64_t>(loom.event, paper->event) + 1;  // signatures count by it
     WEAVE_TRY(const auto releases, reader.releases(loom.id));
     for (auto release = releases.rbegin(); release != releases.rend(); ++release)

@@ -8,6 +8,7 @@
 #include <array>
 #include <loomlink/workflow/designs.hpp>
 #include <loomlink/workflow/missing.hpp>
+#include <loomlink/workflow/release_files.hpp>
 #include <loomlink/workflow/rules.hpp>
 #include <sstream>
 

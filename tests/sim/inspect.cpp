@@ -255,6 +255,10 @@ TEST_CASE("take-up is told by beam, and whether ends that run alike take up alik
     REQUIRE(found.warp_crimp);
     CHECK(found.warp_crimp->mean == Approx(0.2));
     CHECK(found.weft_crimp->most == Approx(0).margin(1e-12));
+
+    for (SimulatedYarn& yarn : yarns.yarns) yarn.beam = yarn.system == System::warp && yarn.number == 0 ? 1 : 0;
+    const std::string words = inspection_text(yarns, looked_over(yarns));
+    CHECK(words.find("beam 2: 1 end, 10.0 %, with no other to compare it with") != std::string::npos);
 }
 
 TEST_CASE("a cloth as planned has no finding, wherever it lies and however it settles as a whole") {

@@ -139,6 +139,7 @@ std::string beam_text(const BeamTakeUp& beam) {
     const auto end = [](std::size_t number) { return "end " + std::to_string(number + 1); };
     std::string text = "  beam " + std::to_string(beam.beam + 1) + ": " + counted(beam.ends, "end") + ", " +
                        percent(beam.spread.mean);
+    if (beam.ends == 1) return text + ", with no other to compare it with\n";
     if (beam.spread.most - beam.spread.least < 0.001) return text + ", all alike\n";
     text += ", from " + percent(beam.spread.least) + " (" + end(beam.spread.least_of) + ") to " +
             percent(beam.spread.most) + " (" + end(beam.spread.most_of) + ")";

@@ -110,13 +110,19 @@ class Cells {
     std::unordered_map<std::uint64_t, std::vector<std::uint32_t>> m_members;
 };
 
+/// The whole number of periods nearest to a distance. Bounded, so that products of two of them are numbers still,
+/// however wild the yarns.
+int periods_in(double distance, double period) {
+    constexpr double most = 1e9;
+    return static_cast<int>(std::lround(std::clamp(distance / period, -most, most)));
+}
+
 /// By how many periods the second piece is to be moved to come nearest to the first.
 std::array<int, 2> image_near(const Piece& first, const Piece& second, const std::array<double, 2>& period) {
     const Vec3 apart = first.from + first.along / 2 - second.from - second.along / 2;
     std::array<int, 2> image{};
     for (std::size_t k = 0; k < 2; ++k) {
-        if (period[k] > 0)
-            image[k] = static_cast<int>(std::lround(apart[static_cast<Eigen::Index>(k)] / period[k]));
+        if (period[k] > 0) image[k] = periods_in(apart[static_cast<Eigen::Index>(k)], period[k]);
     }
     return image;
 }
@@ -126,9 +132,9 @@ bool is_same_strand(const Spline& yarn, const std::array<int, 2>& image,
                     const std::array<double, 2>& period) {
     if (image == std::array<int, 2>{}) return true;
     if (!yarn.is_periodic) return false;
-    std::array<long, 2> turns{};
+    std::array<std::int64_t, 2> turns{};
     for (std::size_t k = 0; k < 2; ++k) {
-        if (period[k] > 0) turns[k] = std::lround(yarn.shift[static_cast<Eigen::Index>(k)] / period[k]);
+        if (period[k] > 0) turns[k] = periods_in(yarn.shift[static_cast<Eigen::Index>(k)], period[k]);
     }
     return image[0] * turns[1] == image[1] * turns[0];
 }
