@@ -84,48 +84,53 @@ std::string broken_head(const AuditBundle& bundle, Random& random) {
     return file;
 }
 
-}  // namespace
-
-TEST_CASE("a forged, truncated, foreign or replayed head is not accepted with any records") {
+/// Heads that are not what they say, each with a bundle of records.
+void offer_false_heads(std::size_t attempts) {
     const Logs logs;
     for (std::uint64_t size = 1; size <= most_records; ++size)
         REQUIRE(verify_bundle(write_bundle(logs.bundle(size)), logs.trust).clean());
-    weave::testing::for_all([&](Random& random) {
-        const std::uint64_t size = random.between(1, most_records);
-        AuditBundle bundle = logs.bundle(size);
-        if (random.coin()) {
-            REQUIRE_FALSE(verify_bundle(broken_head(bundle, random), logs.trust).clean());
-            return;
-        }
-        bundle.head = false_head(logs, size, random);
-        REQUIRE_FALSE(verify_bundle(write_bundle(bundle), logs.trust).clean());
-    });
+    weave::testing::for_all(
+        [&](Random& random) {
+            const std::uint64_t size = random.between(1, most_records);
+            AuditBundle bundle = logs.bundle(size);
+            if (random.coin()) {
+                REQUIRE_FALSE(verify_bundle(broken_head(bundle, random), logs.trust).clean());
+                return;
+            }
+            bundle.head = false_head(logs, size, random);
+            REQUIRE_FALSE(verify_bundle(write_bundle(bundle), logs.trust).clean());
+        },
+        attempts);
 }
 
-TEST_CASE("a sound bundle is refused by every retained head that is not of its own past") {
+/// Sound bundles, each held to a head that is not of its past.
+void offer_false_retained_heads(std::size_t attempts) {
     const Logs logs;
-    weave::testing::for_all([&](Random& random) {
-        const std::uint64_t size = random.between(1, most_records);
-        const std::string file = write_bundle(logs.bundle(size));
-        BundleTrust trust = logs.trust;
-        trust.retained = Logs::head(logs.leaves, random.between(1, size));
-        REQUIRE(verify_bundle(file, trust).clean());
-        switch (random.between(0, 2)) {
-            case 0:
-                if (size == most_records) return;
-                trust.retained = Logs::head(logs.leaves, random.between(size + 1, most_records));
-                break;
-            case 1:
-                trust.retained = Logs::head(logs.fork_leaves, random.between(1, size));
-                break;
-            default:
-                trust.retained->signature = logs.thief.sign(head_bytes(trust.retained->head));
-        }
-        REQUIRE_FALSE(verify_bundle(file, trust).clean());
-    });
+    weave::testing::for_all(
+        [&](Random& random) {
+            const std::uint64_t size = random.between(1, most_records);
+            const std::string file = write_bundle(logs.bundle(size));
+            BundleTrust trust = logs.trust;
+            trust.retained = Logs::head(logs.leaves, random.between(1, size));
+            REQUIRE(verify_bundle(file, trust).clean());
+            switch (random.between(0, 2)) {
+                case 0:
+                    if (size == most_records) return;
+                    trust.retained = Logs::head(logs.leaves, random.between(size + 1, most_records));
+                    break;
+                case 1:
+                    trust.retained = Logs::head(logs.fork_leaves, random.between(1, size));
+                    break;
+                default:
+                    trust.retained->signature = logs.thief.sign(head_bytes(trust.retained->head));
+            }
+            REQUIRE_FALSE(verify_bundle(file, trust).clean());
+        },
+        attempts);
 }
 
-TEST_CASE("a terminal takes no forged, foreign or replayed head, whoever stamped the index") {
+/// Indexes, soundly stamped, that come with such a head.
+void offer_false_heads_to_a_terminal(std::size_t attempts) {
     const Site site;
     const TerminalState state =
         check_index(site.terminal(), site.index(10, 2, 0), Site::at(1), Site::consistent).value().state;
@@ -161,5 +166,25 @@ TEST_CASE("a terminal takes no forged, foreign or replayed head, whoever stamped
             }
             REQUIRE_FALSE(taken(head, 11));
         },
-        weave::testing::property_cases() / 4);
+        attempts);
+}
+
+}  // namespace
+
+TEST_CASE("a forged, truncated, foreign or replayed head is not accepted with any records") {
+    offer_false_heads(500);
+}
+
+TEST_CASE("a sound bundle is refused by every retained head that is not of its own past") {
+    offer_false_retained_heads(500);
+}
+
+TEST_CASE("a terminal takes no forged, foreign or replayed head, whoever stamped the index") {
+    offer_false_heads_to_a_terminal(500);
+}
+
+TEST_CASE("of 10,000 heads that are not what they say, of each kind, none is accepted", "[.][long]") {
+    offer_false_heads(10000);
+    offer_false_retained_heads(10000);
+    offer_false_heads_to_a_terminal(10000);
 }

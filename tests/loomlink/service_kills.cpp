@@ -123,7 +123,8 @@ class Lane {
         return {"dora", "/designs/" + m_design + "/revisions", "revision.saved", body,
                 [name = m_design, document](const Reader& reader, const Json& answer) -> Result<bool> {
                     WEAVE_TRY(const auto found, revision_of(reader, name, answer.at("number")));
-                    if (!found || hash_hex(found->hash) != answer.at("sha256").get<std::string>()) return false;
+                    if (!found || hash_hex(found->hash) != answer.at("sha256").get<std::string>())
+                        return false;
                     WEAVE_TRY(const auto bytes, reader.object(found->document));
                     return bytes == document;
                 }};
@@ -161,6 +162,7 @@ class Lane {
         return {"abel", "/releases", "release.made", body,
                 [loom = m_loom](const Reader& reader, const Json& answer) -> Result<bool> {
                     WEAVE_TRY(const auto found, reader.loom(loom));
+                    if (!found) return false;
                     WEAVE_TRY(const auto releases, reader.releases(found->id));
                     const auto made = std::find_if(releases.begin(), releases.end(), [&](const Release& one) {
                         return one.number == answer.at("number");
@@ -200,6 +202,7 @@ Result<bool> kept(const Reader& reader, const Deeds& deeds, const Promise& promi
     const auto deed = deeds.find({request, promise.wish.kind});
     if (deed == deeds.end() || deed->second != 1) return false;
     WEAVE_TRY(const auto person, reader.person(promise.wish.who));
+    if (!person) return false;
     WEAVE_TRY(const auto answer, reader.answer(request, person->id));
     if (!answer || parse_json(*answer).value().at("answer") != promise.answer) return false;
     return promise.wish.shows(reader, promise.answer);
