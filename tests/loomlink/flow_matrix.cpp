@@ -78,6 +78,7 @@ std::int64_t revision_in(FlowSite& site, RevisionState state, const std::string&
     static int count = 0;
     const auto made = site.flow->store().write([&](Writer& writer) -> Result<Revision> {
         WEAVE_TRY(const auto design, writer.design("shoe"));
+        if (!design) return bad_input("there is no such design");
         Revision revision;
         revision.design = design->id;
         revision.author = site.people.at(author).id;
