@@ -17,21 +17,25 @@ Status inspect_pages(Inspection& inspection) {
     });
 }
 
-Result<std::set<std::string>> schema_of(sql::Connection& connection) {
-    std::set<std::string> schema;
+/// What the migrations made: the schema, and the table of which state may follow which.
+Result<std::set<std::string>> rules_of(sql::Connection& connection) {
+    std::set<std::string> rules;
+    const auto take = [&](const sql::Row& row) { rules.insert(row.bytes(0)); };
     WEAVE_CHECK_OK(
         connection.each("SELECT type || ' ' || name || ': ' || sql FROM sqlite_schema WHERE sql IS NOT NULL "
                         "AND name NOT LIKE 'sqlite_%'",
-                        [&](const sql::Row& row) { schema.insert(row.bytes(0)); }));
-    return schema;
+                        take));
+    WEAVE_CHECK_OK(connection.each(
+        "SELECT 'transition ' || thing || ' ' || before || ' to ' || after FROM transition", take));
+    return rules;
 }
 
 /// The rules that keep history are part of the schema: a store that lacks one was opened by something else.
 Status inspect_schema(Inspection& inspection) {
     WEAVE_TRY(auto fresh, sql::Connection::open(":memory:", sql::Access::create));
     WEAVE_CHECK_OK(sql::migrate(*fresh, sql::migrations()));
-    WEAVE_TRY(const auto expected, schema_of(*fresh));
-    WEAVE_TRY(const auto found, schema_of(inspection.connection));
+    WEAVE_TRY(const auto expected, rules_of(*fresh));
+    WEAVE_TRY(const auto found, rules_of(inspection.connection));
     const auto name_of = [](const std::string& entry) { return entry.substr(0, entry.find(':')); };
     for (const std::string& entry : expected)
         if (!found.contains(entry)) inspection.find(name_of(entry), "is not part of the store any more");

@@ -152,17 +152,23 @@ Error Desk::refuse(const std::string& actor, const std::string& request, const D
 Status Desk::note_view(const Caller& caller, const std::string& kind, const std::string& subject,
                        const Json& data) {
     const Instant moment = now();
+    const std::string look = caller.login + '\n' + kind + '\n' + subject;
     {
         const std::lock_guard lock(m_views_mutex);
         if (m_views.size() >= most_views)
             std::erase_if(m_views,
                           [&](const auto& entry) { return entry.second + m_settings.view_again <= moment; });
         if (m_views.size() >= most_views) m_views.clear();  // rather one record too many than none
-        const auto [place, is_new] = m_views.try_emplace(caller.login + '\n' + kind + '\n' + subject, moment);
+        const auto [place, is_new] = m_views.try_emplace(look, moment);
         if (!is_new && moment < place->second + m_settings.view_again) return {};
         place->second = moment;
     }
-    return note(caller.login, kind, subject, data);
+    Status logged = note(caller.login, kind, subject, data);
+    if (!logged) {  // the next look is not one that was told before
+        const std::lock_guard lock(m_views_mutex);
+        m_views.erase(look);
+    }
+    return logged;
 }
 
 Status Desk::note(const std::string& actor, const std::string& kind, const std::string& subject,

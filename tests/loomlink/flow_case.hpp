@@ -46,12 +46,8 @@ struct FlowSite {
     int requests = 0;
 
     FlowSite() {
-        DeskSettings settings;
-        settings.key_cost = settings.login_cost = test_cost();
-        flow =
-            got(Workflow::open(Store::create(path, "mill").value(),
-                               {KeyPair::from_seed(keys.log.seed()), KeyPair::from_seed(keys.stamp.seed())},
-                               settings, [this] { return time; }));
+        static_cast<void>(Store::create(path, "mill").value());
+        open();
         const Json first = got(flow->accounts().first_invitation());
         enter("ada", first.at("code"));
         for (const auto& [name, roles] :
@@ -61,6 +57,17 @@ struct FlowSite {
                                                                            {"otto", {"operator"}},
                                                                            {"enno", {"engineer"}}})
             enter(name, got(flow->accounts().invite(people.at("ada"), ask(), roles)).at("code"));
+    }
+
+    /// Opens the store that lies at `path` now, and leaves the one from before.
+    void open() {
+        flow.reset();
+        DeskSettings settings;
+        settings.key_cost = settings.login_cost = test_cost();
+        flow =
+            got(Workflow::open(Store::open(path).value(),
+                               {KeyPair::from_seed(keys.log.seed()), KeyPair::from_seed(keys.stamp.seed())},
+                               settings, [this] { return time; }));
     }
 
     static std::string password(const std::string& name) { return "the password of " + name; }

@@ -1,14 +1,10 @@
-#include "service_case.hpp"
-#include "temporary_folder.hpp"
+#include "api_case.hpp"
 
-#include <weave/core/file.hpp>
 #include <weave/core/sha256.hpp>
 #include <weave/design/document.hpp>
 #include <weave/net/websocket_client.hpp>
 #include <weave/samples/samples.hpp>
 
-#include <loomlink/commands/running_site.hpp>
-#include <loomlink/keys/argon.hpp>
 #include <sys/stat.h>
 
 using namespace weave;
@@ -17,79 +13,6 @@ using namespace weave::loomlink::testing;
 using weave::testing::TemporaryFolder;
 
 namespace {
-
-const std::string password = "warp and weft and warp";
-
-/// A site on a port of its own, over TLS, and people who talk to it as programs do.
-struct Mill {
-    TemporaryFolder folder;
-    std::unique_ptr<RunningSite> site;
-    Json introduction;
-    std::optional<net::HttpClient> client;
-    std::map<std::string, std::string> tokens;
-    int requests = 0;
-
-    Mill() { start(); }
-
-    void start() {
-        ServeConfig config;
-        config.port = 0;
-        config.hosts = {"localhost", "127.0.0.1"};
-        DeskSettings settings;
-        settings.key_cost = settings.login_cost = test_cost();
-        auto started = RunningSite::start({folder.path / "site"}, config, settings);
-        if (!started) FAIL(started.error().text());
-        site = *std::move(started);
-        introduction = site->introduction().value();
-        client.emplace(options());
-    }
-
-    [[nodiscard]] net::ClientOptions options() const {
-        net::ClientOptions options;
-        options.port = site->port();
-        options.tls = net::Trust{{}, introduction.at("certificate_sha256").get<std::string>()};
-        return options;
-    }
-
-    net::Response call(const std::string& who, const std::string& method, const std::string& path,
-                       Json body = {}) {
-        net::Headers headers;
-        if (tokens.contains(who)) headers.set("Authorization", "Bearer " + tokens[who]);
-        std::string text;
-        if (method != "GET") {
-            if (!body.contains("request")) body["request"] = "request-" + std::to_string(++requests);
-            headers.set("Content-Type", "application/json");
-            text = body.dump();
-        }
-        return ask(*client, method, "/api/v1" + path, headers, text);
-    }
-    /// The answer of a call that must succeed.
-    Json done(const std::string& who, const std::string& method, const std::string& path,
-              const Json& body = {}) {
-        const auto response = call(who, method, path, body);
-        INFO(who << " " << method << " " << path << ": " << *response.body);
-        REQUIRE(response.status == 200);
-        return json_of(response);
-    }
-    int status(const std::string& who, const std::string& method, const std::string& path,
-               const Json& body = {}) {
-        return call(who, method, path, body).status;
-    }
-
-    void join(const std::string& code, const std::string& name) {
-        const Json answer =
-            done("nobody", "POST", "/invitations/accept",
-                 {{"code", code}, {"name", name}, {"full_name", "The " + name}, {"password", password}});
-        tokens[name] = answer.at("token").get<std::string>();
-    }
-    void invite(const std::string& name, const Json& roles) {
-        join(done("mary", "POST", "/invitations", {{"roles", roles}}).at("code").get<std::string>(), name);
-    }
-    [[nodiscard]] std::string first_code() const {
-        const auto link = introduction.at("invitation").get<std::string>();
-        return link.substr(link.find('#') + 1);
-    }
-};
 
 std::string sample_document(const char* name) {
     return write_document(find_sample(name)->make());
@@ -103,7 +26,7 @@ bool is_png(const net::Response& response) {
 }  // namespace
 
 TEST_CASE("an empty folder becomes a site with one invitation, and opens again as the same") {
-    Mill mill;
+    ApiMill mill;
     for (const char* file : {"loomlink.db", "log.key", "stamp.key", "tls.key"}) {
         struct stat facts {};
         REQUIRE(::stat((mill.folder.path / "site" / file).c_str(), &facts) == 0);
@@ -134,11 +57,12 @@ TEST_CASE("a folder that holds other things is refused and left as it is") {
 }
 
 TEST_CASE("the cookie keeps the page signed in, with its own token, until it signs out") {
-    Mill mill;
+    ApiMill mill;
     mill.join(mill.first_code(), "mary");
     const net::Headers typed{{"Content-Type", "application/json"}};
-    const auto answer = ask(*mill.client, "POST", "/api/v1/login", typed,
-                            Json{{"request", "12345678"}, {"name", "mary"}, {"password", password}}.dump());
+    const auto answer =
+        ask(*mill.client, "POST", "/api/v1/login", typed,
+            Json{{"request", "12345678"}, {"name", "mary"}, {"password", api_password}}.dump());
     REQUIRE(answer.status == 200);
     const std::string cookie(answer.headers.get("Set-Cookie"));
     for (const char* part : {"loomlink=", "; HttpOnly", "; SameSite=Strict", "; Secure", "; Path=/"})
@@ -159,7 +83,7 @@ TEST_CASE("the cookie keeps the page signed in, with its own token, until it sig
 }
 
 TEST_CASE("who is disabled is signed out, and tokens of one person do not serve another") {
-    Mill mill;
+    ApiMill mill;
     mill.join(mill.first_code(), "mary");
     mill.invite("dora", {"designer"});
     CHECK(mill.status("dora", "GET", "/designs") == 200);
@@ -173,26 +97,17 @@ TEST_CASE("who is disabled is signed out, and tokens of one person do not serve 
     Json wish = policy;
     wish["approvals"] = 2;
     mill.done("mary", "PUT", "/policy", wish);
-    CHECK(mill.done("dora", "POST", "/login", {{"name", "dora"}, {"password", password}}).contains("token"));
+    CHECK(mill.done("dora", "POST", "/login", {{"name", "dora"}, {"password", api_password}})
+              .contains("token"));
 }
 
 TEST_CASE("a design goes its way from a first revision to the loom and back, over HTTP") {
-    Mill mill;
-    mill.join(mill.first_code(), "mary");
-    mill.invite("dora", {"designer"});
-    mill.invite("abel", {"approver"});
-    mill.invite("otto", {"operator"});
+    ApiMill mill;
+    mill.people_and_a_loom();
     mill.invite("olga", {"operator"});
-    mill.invite("emil", {"engineer"});
-    Json policy = mill.done("mary", "GET", "/policy");
-    policy["simulation"] = "optional";
-    mill.done("mary", "PUT", "/policy", policy);
-    const std::string profile = read_file(WEAVE_SOURCE_DIR "/db/looms/tc2.json").value();
-    for (const char* loom : {"seven", "eight"})
-        mill.done("mary", "POST", "/looms", {{"name", loom}, {"profile", profile}});
-    mill.done("mary", "PUT", "/looms/seven/operators", {{"operators", {"otto"}}});
+    mill.done("mary", "POST", "/looms",
+              {{"name", "eight"}, {"profile", read_file(WEAVE_SOURCE_DIR "/db/looms/tc2.json").value()}});
     mill.done("mary", "PUT", "/looms/eight/operators", {{"operators", {"olga"}}});
-    mill.done("mary", "POST", "/trust", {{"password", password}});
 
     mill.done("dora", "POST", "/designs", {{"name", "cloth"}});
     const Json wish{{"request", "save-cloth-1"},
@@ -223,7 +138,7 @@ TEST_CASE("a design goes its way from a first revision to the loom and back, ove
     CHECK(mill.status("emil", "GET", "/designs/cloth/revisions/01") == 400);
     CHECK(mill.done("emil", "GET", path + "/check?loom=seven").at("errors") == 0);
 
-    const Json why{{"reason", "It is good"}, {"password", password}};
+    const Json why{{"reason", "It is good"}, {"password", api_password}};
     CHECK(mill.status("dora", "POST", path + "/submit",
                       {{"reason", "x"}, {"password", "not the password"}}) == 403);
     CHECK(mill.done("dora", "POST", path + "/submit", why).at("state") == "submitted");
@@ -244,7 +159,7 @@ TEST_CASE("a design goes its way from a first revision to the loom and back, ove
                                     {"loom", "seven"},
                                     {"feeders", {1}},
                                     {"reason", "Weave it"},
-                                    {"password", password}});
+                                    {"password", api_password}});
     CHECK(release.at("state") == "released");
     const auto told = watch->receive(std::chrono::seconds(20));
     REQUIRE((told && *told));

@@ -1,5 +1,6 @@
-// Benchmarks of libweave: each case prints times and the peak memory of its process, in words or as JSON.
+// Benchmarks of libweave and loomlink: each case prints times and the peak memory of its process, in words or as JSON.
 
+#include "loomlink.hpp"
 #include "settling.hpp"
 
 #include <weave/block/operations.hpp>
@@ -17,6 +18,7 @@
 #include <algorithm>
 #include <chrono>
 #include <cstdio>
+#include <exception>
 #include <filesystem>
 #include <string>
 #include <vector>
@@ -229,14 +231,20 @@ struct Case {
     Json (*run)();
 };
 constexpr Case cases[] = {{"shoe", shoe}, {"shoe-edit", shoe_edit}, {"stencil-20000", stencil_20000},
-                            {"mixed-radii", mixed_radii}, {"tiled", tiled}, {"flip", flip_settles}, {"settling", bench::settling}};
+                            {"mixed-radii", mixed_radii}, {"tiled", tiled}, {"flip", flip_settles}, {"settling", bench::settling},
+                            {"loomlink-load", bench::loomlink_load}, {"loomlink-growth", bench::loomlink_growth}};
 
 }  // namespace
 
 int main(int count, char** words) {
     for (const Case& one : cases) {
         if (count == 2 && one.name == std::string(words[1])) {
-            std::printf("%s\n", one.run().dump().c_str());
+            try {
+                std::printf("%s\n", one.run().dump().c_str());
+            } catch (const std::exception& trouble) {
+                std::fprintf(stderr, "weave_bench: %s: %s\n", one.name, trouble.what());
+                return 1;
+            }
             return 0;
         }
     }
