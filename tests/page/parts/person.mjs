@@ -4,7 +4,7 @@ import { chromium } from 'playwright-core';
 
 export const desk = { viewport: { width: 1440, height: 900 } };
 export const tablet = { viewport: { width: 1024, height: 768 }, hasTouch: true, isMobile: true };
-const patience = 60000; // nothing here depends on speed
+const patience = 180000; // nothing here depends on speed
 const given_up = 15000;
 const password_of = name => `the warp and the weft of ${name}`;
 
