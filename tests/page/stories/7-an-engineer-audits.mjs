@@ -67,7 +67,7 @@ export async function run({ people: { emil } }) {
     await emil.page.getByRole('link', { name: /Revision 2/ }).click();
     const evidence = JSON.parse((await download(emil, 'Download the evidence')).text);
     assert.equal(evidence.format, 'loomlink-revision-bundle');
-    assert.equal(evidence.revision, 2);
+    assert.equal(evidence.revision.number, 2);
     await emil.to('Log');
     await find_rewriting(emil);
 }
