@@ -115,6 +115,7 @@ export class Person {
 
     /** Presses Tab until `target` has the focus; the focus must be seen on the way. */
     async tab_to(target, most = 80) {
+        await this.settled(); // a page that is renewed takes the focus with it
         for (let presses = 0; presses < most; ++presses) {
             await this.page.keyboard.press('Tab');
             if (!await target.evaluate(element => element === document.activeElement)) continue;
