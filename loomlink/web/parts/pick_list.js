@@ -24,7 +24,7 @@ export function pick_cells(entry) {
 
 /**
  * source: path that answers {picks:[{pick, feeder, second_feeder, direction, yarn, colour, take_up}]} for ?from=&count=.
- * Answers {element, show_pick(n)}; `on_choose(pick)` hears which row was touched, `on_known(entry)` what the pick that is shown is.
+ * Answers {element, show_pick(n), leave()}; `on_choose(pick)` hears which row was touched, `on_known(entry)` what the pick that is shown is.
  */
 export function pick_list({ source, picks, on_choose = () => {}, on_known = () => {} }) {
     const pages = new Map();
@@ -92,6 +92,7 @@ export function pick_list({ source, picks, on_choose = () => {}, on_known = () =
         show_pick(next);
         on_choose(next);
     });
-    new ResizeObserver(draw).observe(box);
-    return { element: box, show_pick };
+    const watch = new ResizeObserver(draw);
+    watch.observe(box);
+    return { element: box, show_pick, leave: () => watch.disconnect() };
 }

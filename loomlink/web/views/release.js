@@ -71,7 +71,7 @@ function weaving(loom, source, content) {
         now, may_keep ? h('button', { type: 'button', onclick: keep }, 'Remember as last woven') : null, trouble, heard),
     h('div', { class: 'two wide_left' }, h('section', { class: 'card' }, h('h2', {}, 'Card image'), card.element), h('section', { class: 'card' }, h('h2', {}, 'Picks'), list.element))];
     setTimeout(() => (content.place ? show_pick(content.place) : list.show_pick(1)));
-    return { body, leave: card.leave, pick: () => current };
+    return { body, leave: () => { card.leave(); list.leave(); }, pick: () => current };
 }
 
 /** The files, to be taken one by one into a folder. */

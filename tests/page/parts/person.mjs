@@ -4,7 +4,8 @@ import { chromium } from 'playwright-core';
 
 export const desk = { viewport: { width: 1440, height: 900 } };
 export const tablet = { viewport: { width: 1024, height: 768 }, hasTouch: true, isMobile: true };
-const patience = 60000; // nothing here depends on speed
+const patience = 180000; // nothing here depends on speed
+const given_up = 15000;
 const password_of = name => `the warp and the weft of ${name}`;
 
 /** Chromium takes this server's certificate alone, and finds no other host. */
@@ -17,7 +18,7 @@ export class Person {
     /** `device` is `desk` or `tablet`. */
     static async enter(browser, mill, { name, full_name, device = desk }) {
         const person = new Person();
-        Object.assign(person, { mill, name, full_name, password: password_of(name), troubles: [], refusals: 0, is_refused: false, in_flight: 0 });
+        Object.assign(person, { mill, name, full_name, password: password_of(name), troubles: [], refusals: 0, is_refused: false, in_flight: new Map() });
         person.context = await browser.newContext({ ...device, locale: 'en-GB', timezoneId: 'UTC', acceptDownloads: true });
         await person.context.grantPermissions(['clipboard-write', 'clipboard-read'], { origin: mill.origin });
         person.page = await person.context.newPage();
@@ -35,8 +36,8 @@ export class Person {
         this.page.on('console', message => { if (['error', 'warning'].includes(message.type())) tell(`console: ${message.text()}`); });
         this.page.on('pageerror', error => tell(`script: ${error.message}`));
         this.page.on('request', request => { if (!/^(blob|data):/.test(request.url()) && new URL(request.url()).origin !== this.mill.origin) tell(`asked elsewhere: ${request.url()}`); });
-        this.page.on('request', () => { ++this.in_flight; });
-        for (const end of ['requestfinished', 'requestfailed']) this.page.on(end, () => { --this.in_flight; });
+        this.page.on('request', request => this.in_flight.set(request, Date.now()));
+        for (const end of ['requestfinished', 'requestfailed']) this.page.on(end, request => this.in_flight.delete(request));
         this.page.on('response', response => { if (response.status() >= 500) tell(`${response.status()} of ${response.url()}`); });
     }
 
@@ -46,13 +47,14 @@ export class Person {
         this.is_refused = true;
         await act();
         while (this.refusals === before) await this.page.waitForTimeout(100);
-        await this.settled();
+        await this.page.waitForTimeout(500);
         this.is_refused = false;
     }
 
-    /** Waits until nothing has been asked of the server for a while: what follows a click is there then. */
+    /** Waits until nothing asked of the server is open: what follows a click is there then. Of pictures that the page gave up, no end is told. */
     async settled() {
-        for (let calm = 0; calm < 3; calm = this.in_flight > 0 ? 0 : calm + 1) await this.page.waitForTimeout(100);
+        const is_open = began => Date.now() - began < given_up;
+        for (let calm = 0; calm < 3; calm = [...this.in_flight.values()].some(is_open) ? 0 : calm + 1) await this.page.waitForTimeout(100);
     }
 
     quiet() { assert.deepEqual(this.troubles, []); }
@@ -113,6 +115,7 @@ export class Person {
 
     /** Presses Tab until `target` has the focus; the focus must be seen on the way. */
     async tab_to(target, most = 80) {
+        await this.settled(); // a page that is renewed takes the focus with it
         for (let presses = 0; presses < most; ++presses) {
             await this.page.keyboard.press('Tab');
             if (!await target.evaluate(element => element === document.activeElement)) continue;

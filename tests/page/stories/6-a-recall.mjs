@@ -12,6 +12,8 @@ export async function run({ people: { abel, otto } }) {
     await abel.to('Looms');
     await abel.page.getByRole('link', { name: loom }).click();
     await abel.page.getByRole('link', { name: /Release 1, revision 2/ }).click();
+    await abel.page.getByRole('option', { selected: true }).getByText('1,234').waitFor();
+    for (const person of [abel, otto]) await person.settled(); // what is asked for once it is recalled is refused, and the console says so
     await abel.button('Withdraw …').click();
     await picture(abel.page, 'a-recall-is-signed');
     await abel.answered('Sign and withdraw', { Reason: 'The weft catches at the selvedge: the toe has to be bound anew' });

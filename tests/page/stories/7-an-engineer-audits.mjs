@@ -66,8 +66,8 @@ export async function run({ people: { emil } }) {
     await emil.link('toddler').click();
     await emil.page.getByRole('link', { name: /Revision 2/ }).click();
     const evidence = JSON.parse((await download(emil, 'Download the evidence')).text);
-    assert.equal(evidence.format, 'weave-revision-bundle');
-    assert.equal(evidence.revision, 2);
+    assert.equal(evidence.format, 'loomlink-revision-bundle');
+    assert.equal(evidence.revision.number, 2);
     await emil.to('Log');
     await find_rewriting(emil);
 }
