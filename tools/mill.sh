@@ -7,7 +7,7 @@ serve_mill() {
     mill_private=$(mktemp -d)
     mill_answer=$mill_private/answer
     (umask 077 && printf 'warp and weft and warp\n' > "$made/mill-password")
-    "$loomlink" serve "$made/mill" --site mill --host localhost --port 0 --json > "$mill_answer" 2> "$mill_private/log" &
+    "$loomlink" serve "$made/mill" --site mill --host 127.0.0.1 --host localhost --port 0 --json > "$mill_answer" 2> "$mill_private/log" &
     mill_server=$!
     local tries
     for tries in {1..600}; do
