@@ -2,6 +2,7 @@
 
 #include <algorithm>
 #include <loomlink/keys/codes.hpp>
+#include <loomlink/keys/hex.hpp>
 #include <loomlink/keys/sealed_key.hpp>
 #include <loomlink/workflow/accounts.hpp>
 #include <loomlink/workflow/policy.hpp>
@@ -114,7 +115,10 @@ Result<Json> Accounts::first_invitation() {
     const std::string code = make_code();
     WEAVE_TRY(const Hash hash, hash_of_code(code));
     const std::string expires = utc_text(m_desk->now() + m_desk->settings().invitation);
-    const Deed deed{"person.invited", {}, {}, {{"roles", Json::array({"admin"})}}};
+    const Deed deed{"person.invited",
+                    {},
+                    {},
+                    {{"roles", Json::array({"admin"})}, {"code_sha256", hash_hex(hash)}, {"expires", expires}}};
     const Status stored = m_desk->store().write([&](Writer& writer) -> Status {
         WEAVE_TRY(const auto people, writer.people());
         if (!people.empty()) return deny(Denial::conflict, "this site has people already");
@@ -130,7 +134,11 @@ Result<Json> Accounts::invite(const Caller& caller, const Ask& ask, const std::v
     const std::string code = make_code();
     WEAVE_TRY(const Hash hash, hash_of_code(code));
     const std::string expires = utc_text(m_desk->now() + m_desk->settings().invitation);
-    Deed deed{"person.invited", {}, {}, {{"roles", role_list(wanted)}}};
+    Deed deed{
+        "person.invited",
+        {},
+        {},
+        {{"roles", role_list(wanted)}, {"code_sha256", hash_hex(hash)}, {"expires", expires}}};
     deed.told_once = true;
     return m_desk->take(
         caller, ask, deed,
@@ -179,7 +187,12 @@ Result<Json> Accounts::add_invited(const std::string& code, const Person& wish, 
     const Deed deed{"person.joined",
                     wish.login,
                     {},
-                    {{"full_name", wish.full_name}, {"roles", role_list(person.roles)}, {"key", key.id()}}};
+                    {{"full_name", wish.full_name},
+                     {"roles", role_list(person.roles)},
+                     {"key", key.id()},
+                     {"public_key", to_hex(key.public_key)},
+                     {"password_sha256", hash_hex(sha256(person.password))},
+                     {"code_sha256", hash_hex(hash)}}};
     const Status stored = m_desk->store().write([&](Writer& writer) -> Status {
         WEAVE_CHECK_OK(usable(writer));
         WEAVE_TRY(person.event, writer.append(m_desk->statement_of(wish.login, make_token(), deed)));
@@ -200,7 +213,7 @@ Result<Json> Accounts::add_invited(const std::string& code, const Person& wish, 
 
 Result<Json> Accounts::change_password(const Caller& caller, const Ask& ask, const std::string& old_password,
                                        const std::string& new_password) {
-    const Deed deed{"person.password_changed", caller.login, {}, Json::object()};
+    Deed deed{"person.password_changed", caller.login, {}, Json::object()};
     WEAVE_TRY(const auto known, m_desk->recorded(caller, ask.request, deed));
     if (known) return *known;
     WEAVE_CHECK_OK(check_password(new_password, caller.login, caller.full_name));
@@ -215,6 +228,7 @@ Result<Json> Accounts::change_password(const Caller& caller, const Ask& ask, con
                               deny(Denial::password, "the password until now is wrong"));
     m_desk->forgive(name);
     const std::string hashed = m_desk->hasher().hash(new_password);
+    deed.data["password_sha256"] = hash_hex(sha256(hashed));
     return m_desk->take(
         caller, ask, deed,
         [&](const Reader& reader, const Caller&) -> Status {
@@ -293,7 +307,7 @@ Result<Json> Accounts::reset(const Caller& caller, const Ask& ask, const std::st
     const std::string code = make_code();
     WEAVE_TRY(const Hash hash, hash_of_code(code));
     const std::string expires = utc_text(m_desk->now() + m_desk->settings().invitation);
-    Deed deed{"person.reset", name, {}, Json::object()};
+    Deed deed{"person.reset", name, {}, {{"code_sha256", hash_hex(hash)}, {"expires", expires}}};
     deed.told_once = true;
     return m_desk->take(
         caller, ask, deed,

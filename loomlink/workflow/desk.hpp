@@ -55,6 +55,7 @@ struct Deed {
 /// A step that is being stored.
 struct TakenStep {
     Seq event = 0;
+    std::string at;               ///< the moment that the record tells
     std::vector<Signature> also;  ///< of Deed::also
 };
 

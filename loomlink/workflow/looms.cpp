@@ -140,7 +140,7 @@ Result<Json> LoomDesk::add(const Caller& caller, const Ask& ask, const std::stri
                            const std::string& text) {
     WEAVE_CHECK_OK(check_name(name, "name", true));
     WEAVE_TRY(const LoomProfile profile, read_bounded(text));
-    const Deed deed{"loom.added", name, {}, {{"profile_sha256", profile.sha256}}};
+    const Deed deed{"loom.added", name, {}, {{"profile_sha256", profile.sha256}, {"document_sha256", hash_hex(sha256(text))}}};
     return m_desk->take(
         caller, ask, deed,
         [&](const Reader& reader, const Caller& now) -> Status {
@@ -162,7 +162,7 @@ Result<Json> LoomDesk::set_profile(const Caller& caller, const Ask& ask, const s
     const Deed deed{"loom.profile_set",
                     loom,
                     "a new version of the loom's profile is in force",
-                    {{"profile_sha256", profile.sha256}}};
+                    {{"profile_sha256", profile.sha256}, {"document_sha256", hash_hex(sha256(text))}}};
     return m_desk->take(
         caller, ask, deed,
         [&](const Reader& reader, const Caller& now) -> Status {
