@@ -142,6 +142,11 @@ Status restore_site(const SiteFolder& backup, const SiteFolder& to) {
         return file_fault(to.path, "make the folder");
     WEAVE_CHECK_OK(check_site_folder(to));
     WEAVE_TRY(const FolderLock lock, FolderLock::take(to.path));
+    WEAVE_TRY(const auto findings, verify_site(backup, {}));
+    if (!findings.empty())
+        return Error{ErrorCode::refused,
+                     "is not as it was written: " + findings.front().text() + " (verify tells all)",
+                     backup.path.string()};
     WEAVE_CHECK_OK(restore_store(backup.store(), to.store()));
     return copy_keys(backup, to);
 }

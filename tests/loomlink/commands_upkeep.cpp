@@ -1,4 +1,5 @@
 #include "commands_case.hpp"
+#include "store_case.hpp"
 
 #include <algorithm>
 #include <loomlink/keys/hex.hpp>
@@ -29,6 +30,8 @@ TEST_CASE("the log as a bundle is verified offline; one flipped bit is found and
           "[commands]") {
     CommandMill mill;
     mill.set_up();
+    mill.save("twill-2-2");
+    mill.approve("1");
     mill.done("emil", {"audit", "head", "-o", mill.at("head.json")});
     mill.done("emil", {"audit", "bundle", "-o", mill.at("log.json")});
     mill.done("otto", {"trust", "show", "-o", mill.at("trust.json")});
@@ -46,7 +49,13 @@ TEST_CASE("the log as a bundle is verified offline; one flipped bit is found and
     INFO(by_key.err);
     CHECK(by_key.code == 0);
     CHECK(by_key.json().at("retained") == true);
-    CHECK(verify({"--trust", mill.at("trust.json")}).code == 0);
+    CHECK(by_key.json().at("signatures_by_listed_keys") == 0);
+    const Json by_trust = verify({"--trust", mill.at("trust.json")}).json();
+    CHECK(by_trust.at("clean") == true);
+    CHECK(by_trust.at("signatures_by_listed_keys") > 0);
+    CHECK(by_trust.at("signatures_by_listed_keys").get<int>() +
+              by_trust.at("signatures_by_keys_of_the_log").get<int>() ==
+          by_key.json().at("signatures_by_keys_of_the_log"));
     CHECK(verify({"--key", std::string(64, '0')}).code == 3);
     CHECK(verify({"--key", to_hex(KeyPair::generate().public_key())}).code == 1);
     // The terminal has seen a newer log than this copy.
@@ -105,6 +114,19 @@ TEST_CASE("a site is verified and backed up while it is served, and a backup bec
     CHECK(mill.run({"restore", mill.at("backup"), mill.site_folder}).code == 0);
     mill.start();
     CHECK(mill.done("emil", {"design", "show", "cloth", "1"}).at("state") == "released");
+
+    tamper_with(mill.at("backup") / "loomlink.db",
+                "INSERT INTO person_role SELECT id, 'engineer' FROM person WHERE login = 'dora'");
+    const Ended forged = verify(mill.at("backup"));
+    CHECK(forged.code == 1);
+    CHECK(forged.json().at("findings").at(0).at("place") == "person dora");
+    const Ended refused = mill.run({"restore", mill.at("backup"), mill.at("forged")});
+    CHECK(refused.code == 4);
+    CHECK_THAT(refused.err, Catch::Contains("person dora"));
+    CHECK_FALSE(fs::exists(mill.at("forged") / "loomlink.db"));
+    tamper_with(mill.at("backup") / "loomlink.db",
+                "DELETE FROM person_role WHERE role = 'engineer' AND person = (SELECT id FROM person WHERE "
+                "login = 'dora')");
 
     flip(mill.at("backup") / "stamp.key", 30);
     const Ended damaged = verify(mill.at("backup"));
