@@ -4,6 +4,7 @@
 #include <loomlink/audit/bundle.hpp>
 #include <loomlink/audit/told_keys.hpp>
 #include <loomlink/commands/finding_words.hpp>
+#include <loomlink/commands/head_keeper.hpp>
 #include <loomlink/commands/verify_audit.hpp>
 #include <loomlink/terminal/state.hpp>
 #include <memory>
@@ -128,11 +129,7 @@ Status verify_audit(const VerifyWords& words, CommandOutcome& outcome) {
     const Judged judged = std::make_shared<JudgedSignatures>();
     WEAVE_TRY(BundleTrust trust, wished_trust(words, bundle, judged));
     if (!words.retained_file.empty()) {
-        constexpr std::uint64_t most_head = 65536;
-        WEAVE_TRY(const std::string bytes, read_file(words.retained_file, most_head));
-        const auto head = parse_signed_head(bytes);
-        if (!head) return Error(head.error()).in(words.retained_file);
-        trust.retained = *head;
+        WEAVE_TRY(trust.retained, load_retained_head(words.retained_file));
     }
     const BundleReport report = verify_bundle(bundle, trust);
     const bool retained = trust.retained.has_value();
@@ -161,7 +158,8 @@ void add_audit_verify(CLI::App& audit, CommandOutcome& outcome) {
              "what a loom's terminal trusts and has seen (pull --state)")
         ->type_name("FILE");
     add_text(command, "--retained", words->retained_file,
-             "a head kept from earlier, as audit head -o wrote it: an older copy is found out")
+             "a head kept from earlier, as audit head -o wrote it or the server in a second place: an older "
+             "copy is found out")
         ->type_name("FILE");
     on_run(command, outcome, [words, &outcome] { return verify_audit(*words, outcome); });
 }

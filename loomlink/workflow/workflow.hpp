@@ -35,6 +35,8 @@ class Workflow {
     [[nodiscard]] AuditDesk& audit() { return m_audit; }
     /// What waits for this person.
     Result<Json> waiting(const Caller& caller) { return waiting_for(m_desk, caller); }
+    /// The newest signed head of the log.
+    Result<SignedTreeHead> log_head() { return current_head(m_desk); }
     [[nodiscard]] Store& store() { return m_desk.store(); }
 
   private:

@@ -2,9 +2,11 @@
 #include "store_case.hpp"
 
 #include <algorithm>
+#include <loomlink/commands/head_keeper.hpp>
 #include <loomlink/keys/hex.hpp>
 #include <loomlink/keys/key.hpp>
 #include <support/random.hpp>
+#include <utility>
 
 using namespace weave;
 using namespace weave::loomlink;
@@ -132,6 +134,44 @@ TEST_CASE("a site is verified and backed up while it is served, and a backup bec
     const Ended damaged = verify(mill.at("backup"));
     CHECK(damaged.code == 1);
     CHECK(damaged.json().at("findings").at(0).at("place") == "stamp.key");
+}
+
+TEST_CASE("heads kept in a second place find out who rewrites the log, and a lost disk there is told",
+          "[commands]") {
+    CommandMill mill;
+    mill.stop();
+    mill.heads = mill.at("heads.jsonl");
+    mill.start();
+    mill.set_up();
+    mill.stop();  // the newest is kept at the end at the latest
+    const SignedTreeHead first = load_retained_head(mill.heads).value();
+    REQUIRE(mill.run({"backup", mill.site_folder, mill.at("backup")}).code == 0);
+    mill.start();
+    mill.save("twill-2-2");
+    mill.stop();
+    CHECK(load_retained_head(mill.heads)->head.size > first.head.size);
+    const auto verify = [&] {
+        return mill.run({"verify", mill.site_folder, "--retained", mill.heads, "--json"}).code;
+    };
+    CHECK(verify() == 0);
+    const std::string kept = read_file(mill.heads).value();
+    REQUIRE(write_file(mill.heads, kept + "{\"head\":"));  // a line that was cut off
+    CHECK(verify() == 0);
+    REQUIRE(write_file(mill.heads, kept));
+
+    const auto second_place = std::exchange(mill.heads, "");
+    REQUIRE(mill.run({"restore", mill.at("backup"), mill.site_folder}).code == 0);
+    mill.start();  // another history, signed by the same key
+    for (const char* sample : {"satin-5", "rib", "basket"}) mill.save(sample);
+    mill.stop();
+    CHECK(mill.run({"verify", mill.site_folder, "--json"}).code == 0);  // by itself it is a good log
+    mill.heads = second_place;
+    CHECK(verify() == 1);
+
+    mill.heads = mill.at("nowhere") / "heads.jsonl";
+    const auto refused = mill.try_start();
+    REQUIRE_FALSE(refused);
+    CHECK(refused.error().where == mill.heads.string());
 }
 
 TEST_CASE("looms refuse a site that was put back to an older time, until it has other keys", "[commands]") {
