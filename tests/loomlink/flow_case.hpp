@@ -152,13 +152,18 @@ struct FlowSite {
         sqlite3_close(handle);
         return text;
     }
-    /// Kinds of the records from a number on.
-    [[nodiscard]] std::vector<std::string> kinds(Seq from) const {
-        std::vector<std::string> list;
+    /// What the records from a number on say.
+    [[nodiscard]] std::vector<Statement> statements(Seq from) const {
+        std::vector<Statement> list;
         const auto events = flow->store().read([&](const Reader& reader) {
             return reader.events({from, 1000, {}, {}});
         });
-        for (const auto& [seq, bytes] : got(events)) list.push_back(parse_record(bytes)->statement.kind);
+        for (const auto& [seq, bytes] : got(events)) list.push_back(parse_record(bytes)->statement);
+        return list;
+    }
+    [[nodiscard]] std::vector<std::string> kinds(Seq from) const {
+        std::vector<std::string> list;
+        for (const Statement& statement : statements(from)) list.push_back(statement.kind);
         return list;
     }
     [[nodiscard]] Seq log_size() const {
