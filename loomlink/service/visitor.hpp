@@ -40,7 +40,8 @@ Access only(std::set<PersonRole> roles);
 /// Whose session a token is. Denied (`who`) where it is none, has ended, or its person may no longer sign in.
 using FindSession = std::function<Result<SignedIn>(const std::string& token)>;
 
-/// Is told of what the gate refuses to somebody who is signed in: the request's id, what was attempted, why not.
+/// Is told of what the gate refuses to somebody who is signed in: the request's id, what was attempted, and
+/// why not.
 using NoteRefusal = std::function<void(const Caller& caller, const std::string& request, const Deed& attempt,
                                        const Error& error)>;
 

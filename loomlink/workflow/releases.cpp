@@ -239,14 +239,15 @@ Result<Json> ReleaseDesk::sign(const Caller& caller, const Ask& ask, const std::
     };
     return m_desk->attempt(caller, ask, deed, [&]() -> Result<Json> {
         Id id = 0;
-        WEAVE_TRY(const std::string body, m_desk->store().read([&](const Reader& reader) -> Result<std::string> {
+        const auto unsigned_body = [&](const Reader& reader) -> Result<std::string> {
             WEAVE_TRY(const Caller now, fresh_caller(reader, caller));
             WEAVE_CHECK_OK(check(reader, now));
             WEAVE_TRY(const FoundRelease found, find_release(reader, now, loom, number));
             id = found.release.id;
             WEAVE_TRY(const auto text, reader.object(found.release.manifest));
             return text.value_or("");
-        }));
+        };
+        WEAVE_TRY(const std::string body, m_desk->store().read(unsigned_body));
         deed.data["manifest_body_sha256"] = hash_hex(sha256(body));
         deed.also = {{Purpose::release_manifest, body}};
         return m_desk->commit(

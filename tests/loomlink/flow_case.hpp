@@ -43,6 +43,7 @@ struct FlowSite {
     ServerKeys keys{KeyPair::generate(), KeyPair::generate()};
     std::unique_ptr<Workflow> flow;
     std::map<std::string, Caller> people;
+    net::ThrottleRate refusals = DeskSettings().refusals;  ///< that are logged; read by open()
     int requests = 0;
 
     FlowSite() {
@@ -64,6 +65,7 @@ struct FlowSite {
         flow.reset();
         DeskSettings settings;
         settings.key_cost = settings.login_cost = test_cost();
+        settings.refusals = refusals;
         flow =
             got(Workflow::open(Store::open(path).value(),
                                {KeyPair::from_seed(keys.log.seed()), KeyPair::from_seed(keys.stamp.seed())},
