@@ -18,8 +18,8 @@ net::Response trouble_answer(const Error& error);
 class Gate {
   public:
     /// `refused` hears of what is refused to who is signed in; of others there is no word, so that nobody
-    /// fills the log from outside. `strangers` is how often one address may use routes that are open to anyone
-    /// and change something.
+    /// fills the log from outside. `strangers` is how often one address may use routes that are open to
+    /// anyone and change something.
     Gate(FindSession find, NoteRefusal refused, const net::ThrottleRate& strangers);
 
     /// The route as the server takes it, answered by its handler. Error (system): it has none.

@@ -13,7 +13,7 @@ namespace weave::loomlink {
 struct Visitor {
     SignedIn session;     ///< a caller of id 0: nobody in particular
     std::string token;    ///< the session's
-    std::string address;     ///< of the other side
+    std::string address;  ///< of the other side
     bool by_cookie = false;  ///< the token came as the page's cookie
 
     [[nodiscard]] const Caller& caller() const { return session.caller; }

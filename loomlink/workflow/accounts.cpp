@@ -209,9 +209,8 @@ Result<Json> Accounts::change_password(const Caller& caller, const Ask& ask, con
         WEAVE_CHECK_OK(check_password(new_password, caller.login, caller.full_name));
         const std::string name = "sign " + caller.login;
         WEAVE_CHECK_OK(m_desk->count_try(name, {}));
-        WEAVE_TRY(const PersonKey key, m_desk->store().read([&](const Reader& reader) {
-            return signing_key(reader, caller.id);
-        }));
+        WEAVE_TRY(const PersonKey key,
+                  m_desk->store().read([&](const Reader& reader) { return signing_key(reader, caller.id); }));
         WEAVE_TRY(const SealedKey sealed, read_sealed_key(*key.sealed));
         const auto anew =
             loomlink::change_password(sealed, old_password, new_password, m_desk->settings().key_cost);

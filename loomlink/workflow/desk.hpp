@@ -32,8 +32,8 @@ struct DeskSettings {
     std::chrono::hours invitation{7 * 24};
     /// Wrong passwords: per name, and per address.
     net::ThrottleRate by_name{5, 1.0 / 60, 10000}, by_address{60, 0.5, 10000};
-    /// The same look, or the same attempt refused for the same reason, by the same person is logged once in so
-    /// long.
+    /// The same look, or the same attempt refused for the same reason, by the same person is logged once in
+    /// so long.
     std::chrono::minutes view_again{10};
     net::ThrottleRate refusals{100, 1.0 / 30, 10000};  ///< of one person that are logged
 };
@@ -98,8 +98,8 @@ class Desk {
     /// Logs that an attempt of somebody who is signed in was refused, as RefusalGauge lets it, and gives the
     /// error back.
     Error refuse(const Caller& caller, const std::string& request, const Deed& attempt, Error error);
-    /// The same for who is not signed in, each time, but not for what cannot be understood: how often that may
-    /// be tried is held elsewhere. `actor` is a name that exists, or `nobody`.
+    /// The same for who is not signed in, each time, but not for what cannot be understood: how often that
+    /// may be tried is held elsewhere. `actor` is a name that exists, or `nobody`.
     Error refuse_stranger(const std::string& actor, const Deed& attempt, Error error);
     /// Logs that a person looked at something, once in a while for the same look.
     Status note_view(const Caller& caller, const std::string& kind, const std::string& subject,

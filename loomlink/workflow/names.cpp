@@ -84,8 +84,7 @@ Status check_line(const std::string& text, const std::string& member, std::size_
         return bad_input("has line breaks, control characters, or marks that turn the direction of writing",
                          member);
     if (has_unseen(text)) return bad_input("has characters that nobody sees", member);
-    if (text.find_first_not_of(' ') == std::string::npos && least > 0)
-        return bad_input("is missing", member);
+    if (text.find_first_not_of(' ') == std::string::npos && least > 0) return bad_input("is missing", member);
     return {};
 }
 
@@ -99,8 +98,7 @@ Status check_name(const std::string& name, const std::string& member, bool space
             std::string("must be 1 to 64 of the letters a to z and A to Z, digits, '.', '-' and '_'") +
                 (spaces ? ", with single spaces within" : ""),
             member);
-    if (name.front() == '.' || name.front() == '-')
-        return bad_input("may not start with '.' or '-'", member);
+    if (name.front() == '.' || name.front() == '-') return bad_input("may not start with '.' or '-'", member);
     if (name.back() == '.') return bad_input("may not end with '.'", member);
     if (is_device(name))
         return bad_input("is the name of a device on Windows, which takes no file of that name", member);

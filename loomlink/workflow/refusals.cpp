@@ -15,9 +15,9 @@ constexpr std::int64_t largest_number = std::int64_t{1} << 53;  // JSON keeps wh
 
 /// Members that say where an attempt was to reach. None of them is free text.
 constexpr std::array<std::string_view, 20> places{
-    "branch",    "design",   "design_sha256",  "document_sha256", "end",      "expected", "feeders",
-    "file",      "key",      "loom",           "looms",           "operators", "pick",     "profile_sha256",
-    "release",   "revision", "roles",          "rule",            "sha256",   "supersedes"};
+    "branch", "design", "design_sha256", "document_sha256", "end",  "expected",       "feeders", "file",
+    "key",    "loom",   "looms",         "operators",       "pick", "profile_sha256", "release", "revision",
+    "roles",  "rule",   "sha256",        "supersedes"};
 
 std::string shortened(const std::string& text, std::size_t most) {
     const std::string line = on_one_line(text);
@@ -63,8 +63,8 @@ Deed refusal_record(const Deed& attempt, const Error& error) {
 
 std::optional<std::uint64_t> RefusalGauge::admit(const std::string& login, const Deed& record, bool always,
                                                  Instant now) {
-    const std::string same = sha256_hex(
-        canonical_json(Json::array({login, record.subject, record.reason, record.data})));
+    const std::string same =
+        sha256_hex(canonical_json(Json::array({login, record.subject, record.reason, record.data})));
     const net::Throttle::Clock::time_point moment(now.time_since_epoch());
     const bool is_written = always || (m_recent.is_new(same, now) && m_rate.take(login, moment));
     const std::lock_guard lock(m_mutex);

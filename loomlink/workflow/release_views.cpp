@@ -190,8 +190,7 @@ Result<std::string> ReleaseDesk::file(const Caller& caller, const std::string& l
     });
     const Json data{{"loom", loom}, {"release", number}, {"file", on_one_line(name)}};
     // No pull without its record: the bytes are given out only once it stands.
-    if (!bytes)
-        return m_desk->refuse(caller, {}, {"release.pulled", design, {}, data}, bytes.error());
+    if (!bytes) return m_desk->refuse(caller, {}, {"release.pulled", design, {}, data}, bytes.error());
     WEAVE_CHECK_OK(m_desk->note(caller.login, "release.pulled", design, data));
     return bytes;
 }

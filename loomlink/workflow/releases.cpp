@@ -272,8 +272,7 @@ Result<Json> ReleaseDesk::withdraw(const Caller& caller, const Ask& ask, const s
             if (found.release.state == ReleaseStage::released ||
                 found.release.state == ReleaseStage::prepared)
                 return {};
-            return deny(Denial::conflict, std::string("the release is ") +
-                                              release_word(found.release.state) +
+            return deny(Denial::conflict, std::string("the release is ") + release_word(found.release.state) +
                                               " already: no loom takes it any more");
         },
         [&](Writer& writer, const TakenStep& step) -> Result<Json> {

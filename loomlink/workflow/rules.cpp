@@ -102,8 +102,8 @@ Status may(const Caller& caller, Action action, const Revision& revision) {
     if (is_judgement(action) && is_author(caller, revision))
         return deny(Denial::rights, "you are an author of this revision: somebody else has to decide on it");
     if (!state_allows(revision.state, action))
-        return deny(Denial::conflict, "revision " + std::to_string(revision.number) + " " +
-                                          hindrance(revision.state, action));
+        return deny(Denial::conflict,
+                    "revision " + std::to_string(revision.number) + " " + hindrance(revision.state, action));
     return {};
 }
 

@@ -35,8 +35,8 @@ class Workflow {
     [[nodiscard]] AuditDesk& audit() { return m_audit; }
     /// What waits for this person.
     Result<Json> waiting(const Caller& caller) { return waiting_for(m_desk, caller); }
-    /// Logs that an attempt of somebody who is signed in was refused before it came to the workflow, and gives
-    /// the error back.
+    /// Logs that an attempt of somebody who is signed in was refused before it came to the workflow, and
+    /// gives the error back.
     Error refuse(const Caller& caller, const std::string& request, const Deed& attempt, Error error) {
         return m_desk.refuse(caller, request, attempt, std::move(error));
     }

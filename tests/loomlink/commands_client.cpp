@@ -130,7 +130,8 @@ TEST_CASE("what a server answers is believed for what it is, and nothing more", 
 }
 
 TEST_CASE("an error names what was asked for as people write it", "[commands]") {
-    ScriptedServer server({http("404 Not Found", R"({"error":{"kind":"refused","message":"is not there"}})")});
+    ScriptedServer server(
+        {http("404 Not Found", R"({"error":{"kind":"refused","message":"is not there"}})")});
     ApiClient client = client_of(server);
     const auto answer = client.change("POST", api_path({"looms", "EP 1", "releases"}), {{"x", 1}});
     REQUIRE_FALSE(answer);

@@ -231,16 +231,14 @@ void try_the_matrix(FlowSite& site, Attempting attempt) {
 TEST_CASE("role by state by action by authorship: what the table allows is done, all else changes nothing") {
     FlowSite site;
     log_each_refusal(site);
-    try_the_matrix(
-        site, [&](const Attempt& one) { return by_workflow(site, one); });
+    try_the_matrix(site, [&](const Attempt& one) { return by_workflow(site, one); });
 }
 
 TEST_CASE("the API does to a revision what role, state and authorship allow, and nothing else") {
     FlowSite site;
     log_each_refusal(site);
     Api api(site);
-    try_the_matrix(
-        site, [&](const Attempt& one) { return api(one); });
+    try_the_matrix(site, [&](const Attempt& one) { return api(one); });
 }
 
 TEST_CASE("past the workflow, the database lets nobody approve own work, or what was not submitted") {

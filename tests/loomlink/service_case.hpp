@@ -130,6 +130,11 @@ inline net::Response ask(net::HttpClient& client, const std::string& method, con
     return *std::move(answer);
 }
 
+/// The same members in the order of their names.
+inline Json sorted(const Json& json) {
+    return parse_json(canonical_json(json)).value();
+}
+
 inline Json json_of(const net::Response& response) {
     return parse_json(response.body ? *response.body : "").value();
 }
