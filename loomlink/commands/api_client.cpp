@@ -23,6 +23,12 @@ ErrorCode code_of(const std::string& kind, int status) {
     return status >= 500 ? ErrorCode::system : ErrorCode::bad_input;
 }
 
+/// What was asked for, as people write it: `looms/EP 1`.
+std::string place_of(const std::string& path) {
+    const auto decoded = net::percent_decoded(path.substr(1));
+    return on_one_line(decoded ? *decoded : path.substr(1));
+}
+
 /// What an answer other than 200 says. A refusal's place is a word for programs, so people are told what was
 /// asked for instead.
 Error error_of(const net::Response& response, const std::string& path) {
@@ -38,7 +44,7 @@ Error error_of(const net::Response& response, const std::string& path) {
         error.message = "the server answers " + std::to_string(response.status) + " " +
                         std::string(net::reason_of(response.status));
     if (error.code == ErrorCode::refused || error.code == ErrorCode::system || error.where.empty())
-        error.where = path.substr(1);
+        error.where = place_of(path);
     if (response.status == 401 && path != "/login") error.message += " (loomlink login)";
     return error;
 }
@@ -48,7 +54,7 @@ Result<Json> json_of(const Result<net::Response>& response, const std::string& p
     if (response->status != 200) return error_of(*response, path);
     auto json = parse_json(response->body ? *response->body : "");
     if (json && json->is_object()) return json;
-    return bad_input("the server's answer is no JSON object", path.substr(1));
+    return bad_input("the server's answer is no JSON object", place_of(path));
 }
 
 std::string target_of(const std::string& path, const net::Parameters& query) {
@@ -112,7 +118,7 @@ Result<std::string> ApiClient::get_bytes(const std::string& path, const net::Par
     std::string bytes;
     const net::Sink keep = [&](std::string_view piece) -> Status {
         if (piece.size() > most - bytes.size())
-            return bad_input("the answer has more than " + counted(most, "byte"), path.substr(1));
+            return bad_input("the answer has more than " + counted(most, "byte"), place_of(path));
         bytes += piece;
         return {};
     };

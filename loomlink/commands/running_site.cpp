@@ -40,6 +40,10 @@ ServiceParts service_of(Workflow& workflow, const Watchers& watchers, const Head
     ServiceParts service;
     service.handlers = workflow_handlers(workflow, watchers);
     service.session = [&workflow](const std::string& token) { return workflow.accounts().who(token); };
+    service.refused = [&workflow](const Caller& caller, const std::string& request, const Deed& attempt,
+                                  const Error& error) {
+        static_cast<void>(workflow.refuse(caller, request, attempt, error));
+    };
     service.health = {{"store", [&workflow] { return check_store(workflow); }}};
     if (heads != nullptr) service.health.push_back({"heads", [heads] { return heads->status(); }});
     service.metrics = std::make_shared<net::Metrics>();

@@ -20,21 +20,20 @@ bool is_plain(char c) {
            c == '-' || c == '_';
 }
 
-/// CON, PRN, AUX, NUL, COM0 to COM9, LPT0 to LPT9, with any ending.
-bool is_device(std::string_view name) {
-    const std::string stem = folded_name(name.substr(0, name.find('.')));
-    constexpr std::array<std::string_view, 4> devices{"con", "prn", "aux", "nul"};
-    if (std::find(devices.begin(), devices.end(), stem) != devices.end()) return true;
-    return stem.size() == 4 && (stem.starts_with("com") || stem.starts_with("lpt")) && stem[3] >= '0' &&
-           stem[3] <= '9';
-}
-
 }  // namespace
 
 std::string folded_name(std::string_view name) {
     std::string folded(name);
     for (char& c : folded) c = static_cast<char>(std::tolower(static_cast<unsigned char>(c)));
     return folded;
+}
+
+bool is_device_name(std::string_view name) {
+    const std::string folded = folded_name(name);
+    constexpr std::array<std::string_view, 4> devices{"con", "prn", "aux", "nul"};
+    if (std::find(devices.begin(), devices.end(), folded) != devices.end()) return true;
+    return folded.size() == 4 && (folded.starts_with("com") || folded.starts_with("lpt")) &&
+           folded[3] >= '0' && folded[3] <= '9';
 }
 
 Status check_file_name(std::string_view name) {
@@ -48,7 +47,8 @@ Status check_file_name(std::string_view name) {
     if (name.front() == '.' || name.front() == '-')
         return refused(name, "may not start with a point or a hyphen");
     if (name.back() == '.') return refused(name, "may not end with a point");
-    if (is_device(name)) return refused(name, "is the name of a device on Windows");
+    if (is_device_name(name.substr(0, name.find('.'))))
+        return refused(name, "is the name of a device on Windows");
     return {};
 }
 

@@ -12,6 +12,10 @@ namespace weave::loomlink {
 /// point, no name that Windows keeps for a device. The error says which rule it breaks.
 Status check_file_name(std::string_view name);
 
+/// Whether Windows keeps this name, in any capitals, for a device: CON, PRN, AUX, NUL, COM0 to COM9, LPT0 to
+/// LPT9. It does so with any ending, so `name` is what stands before the first point.
+bool is_device_name(std::string_view name);
+
 /// A name as systems compare it that see no difference between small and capital letters.
 std::string folded_name(std::string_view name);
 

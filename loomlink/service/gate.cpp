@@ -38,33 +38,99 @@ std::optional<std::string> shown_token(const Request& request) {
 /// No token is longer, so nothing longer is looked up.
 constexpr std::size_t longest_token = 128;
 
+Error turned_away(std::string why, std::string where = {}) {
+    return {ErrorCode::refused, std::move(why), std::move(where)};
+}
+
+/// The body of a request that is sent away, as far as it can be read; what is large is not looked at.
+Json body_of(const Request& request) {
+    constexpr std::size_t most_read = 16384;
+    if (request.body.size() > most_read) return Json::object();
+    const auto read = parse_json(request.body);
+    return read && read->is_object() ? *read : Json::object();
+}
+
+/// What a request that is sent away asked for, by the places that its path, its query and its body name.
+Deed attempt_of(const ApiRoute& route, const Request& request, const Json& body) {
+    Deed deed{route.name, {}, {}, body};
+    for (const auto& [name, text] : request.query) deed.data.emplace(name, text);
+    const auto path_has = [&](const char* part) { return route.path.find(part) != std::string::npos; };
+    for (const std::string& place : places_of(route.path)) {
+        const std::string& text = request.place(place);
+        if (place == number_place) {
+            const auto number = place_number(text);
+            deed.data[path_has("/revisions/") ? "revision" : "release"] = number ? Json(*number) : Json(text);
+        } else if (place == "name") {
+            if (path_has("/files/"))
+                deed.data["file"] = text;
+            else
+                deed.subject = text;
+        } else {
+            deed.data[place] = text;
+        }
+    }
+    const auto design = deed.data.find("design");
+    if (design != deed.data.end() && design->is_string()) {
+        deed.subject = design->get<std::string>();
+        deed.data.erase(design);
+    }
+    return deed;
+}
+
 }  // namespace
 
 class Gate::Keeper {
   public:
-    Keeper(FindSession find, const net::ThrottleRate& strangers)
-        : m_find(std::move(find)), m_strangers(strangers) {}
+    Keeper(FindSession find, NoteRefusal refused, const net::ThrottleRate& strangers)
+        : m_find(std::move(find)), m_refused(std::move(refused)), m_strangers(strangers) {}
 
     /// The call, or the answer that sends its sender away.
     std::variant<ApiCall, Response> let_in(const ApiRoute& route, const Request& request) {
         std::variant<Visitor, Response> met = meet(route, request);
         if (auto* away = std::get_if<Response>(&met)) return std::move(*away);
         ApiCall call{request, std::move(std::get<Visitor>(met)), Json::object(), Json::object()};
-        if (!route.body.empty() && !is_json(request))
-            return net::error_answer(bad_input("the body must be application/json", "Content-Type"), 415);
-        if (route.body.empty() && !request.body.empty())
-            return net::error_answer(bad_input("this takes no body"));
-        auto query = read_query(request.query, route.query);
-        if (!query) return net::error_answer(query.error());
-        call.query = *std::move(query);
-        if (route.body.empty()) return call;
-        auto body = read_body(request.body, route.body);
-        if (!body) return net::error_answer(body.error());
-        call.body = *std::move(body);
-        return call;
+        const Status right = check_right(route, call);
+        const Status fits = right ? read_form(route, call) : right;
+        if (fits) return call;
+        if (call.visitor.caller().id != 0) note(route, call, fits.error());
+        const int no_form = route.body.empty() || is_json(request) ? 400 : 415;
+        return net::error_answer(fits.error(), right ? no_form : 403);
     }
 
   private:
+    static Status check_right(const ApiRoute& route, const ApiCall& call) {
+        const std::string& csrf = call.visitor.session.csrf;
+        const bool of_our_page =
+            !csrf.empty() && equal_secrets(csrf, call.request.headers.get("X-CSRF-Token"));
+        if (call.visitor.by_cookie && changes_something(route) && !of_our_page)
+            return turned_away("the page's own token is missing; load the page again", "X-CSRF-Token");
+        if (!route.access.allows(call.visitor.caller())) return turned_away("your roles do not allow this");
+        return {};
+    }
+
+    /// Reads query and body where the request has the form of the route.
+    static Status read_form(const ApiRoute& route, ApiCall& call) {
+        const Request& request = call.request;
+        if (!route.body.empty() && !is_json(request))
+            return bad_input("the body must be application/json", "Content-Type");
+        if (route.body.empty() && !request.body.empty()) return bad_input("this takes no body");
+        for (const std::string& place : places_of(route.path))
+            if (place == number_place && !place_number(request.place(place)))
+                return bad_input("is no number from 1 on", place);
+        WEAVE_TRY(call.query, read_query(request.query, route.query));
+        if (route.body.empty()) return {};
+        WEAVE_TRY(call.body, read_body(request.body, route.body));
+        return {};
+    }
+
+    void note(const ApiRoute& route, const ApiCall& call, const Error& error) {
+        const Json body = body_of(call.request);
+        const auto id = body.find("request");
+        m_refused(call.visitor.caller(),
+                  id != body.end() && id->is_string() ? id->get<std::string>() : std::string(),
+                  attempt_of(route, call.request, body), error);
+    }
+
     static bool is_json(const Request& request) {
         const std::string_view type = request.headers.get("Content-Type");
         const std::string_view media = type.substr(0, type.find(';'));
@@ -82,13 +148,7 @@ class Gate::Keeper {
         if (shown.empty() || shown.size() > longest_token) return declined(401, "sign in first");
         auto found = m_find(shown);
         if (!found) return trouble_answer(found.error());
-        const Visitor visitor{*std::move(found), shown, request.peer};
-        const std::string& csrf = visitor.session.csrf;
-        const bool of_our_page = !csrf.empty() && equal_secrets(csrf, request.headers.get("X-CSRF-Token"));
-        if (kept && changes_something(route) && !of_our_page)
-            return declined(403, "the page's own token is missing; load the page again", "X-CSRF-Token");
-        if (!route.access.allows(visitor.caller())) return declined(403, "your roles do not allow this");
-        return visitor;
+        return Visitor{*std::move(found), shown, request.peer, kept.has_value()};
     }
 
     std::variant<Visitor, Response> stranger(const ApiRoute& route, const Request& request) {
@@ -101,6 +161,7 @@ class Gate::Keeper {
     }
 
     FindSession m_find;
+    NoteRefusal m_refused;
     net::Throttle m_strangers;
 };
 
@@ -123,8 +184,8 @@ net::Response trouble_answer(const Error& error) {
     return net::error_answer(error, 403);
 }
 
-Gate::Gate(FindSession find, const net::ThrottleRate& strangers)
-    : m_keeper(std::make_shared<Keeper>(std::move(find), strangers)) {}
+Gate::Gate(FindSession find, NoteRefusal refused, const net::ThrottleRate& strangers)
+    : m_keeper(std::make_shared<Keeper>(std::move(find), std::move(refused), strangers)) {}
 
 Result<net::Route> Gate::guarded(const ApiRoute& route, const ApiHandlers& handlers) const {
     net::Route made{

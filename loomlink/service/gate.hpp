@@ -17,8 +17,10 @@ net::Response trouble_answer(const Error& error);
 /// whether the route is open to that person, and whether the request has the form that the table names.
 class Gate {
   public:
-    /// `strangers` is how often one address may use routes that are open to anyone and change something.
-    Gate(FindSession find, const net::ThrottleRate& strangers);
+    /// `refused` hears of what is refused to who is signed in; of others there is no word, so that nobody
+    /// fills the log from outside. `strangers` is how often one address may use routes that are open to
+    /// anyone and change something.
+    Gate(FindSession find, NoteRefusal refused, const net::ThrottleRate& strangers);
 
     /// The route as the server takes it, answered by its handler. Error (system): it has none.
     [[nodiscard]] Result<net::Route> guarded(const ApiRoute& route, const ApiHandlers& handlers) const;

@@ -47,7 +47,7 @@ Result<Json> proven_events(AuditDesk& audit, const Caller& caller, const std::st
 Result<Json> revision_bundle(const ApiCall& call, DesignDesk& designs, AuditDesk& audit) {
     const Caller& caller = call.visitor.caller();
     const std::string& design = call.place("design");
-    WEAVE_TRY(const auto number, call.number("n"));
+    const std::int64_t number = call.number();
     WEAVE_TRY(Json revision, designs.revision(caller, design, number));
     WEAVE_TRY(std::string document, designs.document(caller, design, number));
     WEAVE_TRY(Json head, audit.head(caller));

@@ -12,27 +12,27 @@ std::string name_of(const ApiCall& call) {
 void add_views(ApiHandlers& handlers, DesignDesk& designs) {
     auto& answers = handlers.answers;
     answers["revision"] = answering([&designs](const ApiCall& call) -> Result<Json> {
-        WEAVE_TRY(const auto number, call.number("n"));
+        const std::int64_t number = call.number();
         return designs.revision(call.visitor.caller(), call.place("design"), number);
     });
     answers["revision.check"] = answering([&designs](const ApiCall& call) -> Result<Json> {
-        WEAVE_TRY(const auto number, call.number("n"));
+        const std::int64_t number = call.number();
         return designs.check(call.visitor.caller(), call.place("design"), number,
                              call.query.value("loom", std::string()));
     });
     answers["revision.document"] = giving([&designs](const ApiCall& call) -> Result<Content> {
-        WEAVE_TRY(const auto number, call.number("n"));
+        const std::int64_t number = call.number();
         WEAVE_TRY(std::string text, designs.document(call.visitor.caller(), call.place("design"), number));
         return Content{"application/octet-stream", std::move(text), name_of(call) + ".weave"};
     });
     answers["revision.picture"] = giving([&designs](const ApiCall& call) -> Result<Content> {
-        WEAVE_TRY(const auto number, call.number("n"));
+        const std::int64_t number = call.number();
         WEAVE_TRY(std::string png, designs.picture(call.visitor.caller(), call.place("design"), number,
                                                    call.query.value("view", std::string())));
         return Content{"image/png", std::move(png)};
     });
     answers["revision.card"] = giving([&designs](const ApiCall& call) -> Result<Content> {
-        WEAVE_TRY(const auto number, call.number("n"));
+        const std::int64_t number = call.number();
         WEAVE_TRY(std::string png,
                   designs.card(call.visitor.caller(), call.place("design"), number, tile_of(call)));
         return Content{"image/png", std::move(png)};

@@ -8,24 +8,24 @@ namespace {
 void add_files(ApiHandlers& handlers, ReleaseDesk& releases) {
     auto& answers = handlers.answers;
     answers["release.manifest"] = giving([&releases](const ApiCall& call) -> Result<Content> {
-        WEAVE_TRY(const auto number, call.number("n"));
+        const std::int64_t number = call.number();
         WEAVE_TRY(std::string bytes, releases.manifest(call.visitor.caller(), call.place("loom"), number));
         return Content{"application/octet-stream", std::move(bytes), "manifest.json"};
     });
     answers["release.file"] = giving([&releases](const ApiCall& call) -> Result<Content> {
-        WEAVE_TRY(const auto number, call.number("n"));
+        const std::int64_t number = call.number();
         const std::string& name = call.place("name");
         WEAVE_TRY(std::string bytes, releases.file(call.visitor.caller(), call.place("loom"), number, name));
         return Content{"application/octet-stream", std::move(bytes), name};
     });
     answers["release.card"] = giving([&releases](const ApiCall& call) -> Result<Content> {
-        WEAVE_TRY(const auto number, call.number("n"));
+        const std::int64_t number = call.number();
         WEAVE_TRY(std::string png,
                   releases.card(call.visitor.caller(), call.place("loom"), number, tile_of(call)));
         return Content{"image/png", std::move(png)};
     });
     answers["release.picks"] = answering([&releases](const ApiCall& call) -> Result<Json> {
-        WEAVE_TRY(const auto number, call.number("n"));
+        const std::int64_t number = call.number();
         return releases.picks(call.visitor.caller(), call.place("loom"), number, call.query.value("from", 1),
                               call.query.value("count", 1));
     });
@@ -46,7 +46,7 @@ void add_release_steps(ApiHandlers& handlers, ReleaseDesk& releases, const Watch
     for (const bool sign : {true, false})
         answers[sign ? "release.sign" : "release.withdraw"] =
             answering([&releases, watchers, sign](const ApiCall& call) -> Result<Json> {
-                WEAVE_TRY(const auto number, call.number("n"));
+                const std::int64_t number = call.number();
                 const std::string& loom = call.place("loom");
                 const Caller& caller = call.visitor.caller();
                 const std::string why = call.text("reason");
@@ -62,7 +62,7 @@ void add_release_steps(ApiHandlers& handlers, ReleaseDesk& releases, const Watch
 void add_release_handlers(ApiHandlers& handlers, ReleaseDesk& releases, const Watchers& watchers) {
     auto& answers = handlers.answers;
     answers["release"] = answering([&releases](const ApiCall& call) -> Result<Json> {
-        WEAVE_TRY(const auto number, call.number("n"));
+        const std::int64_t number = call.number();
         return releases.read(call.visitor.caller(), call.place("loom"), number);
     });
     answers["loom.index"] = answering([&releases](const ApiCall& call) {

@@ -6,7 +6,7 @@ namespace weave::loomlink {
 namespace {
 
 Result<StepWish> wish_of(const ApiCall& call, const std::string& reason) {
-    WEAVE_TRY(const auto number, call.number("n"));
+    const std::int64_t number = call.number();
     return StepWish{call.place("design"), number, call.text(reason)};
 }
 
@@ -58,7 +58,7 @@ void add_step_handlers(ApiHandlers& handlers, Steps& steps) {
 void add_evidence_handlers(ApiHandlers& handlers, EvidenceDesk& evidence) {
     auto& answers = handlers.answers;
     answers["revision.evidence"] = answering([&evidence](const ApiCall& call) -> Result<Json> {
-        WEAVE_TRY(const auto number, call.number("n"));
+        const std::int64_t number = call.number();
         WEAVE_TRY(const Json statement, document_of(call, "statement"));
         WEAVE_TRY(const Signature signature, signature_of(call));
         return evidence.add(call.place("design"), number, call.id(), statement, signature,

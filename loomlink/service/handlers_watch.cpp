@@ -14,7 +14,9 @@ void add_watch_handler(ApiHandlers& handlers, Workflow& workflow, const Watchers
     handlers.sockets["loom.watch"] = [&workflow, watchers,
                                       sees](const ApiCall& call) -> net::WebSocketAdmission {
         const std::string& loom = call.place("loom");
-        if (const Status seen = sees(call.visitor.caller(), loom); !seen) return trouble_answer(seen.error());
+        const Caller& caller = call.visitor.caller();
+        if (const Status seen = sees(caller, loom); !seen)
+            return trouble_answer(workflow.refuse(caller, {}, {"loom.watched", loom}, seen.error()));
         return watchers.watch(loom, [&workflow, sees, loom, token = call.visitor.token] {
             const auto who = workflow.accounts().who(token);
             return who && sees(who->caller, loom);

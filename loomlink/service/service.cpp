@@ -48,7 +48,7 @@ Result<net::Router> service_routes(const ServiceParts& parts) {
     const std::vector<ApiRoute> table = api_table();
     ApiHandlers handlers = parts.handlers;
     handlers.answers["openapi"] = document_handler(table, parts.version);
-    const Gate gate(parts.session, parts.strangers);
+    const Gate gate(parts.session, parts.refused, parts.strangers);
     net::Router router;
     for (const ApiRoute& line : table) {
         WEAVE_TRY(net::Route route, gate.guarded(line, handlers));

@@ -16,6 +16,7 @@ namespace weave::loomlink {
 struct ServiceParts {
     ApiHandlers handlers;
     FindSession session;
+    NoteRefusal refused;
     std::vector<net::HealthCheck> health;
     std::shared_ptr<net::Metrics> metrics;  ///< given out as /metrics
     std::string version;                    ///< of the program, for the API document

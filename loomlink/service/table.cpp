@@ -88,12 +88,14 @@ Json components() {
 
 }  // namespace
 
-Result<std::int64_t> ApiCall::number(std::string_view name) const {
-    const std::string& text = place(name);
+std::optional<std::int64_t> place_number(const std::string& text) {
     const auto number = parse_whole(text);
-    if (!number || *number < 1 || std::to_string(*number) != text)
-        return bad_input("is no number from 1 on", std::string(name));
-    return *number;
+    if (!number || *number < 1 || std::to_string(*number) != text) return {};
+    return number;
+}
+
+std::int64_t ApiCall::number() const {
+    return place_number(place(number_place)).value_or(0);  // the gate let nothing else pass
 }
 
 std::string ApiCall::text(const std::string& field) const {

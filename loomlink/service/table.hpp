@@ -12,6 +12,9 @@
 
 namespace weave::loomlink {
 
+/// The place of a path that holds a number: `{n}` of `/designs/{design}/revisions/{n}`.
+inline constexpr const char* number_place = "n";
+
 /// A request that has passed the gate: its sender may ask this, and what it brings has the form that the
 /// table names. What it asks for may still not be there, or not be the sender's.
 struct ApiCall {
@@ -22,8 +25,8 @@ struct ApiCall {
 
     /// What stands in the path for {name}.
     [[nodiscard]] const std::string& place(std::string_view name) const { return request.place(name); }
-    /// The number that stands in the path for {name}, from 1. Errors: none.
-    [[nodiscard]] Result<std::int64_t> number(std::string_view name) const;
+    /// The number that stands in the path for {n}, from 1.
+    [[nodiscard]] std::int64_t number() const;
     /// The caller's own id of this request.
     [[nodiscard]] std::string id() const { return body.value("request", std::string()); }
     /// A text of the body; empty where it is missing.
@@ -76,6 +79,9 @@ std::vector<ApiRoute> audit_table();
 
 /// The field that every changing call has, and those given.
 Fields with_request(Fields fields);
+
+/// The number that a text of a path stands for: from 1, written in one way only.
+std::optional<std::int64_t> place_number(const std::string& text);
 
 /// The names of the places of a path: `design` and `n` of `/designs/{design}/revisions/{n}`.
 std::vector<std::string> places_of(const std::string& path);

@@ -42,7 +42,7 @@ std::vector<ApiRoute> document_table() {
          "POST",
          "/designs/{design}/revisions",
          designer(),
-         "Saves a revision on a branch; 409 where the branch moved on",
+         "Saves a revision on a branch; 409 where the branch moved on or holds this already",
          "`number`, `sha256`",
          {},
          with_request(

@@ -14,6 +14,7 @@ struct Visitor {
     SignedIn session;     ///< a caller of id 0: nobody in particular
     std::string token;    ///< the session's
     std::string address;  ///< of the other side
+    bool by_cookie = false;  ///< the token came as the page's cookie
 
     [[nodiscard]] const Caller& caller() const { return session.caller; }
 };
@@ -38,5 +39,10 @@ Access only(std::set<PersonRole> roles);
 
 /// Whose session a token is. Denied (`who`) where it is none, has ended, or its person may no longer sign in.
 using FindSession = std::function<Result<SignedIn>(const std::string& token)>;
+
+/// Is told of what the gate refuses to somebody who is signed in: the request's id, what was attempted, and
+/// why not.
+using NoteRefusal = std::function<void(const Caller& caller, const std::string& request, const Deed& attempt,
+                                       const Error& error)>;
 
 }  // namespace weave::loomlink

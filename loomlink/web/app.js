@@ -17,8 +17,12 @@ function found(path) {
     for (const [pattern, name] of views) {
         const parts = pattern.split('/'), given = path.replace(/(.)\/$/, '$1').split('/');
         if (parts.length !== given.length || !parts.every((part, i) => part.startsWith(':') || part === given[i])) continue;
-        return { name, names: Object.fromEntries(parts.flatMap((part, i) =>
-            part.startsWith(':') ? [[part.slice(1), decodeURIComponent(given[i])]] : [])) };
+        try {
+            return { name, names: Object.fromEntries(parts.flatMap((part, i) =>
+                part.startsWith(':') ? [[part.slice(1), decodeURIComponent(given[i])]] : [])) };
+        } catch {
+            return null; // an address that is no UTF-8 names nothing
+        }
     }
     return null;
 }

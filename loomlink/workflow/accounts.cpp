@@ -5,6 +5,7 @@
 #include <loomlink/keys/hex.hpp>
 #include <loomlink/keys/sealed_key.hpp>
 #include <loomlink/workflow/accounts.hpp>
+#include <loomlink/workflow/names.hpp>
 #include <loomlink/workflow/policy.hpp>
 #include <sstream>
 
@@ -52,8 +53,8 @@ Status check_login(const std::string& name) {
     if (!name.empty() && name.size() <= most && fits(name.front()) && plain && name != server_actor)
         return {};
     return bad_input(
-        "must be 1 to 64 lower-case letters, digits, '.', '-' or '_', and start with a letter "
-        "or digit",
+        "must be 1 to 64 of the small letters a to z, digits, '.', '-' and '_', and start with a letter or "
+        "digit",
         "name");
 }
 
@@ -130,39 +131,38 @@ Result<Json> Accounts::first_invitation() {
 }
 
 Result<Json> Accounts::invite(const Caller& caller, const Ask& ask, const std::vector<std::string>& roles) {
-    WEAVE_TRY(const auto wanted, roles_from(roles));
     const std::string code = make_code();
     WEAVE_TRY(const Hash hash, hash_of_code(code));
     const std::string expires = utc_text(m_desk->now() + m_desk->settings().invitation);
-    Deed deed{
-        "person.invited",
-        {},
-        {},
-        {{"roles", role_list(wanted)}, {"code_sha256", hash_hex(hash)}, {"expires", expires}}};
+    Deed deed{"person.invited", {}, {}, {{"roles", roles}}};
     deed.told_once = true;
-    return m_desk->take(
-        caller, ask, deed,
-        [](const Reader&, const Caller& now) { return need_role(now, PersonRole::administrator); },
-        [&](Writer& writer, const TakenStep& step) -> Result<Json> {
-            WEAVE_CHECK_OK(
-                writer.add_invitation({hash, "person", {}, joined(wanted), expires, step.event, {}}));
-            return Json{{"code", code}, {"expires", expires}};
-        });
+    return m_desk->attempt(caller, ask, deed, [&]() -> Result<Json> {
+        WEAVE_TRY(const auto wanted, roles_from(roles));
+        deed.data = {{"roles", role_list(wanted)}, {"code_sha256", hash_hex(hash)}, {"expires", expires}};
+        return m_desk->commit(
+            caller, ask, deed,
+            [](const Reader&, const Caller& now) { return need_role(now, PersonRole::administrator); },
+            [&](Writer& writer, const TakenStep& step) -> Result<Json> {
+                WEAVE_CHECK_OK(
+                    writer.add_invitation({hash, "person", {}, joined(wanted), expires, step.event, {}}));
+                return Json{{"code", code}, {"expires", expires}};
+            });
+    });
 }
 
 Result<Json> Accounts::join(const std::string& code, const std::string& name, const std::string& full_name,
                             const std::string& password, const std::string& address) {
     WEAVE_CHECK_OK(m_desk->count_try({}, address));
     WEAVE_CHECK_OK(check_login(name));
-    WEAVE_CHECK_OK(check_text(full_name, "full_name", 1, 128));
+    WEAVE_CHECK_OK(check_line(full_name, "full_name", 1, 128));
     WEAVE_CHECK_OK(check_password(password, name, full_name));
     Person wish;
     wish.login = name;
     wish.full_name = full_name;
     auto joined_person = add_invited(code, wish, password);
     if (joined_person) return joined_person;
-    return m_desk->refuse("nobody", make_token(), {"person.joined", {}, {}, Json::object()},
-                          joined_person.error());
+    return m_desk->refuse_stranger("nobody", {"person.joined", {}, {}, Json::object()},
+                                   joined_person.error());
 }
 
 /// The account and its key in one step. What the code is for is asked before the password is hashed, so that
@@ -213,23 +213,28 @@ Result<Json> Accounts::add_invited(const std::string& code, const Person& wish, 
 
 Result<Json> Accounts::change_password(const Caller& caller, const Ask& ask, const std::string& old_password,
                                        const std::string& new_password) {
-    Deed deed{"person.password_changed", caller.login, {}, Json::object()};
-    WEAVE_TRY(const auto known, m_desk->recorded(caller, ask.request, deed));
-    if (known) return *known;
-    WEAVE_CHECK_OK(check_password(new_password, caller.login, caller.full_name));
-    const std::string name = "sign " + caller.login;
-    WEAVE_CHECK_OK(m_desk->count_try(name, {}));
-    WEAVE_TRY(const PersonKey key,
-              m_desk->store().read([&](const Reader& reader) { return signing_key(reader, caller.id); }));
-    WEAVE_TRY(const SealedKey sealed, read_sealed_key(*key.sealed));
-    auto anew = loomlink::change_password(sealed, old_password, new_password, m_desk->settings().key_cost);
-    if (!anew)
-        return m_desk->refuse(caller.login, ask.request, deed,
-                              deny(Denial::password, "the password until now is wrong"));
-    m_desk->forgive(name);
+    const Deed deed{"person.password_changed", caller.login, {}, Json::object()};
+    return m_desk->attempt(caller, ask, deed, [&]() -> Result<Json> {
+        WEAVE_CHECK_OK(check_password(new_password, caller.login, caller.full_name));
+        const std::string name = "sign " + caller.login;
+        WEAVE_CHECK_OK(m_desk->count_try(name, {}));
+        WEAVE_TRY(const PersonKey key,
+                  m_desk->store().read([&](const Reader& reader) { return signing_key(reader, caller.id); }));
+        WEAVE_TRY(const SealedKey sealed, read_sealed_key(key.sealed.value_or("")));
+        const auto anew =
+            loomlink::change_password(sealed, old_password, new_password, m_desk->settings().key_cost);
+        if (!anew) return deny(Denial::password, "the password until now is wrong");
+        m_desk->forgive(name);
+        return reseal(caller, ask, deed, key, *anew, new_password);
+    });
+}
+
+/// Puts the key that was sealed anew in the place of `key`, and ends all sessions.
+Result<Json> Accounts::reseal(const Caller& caller, const Ask& ask, Deed deed, const PersonKey& key,
+                              const SealedKey& anew, const std::string& new_password) {
     const std::string hashed = m_desk->hasher().hash(new_password);
     deed.data["password_sha256"] = hash_hex(sha256(hashed));
-    return m_desk->take(
+    return m_desk->commit(
         caller, ask, deed,
         [&](const Reader& reader, const Caller&) -> Status {
             WEAVE_TRY(const PersonKey now, signing_key(reader, caller.id));
@@ -241,7 +246,7 @@ Result<Json> Accounts::change_password(const Caller& caller, const Ask& ask, con
             person->password = hashed;
             person->event = step.event;
             WEAVE_CHECK_OK(writer.update_person(*person));
-            WEAVE_CHECK_OK(writer.reseal_key(key.id, write_sealed_key(*anew)));
+            WEAVE_CHECK_OK(writer.reseal_key(key.id, write_sealed_key(anew)));
             WEAVE_CHECK_OK(writer.end_sessions(caller.id));
             return Json::object();
         });
@@ -263,24 +268,27 @@ Result<Json> Accounts::people(const Caller& caller) {
 
 Result<Json> Accounts::set_roles(const Caller& caller, const Ask& ask, const std::string& name,
                                  const std::vector<std::string>& roles) {
-    WEAVE_TRY(const auto wanted, roles_from(roles));
-    const Deed deed{"person.roles_set", name, {}, {{"roles", role_list(wanted)}}};
-    const bool stays_admin =
-        std::find(wanted.begin(), wanted.end(), PersonRole::administrator) != wanted.end();
-    return m_desk->take(
-        caller, ask, deed,
-        [&](const Reader& reader, const Caller& now) -> Status {
-            WEAVE_CHECK_OK(need_role(now, PersonRole::administrator));
-            WEAVE_TRY(const Person person, person_named(reader, name));
-            return stays_admin ? Status() : check_an_admin_stays(reader, person.id);
-        },
-        [&](Writer& writer, const TakenStep& step) -> Result<Json> {
-            WEAVE_TRY(Person person, person_named(writer, name));
-            person.roles = wanted;
-            person.event = step.event;
-            WEAVE_CHECK_OK(writer.update_person(person));
-            return person_json(writer, person);
-        });
+    Deed deed{"person.roles_set", name, {}, {{"roles", roles}}};
+    return m_desk->attempt(caller, ask, deed, [&]() -> Result<Json> {
+        WEAVE_TRY(const auto wanted, roles_from(roles));
+        deed.data = {{"roles", role_list(wanted)}};
+        const bool stays_admin =
+            std::find(wanted.begin(), wanted.end(), PersonRole::administrator) != wanted.end();
+        return m_desk->commit(
+            caller, ask, deed,
+            [&](const Reader& reader, const Caller& now) -> Status {
+                WEAVE_CHECK_OK(need_role(now, PersonRole::administrator));
+                WEAVE_TRY(const Person person, person_named(reader, name));
+                return stays_admin ? Status() : check_an_admin_stays(reader, person.id);
+            },
+            [&](Writer& writer, const TakenStep& step) -> Result<Json> {
+                WEAVE_TRY(Person person, person_named(writer, name));
+                person.roles = wanted;
+                person.event = step.event;
+                WEAVE_CHECK_OK(writer.update_person(person));
+                return person_json(writer, person);
+            });
+    });
 }
 
 Result<Json> Accounts::set_active(const Caller& caller, const Ask& ask, const std::string& name,
@@ -335,15 +343,18 @@ Result<Json> Accounts::policy() {
 }
 
 Result<Json> Accounts::set_policy(const Caller& caller, const Ask& ask, const Json& policy) {
-    WEAVE_TRY(const SitePolicy wanted, read_policy(policy));
-    const Deed deed{"policy.set", {}, {}, to_json(wanted)};
-    return m_desk->take(
-        caller, ask, deed,
-        [](const Reader&, const Caller& now) { return need_role(now, PersonRole::administrator); },
-        [&](Writer& writer, const TakenStep& step) -> Result<Json> {
-            WEAVE_CHECK_OK(writer.add_policy(canonical_json(to_json(wanted)), step.event));
-            return to_json(wanted);
-        });
+    Deed deed{"policy.set", {}, {}, Json::object()};
+    return m_desk->attempt(caller, ask, deed, [&]() -> Result<Json> {
+        WEAVE_TRY(const SitePolicy wanted, read_policy(policy));
+        deed.data = to_json(wanted);
+        return m_desk->commit(
+            caller, ask, deed,
+            [](const Reader&, const Caller& now) { return need_role(now, PersonRole::administrator); },
+            [&](Writer& writer, const TakenStep& step) -> Result<Json> {
+                WEAVE_CHECK_OK(writer.add_policy(canonical_json(to_json(wanted)), step.event));
+                return to_json(wanted);
+            });
+    });
 }
 
 }  // namespace weave::loomlink

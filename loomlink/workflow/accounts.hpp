@@ -1,5 +1,6 @@
 #pragma once
 
+#include <loomlink/keys/sealed_key.hpp>
 #include <loomlink/workflow/desk.hpp>
 #include <string>
 #include <vector>
@@ -54,6 +55,8 @@ class Accounts {
 
   private:
     Result<Json> open_session(const Person& person);
+    Result<Json> reseal(const Caller& caller, const Ask& ask, Deed deed, const PersonKey& key,
+                        const SealedKey& anew, const std::string& new_password);
     Result<Json> add_invited(const std::string& code, const Person& wish, const std::string& password);
 
     Desk* m_desk;

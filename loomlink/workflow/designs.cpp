@@ -3,6 +3,7 @@
 #include <algorithm>
 #include <loomlink/workflow/accounts.hpp>
 #include <loomlink/workflow/designs.hpp>
+#include <loomlink/workflow/names.hpp>
 
 namespace weave::loomlink {
 
@@ -91,20 +92,25 @@ Result<std::vector<Id>> parents_of(const Reader& reader, Id design, const SaveWi
     return parents;
 }
 
-/// Refused where the branch is not where the caller believes it to be.
-Status check_head(const Reader& reader, Id design, const SaveWish& wish) {
+/// Refused where the branch is not where the caller believes it to be, or holds this very document: what
+/// changes nothing is no revision, unless it joins branches.
+Status check_head(const Reader& reader, Id design, const SaveWish& wish, const Hash& document) {
     WEAVE_TRY(const auto branches, reader.branches(design));
     const auto branch = std::find_if(branches.begin(), branches.end(),
                                      [&](const Branch& one) { return one.name == wish.branch; });
     if (branch == branches.end()) {
-        if (!wish.expected) return {};
+        if (!wish.expected) return check_free(branches, wish.branch, "branch");
         return deny(Denial::conflict, "there is no branch of this name");
     }
     WEAVE_TRY(const auto head, reader.revision(branch->head));
-    if (head && wish.expected == head->number) return {};
-    return deny(Denial::conflict, "the branch has moved on" +
-                                      (head ? " to revision " + std::to_string(head->number) : "") +
-                                      ": somebody else saved first; compare and merge");
+    if (!head || wish.expected != head->number)
+        return deny(Denial::conflict, "the branch has moved on" +
+                                          (head ? " to revision " + std::to_string(head->number) : "") +
+                                          ": somebody else saved first; compare and merge");
+    WEAVE_TRY(const auto parents, parents_of(reader, design, wish));
+    if (parents.size() > 1 || head->document != document) return {};
+    return deny(Denial::conflict,
+                "this is what revision " + std::to_string(head->number) + " holds already: nothing to save");
 }
 
 Status check_wish(const SaveWish& wish) {
@@ -114,17 +120,50 @@ Status check_wish(const SaveWish& wish) {
     return {};
 }
 
+Revision revision_of(const RevisionCloth& cloth, const SaveWish& wish) {
+    Revision made;
+    made.message = wish.message;
+    made.design_sha256 = *parse_hash(design_sha256(cloth.design));
+    made.scene_sha256 = *parse_hash(scene_sha256(cloth.design));
+    made.card_sha256 = *parse_hash(cloth.card.sha256());
+    made.picks = static_cast<std::int64_t>(cloth.card.picks());
+    made.ends = static_cast<std::int64_t>(cloth.card.ends());
+    return made;
+}
+
+/// All that the log tells of a revision beside its document and message.
+void tell_revision(const Revision& made, const SaveWish& wish, Json& data) {
+    data["design_sha256"] = hash_hex(made.design_sha256);
+    data["scene_sha256"] = hash_hex(made.scene_sha256);
+    data["card_sha256"] = hash_hex(made.card_sha256);
+    data["picks"] = made.picks;
+    data["ends"] = made.ends;
+    data["parents"] = parent_numbers(wish);
+}
+
+/// Adds the revision behind its parents and moves the branch to it.
+Result<Revision> store_revision(Writer& writer, const Caller& caller, Revision made, const SaveWish& wish) {
+    WEAVE_TRY(const Design design, find_design(writer, caller, wish.design));
+    made.design = design.id;
+    WEAVE_TRY(made.parents, parents_of(writer, design.id, wish));
+    WEAVE_TRY(made.document, writer.put_object(wish.document));
+    const std::optional<Id> expected = wish.expected ? std::optional(made.parents.front()) : std::nullopt;
+    WEAVE_TRY(Revision stored, writer.add_revision(made));
+    WEAVE_CHECK_OK(writer.move_branch({design.id, wish.branch, stored.id, made.event}, expected));
+    return stored;
+}
+
 }  // namespace
 
 Result<Json> DesignDesk::add(const Caller& caller, const Ask& ask, const std::string& name) {
-    WEAVE_CHECK_OK(check_name(name, "name", false));
     const Deed deed{"design.added", name, {}, Json::object()};
     return m_desk->take(
         caller, ask, deed,
         [&](const Reader& reader, const Caller& now) -> Status {
             WEAVE_CHECK_OK(need_role(now, PersonRole::designer));
-            WEAVE_TRY(const auto same, reader.design(name));
-            return same ? Status(deny(Denial::conflict, "there is a design of this name")) : Status();
+            WEAVE_CHECK_OK(check_name(name, "name", false));
+            WEAVE_TRY(const auto designs, reader.designs());
+            return check_free(designs, name, "design");
         },
         [&](Writer& writer, const TakenStep& step) -> Result<Json> {
             WEAVE_CHECK_OK(writer.add_design(name, step.event));
@@ -133,52 +172,38 @@ Result<Json> DesignDesk::add(const Caller& caller, const Ask& ask, const std::st
 }
 
 Result<Json> DesignDesk::save(const Caller& caller, const Ask& ask, const SaveWish& wish) {
-    WEAVE_CHECK_OK(check_wish(wish));
+    const Hash document = sha256(wish.document);
+    Deed deed{"revision.saved",
+              wish.design,
+              {},
+              {{"branch", wish.branch}, {"document_sha256", hash_hex(document)}, {"message", wish.message}}};
+    if (wish.expected) deed.data["expected"] = *wish.expected;
     const auto check = [&](const Reader& reader, const Caller& now) -> Status {
         WEAVE_CHECK_OK(need_role(now, PersonRole::designer));
+        WEAVE_CHECK_OK(check_wish(wish));
         WEAVE_TRY(const Design design, find_design(reader, now, wish.design));
-        WEAVE_CHECK_OK(check_head(reader, design.id, wish));
+        WEAVE_CHECK_OK(check_head(reader, design.id, wish, document));
         const auto parents = parents_of(reader, design.id, wish);
         return parents ? Status() : Status(parents.error());
     };
-    // The same request is answered before anything is woven.
-    Deed deed{"revision.saved", wish.design, {}, {{"branch", wish.branch}}};
-    WEAVE_TRY(const auto known, m_desk->recorded(caller, ask.request, deed));
-    if (known) return *known;
-    const Status allowed = m_desk->store().read([&](const Reader& reader) -> Status {
-        WEAVE_TRY(const Caller now, fresh_caller(reader, caller));
-        return check(reader, now);
-    });
-    if (!allowed) return m_desk->refuse(caller.login, ask.request, deed, allowed.error());
-    WEAVE_TRY(const RevisionClothPtr cloth, weave_document(wish.document));
-    Revision made;
-    made.message = wish.message;
-    made.author = caller.id;
-    made.design_sha256 = *parse_hash(design_sha256(cloth->design));
-    made.scene_sha256 = *parse_hash(scene_sha256(cloth->design));
-    made.card_sha256 = *parse_hash(cloth->card.sha256());
-    made.picks = static_cast<std::int64_t>(cloth->card.picks());
-    made.ends = static_cast<std::int64_t>(cloth->card.ends());
-    deed.data["document_sha256"] = hash_hex(sha256(wish.document));
-    deed.data["design_sha256"] = hash_hex(made.design_sha256);
-    deed.data["scene_sha256"] = hash_hex(made.scene_sha256);
-    deed.data["card_sha256"] = hash_hex(made.card_sha256);
-    deed.data["picks"] = made.picks;
-    deed.data["ends"] = made.ends;
-    deed.data["parents"] = parent_numbers(wish);
-    deed.data["message"] = wish.message;
-    return m_desk->take(caller, ask, deed, check, [&](Writer& writer, const TakenStep& step) -> Result<Json> {
-        WEAVE_TRY(const Design design, find_design(writer, caller, wish.design));
-        made.design = design.id;
-        made.event = step.event;
-        made.at = step.at;
-        WEAVE_TRY(made.parents, parents_of(writer, design.id, wish));
-        WEAVE_TRY(made.document, writer.put_object(wish.document));
-        const std::optional<Id> expected = wish.expected ? std::optional(made.parents.front()) : std::nullopt;
-        WEAVE_TRY(const Revision stored, writer.add_revision(made));
-        WEAVE_CHECK_OK(writer.move_branch({design.id, wish.branch, stored.id, step.event}, expected));
-        m_shelf->keep(made.document, cloth);
-        return Json{{"number", stored.number}, {"sha256", hash_hex(stored.hash)}};
+    return m_desk->attempt(caller, ask, deed, [&]() -> Result<Json> {
+        // Nothing is woven for who may not save it.
+        WEAVE_CHECK_OK(m_desk->store().read([&](const Reader& reader) -> Status {
+            WEAVE_TRY(const Caller now, fresh_caller(reader, caller));
+            return check(reader, now);
+        }));
+        WEAVE_TRY(const RevisionClothPtr cloth, weave_document(wish.document));
+        Revision made = revision_of(*cloth, wish);
+        made.author = caller.id;
+        tell_revision(made, wish, deed.data);
+        return m_desk->commit(
+            caller, ask, deed, check, [&](Writer& writer, const TakenStep& step) -> Result<Json> {
+                made.event = step.event;
+                made.at = step.at;
+                WEAVE_TRY(const Revision stored, store_revision(writer, caller, made, wish));
+                m_shelf->keep(document, cloth);
+                return Json{{"number", stored.number}, {"sha256", hash_hex(stored.hash)}};
+            });
     });
 }
 
@@ -196,7 +221,7 @@ Result<Json> DesignDesk::list(const Caller& caller) {
 }
 
 Result<Json> DesignDesk::graph(const Caller& caller, const std::string& name) {
-    return m_desk->store().read([&](const Reader& reader) -> Result<Json> {
+    const auto told = [&](const Reader& reader) -> Result<Json> {
         WEAVE_TRY(const Design design, find_design(reader, caller, name));
         WEAVE_TRY(const auto revisions, reader.revisions(design.id));
         WEAVE_TRY(const auto branches, reader.branches(design.id));
@@ -210,7 +235,8 @@ Result<Json> DesignDesk::graph(const Caller& caller, const std::string& name) {
                     {"branches", std::move(heads)},
                     {"revisions", std::move(list)},
                     {"releases", std::move(releases)}};
-    });
+    };
+    return m_desk->look(caller, {"design.viewed", name}, [&] { return m_desk->store().read(told); });
 }
 
 }  // namespace weave::loomlink

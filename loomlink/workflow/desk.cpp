@@ -10,7 +10,7 @@ namespace weave::loomlink {
 
 namespace {
 
-constexpr std::size_t least_request = 8, most_request = 64, most_views = 10000;
+constexpr std::size_t least_request = 8, most_request = 64;
 
 bool is_plain(char c) {
     return (c >= 'a' && c <= 'z') || (c >= 'A' && c <= 'Z') || (c >= '0' && c <= '9') || c == '-' ||
@@ -21,7 +21,7 @@ Status check_request(const std::string& request) {
     if (request.size() >= least_request && request.size() <= most_request &&
         std::all_of(request.begin(), request.end(), is_plain))
         return {};
-    return bad_input("must be 8 to 64 letters, digits, '.', '-' or '_'", "request");
+    return bad_input("must be 8 to 64 of the letters a to z, digits, '.', '-' and '_'", "request");
 }
 
 /// What is kept beside an answer, so that an id that is used for something else is found out.
@@ -40,12 +40,6 @@ Result<Json> answer_from(const std::string& kept, const Deed& deed) {
     return json.at("answer");
 }
 
-/// Refusals that are worth a record: of rights, states, passwords and rules; not what cannot be understood.
-bool is_logged(const Error& error) {
-    return (error.code == ErrorCode::refused || error.code == ErrorCode::invalid) &&
-           denial_of(error) != Denial::often;
-}
-
 }  // namespace
 
 NowClock system_clock() {
@@ -62,7 +56,9 @@ Desk::Desk(Store store, ServerKeys keys, std::string site, DeskSettings settings
       m_clock(std::move(clock)),
       m_hasher(settings.login_cost),
       m_names(settings.by_name),
-      m_addresses(settings.by_address) {}
+      m_addresses(settings.by_address),
+      m_views(settings.view_again),
+      m_refusals(settings.view_again, settings.refusals) {}
 
 net::Throttle::Clock::time_point Desk::throttle_now() const {
     return net::Throttle::Clock::time_point(now().time_since_epoch());
@@ -87,15 +83,21 @@ Result<std::optional<Json>> Desk::recorded(const Caller& caller, const std::stri
 
 Result<Json> Desk::take(const Caller& caller, const Ask& ask, const Deed& deed, const Check& check,
                         const Apply& apply) {
-    WEAVE_TRY(const auto known, recorded(caller, ask.request, deed));
-    if (known) return *known;
-    auto answer = take_allowed(caller, ask, deed, check, apply);
-    if (!answer) return refuse(caller.login, ask.request, deed, answer.error());
+    return attempt(caller, ask, deed, [&] { return commit(caller, ask, deed, check, apply); });
+}
+
+Result<Json> Desk::attempt(const Caller& caller, const Ask& ask, const Deed& deed,
+                           const std::function<Result<Json>()>& work) {
+    const auto known = recorded(caller, ask.request, deed);
+    if (!known) return refuse(caller, ask.request, deed, known.error());
+    if (*known) return **known;
+    auto answer = work();
+    if (!answer) return refuse(caller, ask.request, deed, answer.error());
     return answer;
 }
 
-Result<Json> Desk::take_allowed(const Caller& caller, const Ask& ask, const Deed& deed, const Check& check,
-                                const Apply& apply) {
+Result<Json> Desk::commit(const Caller& caller, const Ask& ask, const Deed& deed, const Check& check,
+                          const Apply& apply) {
     const auto allowed = [&](const Reader& reader) -> Status {
         WEAVE_TRY(const Caller fresh, fresh_caller(reader, caller));
         return check(reader, fresh);
@@ -141,34 +143,40 @@ Result<std::vector<Signature>> Desk::sign_all(const Caller& caller, const std::s
     return signatures;
 }
 
-Error Desk::refuse(const std::string& actor, const std::string& request, const Deed& deed, Error error) {
-    if (!is_logged(error)) return error;
-    Deed refusal{"refused", deed.subject, error.message, {{"what", deed.kind}}};
+void Desk::write_refusal(const std::string& actor, const std::string& request, const Deed& record) {
+    const std::string id = check_request(request) ? request : make_token();
     const auto logged =
-        m_store.write([&](Writer& writer) { return writer.append(statement_of(actor, request, refusal)); });
+        m_store.write([&](Writer& writer) { return writer.append(statement_of(actor, id, record)); });
     if (!logged) log(LogLevel::warning, "a refusal could not be logged: " + logged.error().text());
+}
+
+Error Desk::refuse(const Caller& caller, const std::string& request, const Deed& attempt, Error error) {
+    const auto denial = denial_of(error);
+    const bool is_logged = error.code == ErrorCode::refused || error.code == ErrorCode::invalid ||
+                           error.code == ErrorCode::bad_input;
+    if (!is_logged || denial == Denial::often) return error;
+    Deed record = refusal_record(attempt, error);
+    // Wrong passwords are throttled where they are tried, so each of them can be told.
+    const auto left_out = m_refusals.admit(caller.login, record, denial == Denial::password, now());
+    if (!left_out) return error;
+    if (*left_out > 0) record.data["left_out"] = *left_out;
+    write_refusal(caller.login, request, record);
+    return error;
+}
+
+Error Desk::refuse_stranger(const std::string& actor, const Deed& attempt, Error error) {
+    const bool is_logged = error.code == ErrorCode::refused || error.code == ErrorCode::invalid;
+    if (is_logged && denial_of(error) != Denial::often)
+        write_refusal(actor, make_token(), refusal_record(attempt, error));
     return error;
 }
 
 Status Desk::note_view(const Caller& caller, const std::string& kind, const std::string& subject,
                        const Json& data) {
-    const Instant moment = now();
-    const std::string look = caller.login + '\n' + kind + '\n' + subject;
-    {
-        const std::lock_guard lock(m_views_mutex);
-        if (m_views.size() >= most_views)
-            std::erase_if(m_views,
-                          [&](const auto& entry) { return entry.second + m_settings.view_again <= moment; });
-        if (m_views.size() >= most_views) m_views.clear();  // rather one record too many than none
-        const auto [place, is_new] = m_views.try_emplace(look, moment);
-        if (!is_new && moment < place->second + m_settings.view_again) return {};
-        place->second = moment;
-    }
+    const std::string look = canonical_json(Json::array({caller.login, kind, subject, data}));
+    if (!m_views.is_new(look, now())) return {};
     Status logged = note(caller.login, kind, subject, data);
-    if (!logged) {  // the next look is not one that was told before
-        const std::lock_guard lock(m_views_mutex);
-        m_views.erase(look);
-    }
+    if (!logged) m_views.forget(look);  // the next look is not one that was told before
     return logged;
 }
 
@@ -207,29 +215,6 @@ Result<PersonKey> signing_key(const Reader& reader, Id person) {
     for (auto key = keys.rbegin(); key != keys.rend(); ++key)
         if (!key->revoked && key->sealed) return *key;
     return deny(Denial::conflict, "you have no signing key");
-}
-
-Status check_text(const std::string& text, const std::string& member, std::size_t least, std::size_t most) {
-    if (!is_utf8(text)) return bad_input("is not UTF-8", member);
-    if (text.size() < least) return bad_input("is missing", member);
-    if (text.size() > most) return bad_input("has more than " + std::to_string(most) + " bytes", member);
-    const bool control = std::any_of(text.begin(), text.end(), [](char c) {
-        const auto byte = static_cast<unsigned char>(c);
-        return (byte < 0x20 && c != '\n' && c != '\t') || byte == 0x7f;
-    });
-    return control ? Status(bad_input("has control characters", member)) : Status();
-}
-
-Status check_name(const std::string& name, const std::string& member, bool spaces) {
-    constexpr std::size_t most = 64;
-    const bool fits =
-        !name.empty() && name.size() <= most && is_plain(name.front()) && is_plain(name.back()) &&
-        name.front() != '.' && name.front() != '-' &&
-        std::all_of(name.begin(), name.end(), [&](char c) { return is_plain(c) || (spaces && c == ' '); });
-    if (fits) return {};
-    return bad_input(std::string("must be 1 to 64 letters, digits, '.', '-' or '_'") +
-                         (spaces ? ", with spaces within" : "") + ", and start with a letter or digit",
-                     member);
 }
 
 }  // namespace weave::loomlink

@@ -6,14 +6,14 @@
 
 #include <chrono>
 #include <functional>
-#include <loomlink/keys/key.hpp>
 #include <loomlink/keys/password.hpp>
 #include <loomlink/keys/utc.hpp>
 #include <loomlink/store/store.hpp>
 #include <loomlink/workflow/caller.hpp>
+#include <loomlink/workflow/deed.hpp>
 #include <loomlink/workflow/denial.hpp>
-#include <map>
-#include <mutex>
+#include <loomlink/workflow/recent.hpp>
+#include <loomlink/workflow/refusals.hpp>
 #include <optional>
 #include <string>
 #include <utility>
@@ -32,24 +32,15 @@ struct DeskSettings {
     std::chrono::hours invitation{7 * 24};
     /// Wrong passwords: per name, and per address.
     net::ThrottleRate by_name{5, 1.0 / 60, 10000}, by_address{60, 0.5, 10000};
-    std::chrono::minutes view_again{10};  ///< the same look by the same person is logged once in so long
+    /// The same look, or the same attempt refused for the same reason, by the same person is logged once in
+    /// so long.
+    std::chrono::minutes view_again{10};
+    net::ThrottleRate refusals{100, 1.0 / 30, 10000};  ///< of one person that are logged
 };
 
 /// The server's own keys.
 struct ServerKeys {
     KeyPair log, stamp;
-};
-
-/// A step that is about to be taken: what the log will say of it.
-struct Deed {
-    std::string kind;     ///< such as `revision.approved`
-    std::string subject;  ///< what it is done to; may be empty
-    std::string reason;
-    Json data = Json::object();
-    bool is_signed = false;
-    bool told_once = false;  ///< the answer holds a secret: it is not kept, a repetition is refused
-    /// What the same password signs beside the statement.
-    std::vector<std::pair<Purpose, std::string>> also{};
 };
 
 /// A step that is being stored.
@@ -76,23 +67,41 @@ class Desk {
     [[nodiscard]] Instant now() const { return m_clock(); }
     [[nodiscard]] std::string now_text() const { return utc_text(now()); }
 
-    /// Takes a step: `check` says whether it may be (asked before the password is tried, and again in the
-    /// transaction), then the statement is signed where it has to be, and record, change and answer are
-    /// stored together. `check` gets the caller as the store knows the person now. A repeated request id is
-    /// given the answer of the first time. What is refused is logged as `refused` and changes nothing.
+    /// Takes a step: attempt() of a commit().
     Result<Json> take(const Caller& caller, const Ask& ask, const Deed& deed, const Check& check,
                       const Apply& apply);
 
-    /// The answer that a request id was given before. Refused: it was for another step.
-    Result<std::optional<Json>> recorded(const Caller& caller, const std::string& request, const Deed& deed);
+    /// Attempts a step: a repeated request id is given the answer of the first time, without `work`. What is
+    /// refused, bad input included, changes nothing and is logged as `refused`, with the deed as `work` left
+    /// it.
+    Result<Json> attempt(const Caller& caller, const Ask& ask, const Deed& deed,
+                         const std::function<Result<Json>()>& work);
+
+    /// Within an attempt: `check` says whether the step may be taken (asked before the password is tried, and
+    /// again in the transaction), then the statement is signed where it has to be, and record, change and
+    /// answer are stored together. `check` gets the caller as the store knows the person now.
+    Result<Json> commit(const Caller& caller, const Ask& ask, const Deed& deed, const Check& check,
+                        const Apply& apply);
+
+    /// What a person looks at; that it was refused is logged as an attempt of this deed.
+    template <class Work>
+    auto look(const Caller& caller, const Deed& deed, const Work& work) -> decltype(work()) {
+        auto seen = work();
+        if (!seen) return refuse(caller, {}, deed, seen.error());
+        return seen;
+    }
 
     /// Signatures of the person's own key, opened with the password typed for this step alone. Refused and
     /// counted where it is wrong; after too many nobody can try for a while.
     Result<std::vector<Signature>> sign_all(const Caller& caller, const std::string& password,
                                             const std::vector<std::pair<Purpose, std::string>>& messages);
 
-    /// Logs that something was not done, and gives the error back.
-    Error refuse(const std::string& actor, const std::string& request, const Deed& deed, Error error);
+    /// Logs that an attempt of somebody who is signed in was refused, as RefusalGauge lets it, and gives the
+    /// error back.
+    Error refuse(const Caller& caller, const std::string& request, const Deed& attempt, Error error);
+    /// The same for who is not signed in, each time, but not for what cannot be understood: how often that
+    /// may be tried is held elsewhere. `actor` is a name that exists, or `nobody`.
+    Error refuse_stranger(const std::string& actor, const Deed& attempt, Error error);
     /// Logs that a person looked at something, once in a while for the same look.
     Status note_view(const Caller& caller, const std::string& kind, const std::string& subject,
                      const Json& data = Json::object());
@@ -109,8 +118,9 @@ class Desk {
                                          const Deed& deed) const;
 
   private:
-    Result<Json> take_allowed(const Caller& caller, const Ask& ask, const Deed& deed, const Check& check,
-                              const Apply& apply);
+    /// The answer that a request id was given before. Refused: it was for another step.
+    Result<std::optional<Json>> recorded(const Caller& caller, const std::string& request, const Deed& deed);
+    void write_refusal(const std::string& actor, const std::string& request, const Deed& record);
     [[nodiscard]] net::Throttle::Clock::time_point throttle_now() const;
 
     Store m_store;
@@ -120,8 +130,8 @@ class Desk {
     NowClock m_clock;
     PasswordHasher m_hasher;
     net::Throttle m_names, m_addresses;
-    std::mutex m_views_mutex;
-    std::map<std::string, Instant> m_views;
+    Recent m_views;
+    RefusalGauge m_refusals;
 };
 
 /// The person as the store knows him or her now. Refused: who was disabled since.
@@ -129,11 +139,5 @@ Result<Caller> fresh_caller(const Reader& reader, const Caller& caller);
 
 /// The key of a person that signs now: the newest with a secret that was not revoked.
 Result<PersonKey> signing_key(const Reader& reader, Id person);
-
-/// Texts that people give: UTF-8 without control characters but line feed and tab, `least` to `most` bytes.
-Status check_text(const std::string& text, const std::string& member, std::size_t least, std::size_t most);
-/// Names of designs, looms and branches: 1 to 64 letters, digits, `.`, `-`, `_` and (but in designs) single
-/// spaces within.
-Status check_name(const std::string& name, const std::string& member, bool spaces);
 
 }  // namespace weave::loomlink

@@ -6,6 +6,7 @@
 #include <loomlink/keys/hex.hpp>
 #include <loomlink/workflow/accounts.hpp>
 #include <loomlink/workflow/evidence.hpp>
+#include <loomlink/workflow/names.hpp>
 #include <set>
 #include <sstream>
 
@@ -121,7 +122,6 @@ std::vector<std::string> missing_simulation(const std::vector<KnownSimulation>& 
 }
 
 Result<Json> EvidenceDesk::invite_signer(const Caller& caller, const Ask& ask, const std::string& name) {
-    WEAVE_CHECK_OK(check_name(name, "name", false));
     const std::string code = make_code();
     WEAVE_TRY(const std::string hashed, code_hash(code));
     const std::string expires = utc_text(m_desk->now() + m_desk->settings().invitation);
@@ -129,7 +129,10 @@ Result<Json> EvidenceDesk::invite_signer(const Caller& caller, const Ask& ask, c
     deed.told_once = true;
     return m_desk->take(
         caller, ask, deed,
-        [](const Reader&, const Caller& now) { return need_role(now, PersonRole::administrator); },
+        [&](const Reader&, const Caller& now) -> Status {
+            WEAVE_CHECK_OK(need_role(now, PersonRole::administrator));
+            return check_name(name, "name", false);
+        },
         [&](Writer& writer, const TakenStep& step) -> Result<Json> {
             WEAVE_CHECK_OK(
                 writer.add_invitation({*parse_hash(hashed), "signer", name, "", expires, step.event, {}}));
@@ -164,7 +167,7 @@ Result<Json> EvidenceDesk::enrol(const std::string& code, const std::string& pub
         WEAVE_CHECK_OK(writer.use_invitation(hash, event));
         return Json{{"name", *found->name}, {"key", row.id}, {"site", m_desk->site()}};
     });
-    if (!answer) return m_desk->refuse("nobody", make_token(), deed, answer.error());
+    if (!answer) return m_desk->refuse_stranger("nobody", deed, answer.error());
     return answer;
 }
 
@@ -265,7 +268,7 @@ Result<Json> EvidenceDesk::add(const std::string& design, std::int64_t number, c
         WEAVE_TRY(const Id id, writer.add_evidence(evidence_row(statement, signature.key, event)));
         return Json{{"evidence", id}};
     });
-    if (!answer) return m_desk->refuse("nobody", request, {deed.kind, design, {}, {}}, answer.error());
+    if (!answer) return m_desk->refuse_stranger("nobody", deed, answer.error());
     return answer;
 }
 

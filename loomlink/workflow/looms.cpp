@@ -1,6 +1,7 @@
 #include <algorithm>
 #include <loomlink/workflow/accounts.hpp>
 #include <loomlink/workflow/looms.hpp>
+#include <loomlink/workflow/names.hpp>
 #include <loomlink/workflow/releases.hpp>
 #include <loomlink/workflow/validation.hpp>
 
@@ -138,45 +139,50 @@ Result<FoundRevision> revision_of(const Reader& reader, const Release& release) 
 
 Result<Json> LoomDesk::add(const Caller& caller, const Ask& ask, const std::string& name,
                            const std::string& text) {
-    WEAVE_CHECK_OK(check_name(name, "name", true));
-    WEAVE_TRY(const LoomProfile profile, read_bounded(text));
-    const Deed deed{"loom.added", name, {}, {{"profile_sha256", profile.sha256}, {"document_sha256", hash_hex(sha256(text))}}};
-    return m_desk->take(
-        caller, ask, deed,
-        [&](const Reader& reader, const Caller& now) -> Status {
-            WEAVE_CHECK_OK(need_role(now, PersonRole::administrator));
-            WEAVE_TRY(const auto same, reader.loom(name));
-            return same ? Status(deny(Denial::conflict, "there is a loom of this name")) : Status();
-        },
-        [&](Writer& writer, const TakenStep& step) -> Result<Json> {
-            WEAVE_TRY(const Id loom, writer.add_loom(name, step.event));
-            WEAVE_TRY(const Hash object, writer.put_object(text));
-            WEAVE_TRY(const std::int64_t version, writer.add_profile(loom, object, step.event));
-            return Json{{"name", name}, {"profile_version", version}};
-        });
+    Deed deed{"loom.added", name, {}, Json::object()};
+    return m_desk->attempt(caller, ask, deed, [&]() -> Result<Json> {
+        WEAVE_TRY(const LoomProfile profile, read_bounded(text));
+        deed.data["profile_sha256"] = profile.sha256;
+        deed.data["document_sha256"] = hash_hex(sha256(text));
+        return m_desk->commit(
+            caller, ask, deed,
+            [&](const Reader& reader, const Caller& now) -> Status {
+                WEAVE_CHECK_OK(need_role(now, PersonRole::administrator));
+                WEAVE_CHECK_OK(check_name(name, "name", true));
+                WEAVE_TRY(const auto looms, reader.looms());
+                return check_free(looms, name, "loom");
+            },
+            [&](Writer& writer, const TakenStep& step) -> Result<Json> {
+                WEAVE_TRY(const Id loom, writer.add_loom(name, step.event));
+                WEAVE_TRY(const Hash object, writer.put_object(text));
+                WEAVE_TRY(const std::int64_t version, writer.add_profile(loom, object, step.event));
+                return Json{{"name", name}, {"profile_version", version}};
+            });
+    });
 }
 
 Result<Json> LoomDesk::set_profile(const Caller& caller, const Ask& ask, const std::string& loom,
                                    const std::string& text) {
-    WEAVE_TRY(const LoomProfile profile, read_bounded(text));
-    const Deed deed{"loom.profile_set",
-                    loom,
-                    "a new version of the loom's profile is in force",
-                    {{"profile_sha256", profile.sha256}, {"document_sha256", hash_hex(sha256(text))}}};
-    return m_desk->take(
-        caller, ask, deed,
-        [&](const Reader& reader, const Caller& now) -> Status {
-            WEAVE_CHECK_OK(need_role(now, PersonRole::administrator));
-            const auto found = find_loom(reader, now, loom);
-            return found ? Status() : Status(found.error());
-        },
-        [&](Writer& writer, const TakenStep& step) -> Result<Json> {
-            WEAVE_TRY(const Loom found, find_loom(writer, caller, loom));
-            WEAVE_TRY(const Hash object, writer.put_object(text));
-            WEAVE_TRY(const std::int64_t version, writer.add_profile(found.id, object, step.event));
-            WEAVE_CHECK_OK(end_releases(writer, found.id, step.event));
-            return Json{{"name", loom}, {"profile_version", version}};
-        });
+    Deed deed{"loom.profile_set", loom, "a new version of the loom's profile is in force", Json::object()};
+    return m_desk->attempt(caller, ask, deed, [&]() -> Result<Json> {
+        WEAVE_TRY(const LoomProfile profile, read_bounded(text));
+        deed.data["profile_sha256"] = profile.sha256;
+        deed.data["document_sha256"] = hash_hex(sha256(text));
+        return m_desk->commit(
+            caller, ask, deed,
+            [&](const Reader& reader, const Caller& now) -> Status {
+                WEAVE_CHECK_OK(need_role(now, PersonRole::administrator));
+                const auto found = find_loom(reader, now, loom);
+                return found ? Status() : Status(found.error());
+            },
+            [&](Writer& writer, const TakenStep& step) -> Result<Json> {
+                WEAVE_TRY(const Loom found, find_loom(writer, caller, loom));
+                WEAVE_TRY(const Hash object, writer.put_object(text));
+                WEAVE_TRY(const std::int64_t version, writer.add_profile(found.id, object, step.event));
+                WEAVE_CHECK_OK(end_releases(writer, found.id, step.event));
+                return Json{{"name", loom}, {"profile_version", version}};
+            });
+    });
 }
 
 Result<Json> LoomDesk::set_operators(const Caller& caller, const Ask& ask, const std::string& loom,
@@ -225,7 +231,7 @@ Result<Json> LoomDesk::list(const Caller& caller) {
 }
 
 Result<Json> LoomDesk::read(const Caller& caller, const std::string& name) {
-    return m_desk->store().read([&](const Reader& reader) -> Result<Json> {
+    const auto told = [&](const Reader& reader) -> Result<Json> {
         WEAVE_TRY(const Loom loom, find_loom(reader, caller, name));
         WEAVE_TRY(const ProfileInForce in_force, profile_in_force(reader, loom.id));
         WEAVE_TRY(const auto loaded, loaded_release(reader, loom.id));
@@ -245,7 +251,8 @@ Result<Json> LoomDesk::read(const Caller& caller, const std::string& name) {
         WEAVE_TRY(json["releases"], releases_of_loom(reader, loom));
         WEAVE_TRY(json["faults"], faults_of_loom(reader, loom));
         return json;
-    });
+    };
+    return m_desk->look(caller, {"loom.viewed", name}, [&] { return m_desk->store().read(told); });
 }
 
 Result<Json> LoomDesk::keep_place(const Caller& caller, const Ask& ask, const std::string& loom,
@@ -279,12 +286,12 @@ Result<Json> LoomDesk::confirm_loaded(const Caller& caller, const Ask& ask, cons
 Result<Json> LoomDesk::report_fault(const Caller& caller, const Ask& ask, const std::string& loom,
                                     std::int64_t release, const std::string& text,
                                     std::optional<std::int64_t> pick, std::optional<std::int64_t> end) {
-    WEAVE_CHECK_OK(check_text(text, "text", 1, most_fault));
     Deed deed{"loom.fault_reported", loom, text, {{"release", release}}};
     if (pick) deed.data["pick"] = *pick;
     if (end) deed.data["end"] = *end;
     const auto check = [&](const Reader& reader, const Caller& now) -> Status {
         WEAVE_CHECK_OK(find_own_loom(reader, now, loom));
+        WEAVE_CHECK_OK(check_text(text, "text", 1, most_fault));
         WEAVE_TRY(const FoundRelease found, find_release(reader, now, loom, release));
         return check_place(reader, found.release, pick, end);
     };

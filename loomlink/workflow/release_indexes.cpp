@@ -62,6 +62,34 @@ SignedLogHead as_log_head(const SignedTreeHead& head) {
             {head.signature.key, head.signature.value}};
 }
 
+/// What an answer about a loom's releases is to hold.
+struct IndexTerms {
+    SignedTreeHead head;
+    std::int64_t trust_from = 0;
+    std::uint64_t head_from = 0;
+};
+
+Result<Json> index_answer(const Reader& reader, const Desk& desk, const Loom& loom, const IndexTerms& terms) {
+    WEAVE_TRY(ReleaseIndex index, listed(reader, desk, loom));
+    if (index.epoch > terms.head.head.size)
+        return deny(Denial::conflict, "the loom's releases changed just now: ask again");
+    WEAVE_TRY(const SitePolicy policy, policy_in_force(reader));
+    index.issued = desk.now();
+    index.expires = index.issued + std::chrono::hours(policy.index_valid_hours);
+    index.tree_head = as_log_head(terms.head);
+    const Json body = index_body(index);
+    Json answer{
+        {"index", write_signed({body, {sign_body(desk.keys().stamp, Purpose::release_index, body)}})}};
+    WEAVE_TRY(const auto papers, reader.trust_documents(terms.trust_from));
+    answer["trust"] = Json::array();
+    for (const SitePaper& paper : papers) answer["trust"].push_back(paper.text);
+    if (terms.head_from == 0) return answer;
+    WEAVE_TRY(const auto proof, reader.consistency(terms.head_from, terms.head.head.size));
+    answer["consistency"] = Json::array();
+    for (const Hash& hash : proof) answer["consistency"].push_back(hash_hex(hash));
+    return answer;
+}
+
 }  // namespace
 
 Result<SignedTreeHead> current_head(Desk& desk) {
@@ -91,27 +119,15 @@ Result<SignedTreeHead> current_head(Desk& desk) {
 
 Result<Json> ReleaseDesk::index(const Caller& caller, const std::string& loom, std::int64_t trust_from,
                                 std::uint64_t head_from) {
-    WEAVE_TRY(const SignedTreeHead head, current_head(*m_desk));
-    return m_desk->store().read([&](const Reader& reader) -> Result<Json> {
-        WEAVE_TRY(const Loom found, find_loom(reader, caller, loom));
-        WEAVE_TRY(ReleaseIndex index, listed(reader, *m_desk, found));
-        if (index.epoch > head.head.size)
-            return deny(Denial::conflict, "the loom's releases changed just now: ask again");
-        WEAVE_TRY(const SitePolicy policy, policy_in_force(reader));
-        index.issued = m_desk->now();
-        index.expires = index.issued + std::chrono::hours(policy.index_valid_hours);
-        index.tree_head = as_log_head(head);
-        const Json body = index_body(index);
-        Json answer{
-            {"index", write_signed({body, {sign_body(m_desk->keys().stamp, Purpose::release_index, body)}})}};
-        WEAVE_TRY(const auto papers, reader.trust_documents(trust_from));
-        answer["trust"] = Json::array();
-        for (const SitePaper& paper : papers) answer["trust"].push_back(paper.text);
-        if (head_from == 0) return answer;
-        WEAVE_TRY(const auto proof, reader.consistency(head_from, head.head.size));
-        answer["consistency"] = Json::array();
-        for (const Hash& hash : proof) answer["consistency"].push_back(hash_hex(hash));
-        return answer;
+    return m_desk->look(caller, {"loom.index_pulled", loom}, [&]() -> Result<Json> {
+        // Whose loom it is not makes the server sign no head.
+        WEAVE_TRY(const Loom found, m_desk->store().read([&](const Reader& reader) {
+            return find_loom(reader, caller, loom);
+        }));
+        WEAVE_TRY(const SignedTreeHead head, current_head(*m_desk));
+        return m_desk->store().read([&](const Reader& reader) {
+            return index_answer(reader, *m_desk, found, {head, trust_from, head_from});
+        });
     });
 }
 

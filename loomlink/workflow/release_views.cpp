@@ -150,12 +150,14 @@ Result<SignedManifest> signed_manifest(const Reader& reader, const Release& rele
 }
 
 Result<Json> ReleaseDesk::read(const Caller& caller, const std::string& loom, std::int64_t number) {
-    WEAVE_TRY(Json json, m_desk->store().read([&](const Reader& reader) -> Result<Json> {
-        WEAVE_TRY(const FoundRelease found, find_release(reader, caller, loom, number));
-        return release_json(reader, caller, found);
+    const Json place{{"loom", loom}, {"release", number}};
+    WEAVE_TRY(Json json, m_desk->look(caller, {"release.viewed", {}, {}, place}, [&] {
+        return m_desk->store().read([&](const Reader& reader) -> Result<Json> {
+            WEAVE_TRY(const FoundRelease found, find_release(reader, caller, loom, number));
+            return release_json(reader, caller, found);
+        });
     }));
-    WEAVE_CHECK_OK(m_desk->note_view(caller, "release.viewed", json.at("design"),
-                                     {{"loom", loom}, {"release", number}}));
+    WEAVE_CHECK_OK(m_desk->note_view(caller, "release.viewed", json.at("design"), place));
     return json;
 }
 
@@ -188,20 +190,21 @@ Result<std::string> ReleaseDesk::file(const Caller& caller, const std::string& l
     });
     const Json data{{"loom", loom}, {"release", number}, {"file", on_one_line(name)}};
     // No pull without its record: the bytes are given out only once it stands.
-    if (!bytes)
-        return m_desk->refuse(caller.login, "pull", {"release.pulled", design, {}, data}, bytes.error());
+    if (!bytes) return m_desk->refuse(caller, {}, {"release.pulled", design, {}, data}, bytes.error());
     WEAVE_CHECK_OK(m_desk->note(caller.login, "release.pulled", design, data));
     return bytes;
 }
 
 Result<RevisionClothPtr> ReleaseDesk::cloth_of(const Caller& caller, const std::string& loom,
                                                std::int64_t number) {
-    return m_desk->store().read([&](const Reader& reader) -> Result<RevisionClothPtr> {
-        WEAVE_TRY(const FoundRelease found, find_release(reader, caller, loom, number));
-        WEAVE_CHECK_OK(check_pullable(reader, found));
-        WEAVE_TRY(const auto revision, reader.revision(found.release.revision));
+    const auto found = [&](const Reader& reader) -> Result<RevisionClothPtr> {
+        WEAVE_TRY(const FoundRelease release, find_release(reader, caller, loom, number));
+        WEAVE_CHECK_OK(check_pullable(reader, release));
+        WEAVE_TRY(const auto revision, reader.revision(release.release.revision));
         return m_shelf->find(reader, revision->document);
-    });
+    };
+    return m_desk->look(caller, {"release.viewed", {}, {}, {{"loom", loom}, {"release", number}}},
+                        [&] { return m_desk->store().read(found); });
 }
 
 Result<std::string> ReleaseDesk::card(const Caller& caller, const std::string& loom, std::int64_t number,

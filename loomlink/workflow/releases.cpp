@@ -2,6 +2,7 @@
 #include <loomlink/workflow/accounts.hpp>
 #include <loomlink/workflow/looms.hpp>
 #include <loomlink/workflow/missing.hpp>
+#include <loomlink/workflow/names.hpp>
 #include <loomlink/workflow/policy.hpp>
 #include <loomlink/workflow/release_files.hpp>
 #include <loomlink/workflow/releases.hpp>
@@ -159,58 +160,82 @@ Status keep_files(Writer& writer, const ReleasePackage& package, Release& releas
     return {};
 }
 
+/// Refused unless the release waits for this person's signature.
+Status check_signable(const Reader& reader, const Caller& caller, const Release& release) {
+    WEAVE_CHECK_OK(check_releaser(reader, caller));
+    WEAVE_TRY(const SignedManifest manifest, signed_manifest(reader, release));
+    const bool open = release.state == ReleaseStage::prepared ||
+                      (release.state == ReleaseStage::released && manifest.people < manifest.needed);
+    if (!open) return deny(Denial::conflict, "the release waits for no signature");
+    WEAVE_TRY(const PersonKey key, signing_key(reader, caller.id));
+    for (const ReleaseSignature& one : release.signatures)
+        if (one.key == key.id) return deny(Denial::conflict, "you have signed it already");
+    return {};
+}
+
 }  // namespace
 
+/// A release that was read back and found sound, before anybody has signed it.
+struct ReleaseDesk::ProvenRelease {
+    const ReleaseParts& parts;
+    const Validation& validation;
+    const ReleasePackage& package;
+    std::string body;  ///< of the manifest, canonical
+};
+
 Result<Json> ReleaseDesk::release(const Caller& caller, const Ask& ask, const ReleaseWish& wish) {
-    WEAVE_CHECK_OK(check_text(wish.reason, "reason", 1, most_reason));
     Deed deed{"release.made", wish.design, wish.reason, {{"loom", wish.loom}, {"revision", wish.revision}}};
     deed.is_signed = true;
-    WEAVE_TRY(const auto known, m_desk->recorded(caller, ask.request, deed));
-    if (known) return *known;
-    const auto refused = [&](const Error& error) {
-        return m_desk->refuse(caller.login, ask.request, deed, error);
-    };
-    const auto parts =
-        m_desk->store().read([&](const Reader& reader) { return parts_of(reader, caller, *m_shelf, wish); });
-    if (!parts) return refused(parts.error());
-    WEAVE_TRY(const FeederMap feeders, feeder_map(parts->cloth->design, wish.feeders));
-    const std::string stem = release_stem(wish.design, wish.revision);
-    const Validation validation = validate(*parts->cloth, wish.loom, parts->profile, feeders, stem);
-    const Status sound = m_desk->store().read(
-        [&](const Reader& reader) { return check_evidence(reader, *parts, validation); });
-    if (!sound) return refused(sound.error());
-    const auto package = proven_package(*parts->cloth, parts->profile.profile, feeders, stem);
-    if (!package) return refused(package.error());
-    const ManifestTerms terms{m_desk->site(), wish.loom, wish.design, parts->number, m_desk->now()};
-    const auto manifest = manifest_of(terms, parts->found.revision, parts->profile, *package);
-    if (!manifest) return refused(manifest.error());
-    const Json body = manifest_body(*manifest);
-    deed.data["release"] = parts->number;
-    deed.data["profile_version"] = parts->profile.version;
-    deed.data["feeders"] = wish.feeders;
-    deed.data["files"] = files_json(*package);
-    deed.data["sha256"] = hash_hex(parts->found.revision.hash);
-    deed.data["manifest_body_sha256"] = body_sha256({body, {}});
-    deed.also = {{Purpose::release_manifest, canonical_json(body)}};
-    return m_desk->take(
+    if (wish.supersedes) deed.data["supersedes"] = *wish.supersedes;
+    return m_desk->attempt(caller, ask, deed, [&]() -> Result<Json> {
+        WEAVE_TRY(const ReleaseParts parts, m_desk->store().read([&](const Reader& reader) {
+            return parts_of(reader, caller, *m_shelf, wish);
+        }));
+        WEAVE_CHECK_OK(check_text(wish.reason, "reason", 1, most_reason));
+        WEAVE_TRY(const FeederMap feeders, feeder_map(parts.cloth->design, wish.feeders));
+        const std::string stem = release_stem(wish.design, wish.revision);
+        const Validation validation = validate(*parts.cloth, wish.loom, parts.profile, feeders, stem);
+        WEAVE_CHECK_OK(m_desk->store().read(
+            [&](const Reader& reader) { return check_evidence(reader, parts, validation); }));
+        WEAVE_TRY(const ReleasePackage package,
+                  proven_package(*parts.cloth, parts.profile.profile, feeders, stem));
+        const ManifestTerms terms{m_desk->site(), wish.loom, wish.design, parts.number, m_desk->now()};
+        WEAVE_TRY(const ReleaseManifest manifest,
+                  manifest_of(terms, parts.found.revision, parts.profile, package));
+        const Json body = manifest_body(manifest);
+        deed.data["release"] = parts.number;
+        deed.data["profile_version"] = parts.profile.version;
+        deed.data["feeders"] = wish.feeders;
+        deed.data["files"] = files_json(package);
+        deed.data["sha256"] = hash_hex(parts.found.revision.hash);
+        deed.data["manifest_body_sha256"] = body_sha256({body, {}});
+        deed.also = {{Purpose::release_manifest, canonical_json(body)}};
+        return store_release(caller, ask, deed, wish, {parts, validation, package, canonical_json(body)});
+    });
+}
+/// Takes the first signature over the manifest, and keeps the release.
+Result<Json> ReleaseDesk::store_release(const Caller& caller, const Ask& ask, const Deed& deed,
+                                        const ReleaseWish& wish, const ProvenRelease& proven) {
+    const ReleaseParts& parts = proven.parts;
+    return m_desk->commit(
         caller, ask, deed,
         [&](const Reader& reader, const Caller& now) -> Status {
             WEAVE_TRY(const ReleaseParts again, parts_of(reader, now, *m_shelf, wish));
-            WEAVE_CHECK_OK(check_evidence(reader, again, validation));
-            if (again.number == parts->number && again.profile.version == parts->profile.version) return {};
+            WEAVE_CHECK_OK(check_evidence(reader, again, proven.validation));
+            if (again.number == parts.number && again.profile.version == parts.profile.version) return {};
             return deny(Denial::conflict, "the loom changed meanwhile: try again");
         },
         [&](Writer& writer, const TakenStep& step) -> Result<Json> {
             Release made;
-            made.loom = parts->loom.id;
-            made.revision = parts->found.revision.id;
-            made.profile_version = parts->profile.version;
+            made.loom = parts.loom.id;
+            made.revision = parts.found.revision.id;
+            made.profile_version = parts.profile.version;
             made.feeders = canonical_json(Json(wish.feeders));
             made.event = step.event;
-            WEAVE_TRY(made.manifest, writer.put_object(canonical_json(body)));
-            WEAVE_CHECK_OK(keep_files(writer, *package, made));
+            WEAVE_TRY(made.manifest, writer.put_object(proven.body));
+            WEAVE_CHECK_OK(keep_files(writer, proven.package, made));
             WEAVE_TRY(const Release stored, writer.add_release(made));
-            WEAVE_CHECK_OK(log_validation(writer, *m_desk, ask.request, parts->found, validation));
+            WEAVE_CHECK_OK(log_validation(writer, *m_desk, ask.request, parts.found, proven.validation));
             const Signature& signature = step.also.front();
             WEAVE_CHECK_OK(writer.sign_release(stored.id, {signature.key, signature.value, step.event}));
             const Deed next = in_force(wish.design, wish.reason, wish.loom, stored.number);
@@ -220,62 +245,55 @@ Result<Json> ReleaseDesk::release(const Caller& caller, const Ask& ask, const Re
 
 Result<Json> ReleaseDesk::sign(const Caller& caller, const Ask& ask, const std::string& loom,
                                std::int64_t number, const std::string& reason) {
-    WEAVE_CHECK_OK(check_text(reason, "reason", 1, most_reason));
     Deed deed{"release.signed", {}, reason, {{"loom", loom}, {"release", number}}};
     deed.is_signed = true;
     const auto check = [&](const Reader& reader, const Caller& now) -> Status {
         WEAVE_CHECK_OK(need_role(now, PersonRole::approver));
+        WEAVE_CHECK_OK(check_text(reason, "reason", 1, most_reason));
         WEAVE_TRY(const FoundRelease found, find_release(reader, now, loom, number));
-        WEAVE_CHECK_OK(check_releaser(reader, now));
-        WEAVE_TRY(const SignedManifest manifest, signed_manifest(reader, found.release));
-        const bool open =
-            found.release.state == ReleaseStage::prepared ||
-            (found.release.state == ReleaseStage::released && manifest.people < manifest.needed);
-        if (!open) return deny(Denial::conflict, "the release waits for no signature");
-        WEAVE_TRY(const PersonKey key, signing_key(reader, now.id));
-        for (const ReleaseSignature& one : found.release.signatures)
-            if (one.key == key.id) return deny(Denial::conflict, "you have signed it already");
-        return {};
+        return check_signable(reader, now, found.release);
     };
-    WEAVE_TRY(const auto known, m_desk->recorded(caller, ask.request, deed));
-    if (known) return *known;
-    Id id = 0;
-    std::string design;
-    const auto body = m_desk->store().read([&](const Reader& reader) -> Result<std::string> {
-        WEAVE_TRY(const Caller now, fresh_caller(reader, caller));
-        WEAVE_CHECK_OK(check(reader, now));
-        WEAVE_TRY(const FoundRelease found, find_release(reader, now, loom, number));
-        id = found.release.id;
-        WEAVE_TRY(const FoundRevision signed_revision, revision_of(reader, found.release));
-        design = signed_revision.design.name;
-        WEAVE_TRY(const auto text, reader.object(found.release.manifest));
-        return text.value_or("");
-    });
-    if (!body) return m_desk->refuse(caller.login, ask.request, deed, body.error());
-    deed.data["manifest_body_sha256"] = hash_hex(sha256(*body));
-    deed.also = {{Purpose::release_manifest, *body}};
-    return m_desk->take(caller, ask, deed, check, [&](Writer& writer, const TakenStep& step) -> Result<Json> {
-        const Signature& signature = step.also.front();
-        WEAVE_CHECK_OK(writer.sign_release(id, {signature.key, signature.value, step.event}));
-        const Deed next = in_force(design, reason, loom, number);
-        return signed_answer(writer, id, m_desk->statement_of(caller.login, ask.request, next));
+    return m_desk->attempt(caller, ask, deed, [&]() -> Result<Json> {
+        Id id = 0;
+        std::string design;
+        const auto unsigned_body = [&](const Reader& reader) -> Result<std::string> {
+            WEAVE_TRY(const Caller now, fresh_caller(reader, caller));
+            WEAVE_CHECK_OK(check(reader, now));
+            WEAVE_TRY(const FoundRelease found, find_release(reader, now, loom, number));
+            id = found.release.id;
+            WEAVE_TRY(const FoundRevision released, revision_of(reader, found.release));
+            design = released.design.name;
+            WEAVE_TRY(const auto text, reader.object(found.release.manifest));
+            return text.value_or("");
+        };
+        WEAVE_TRY(const std::string body, m_desk->store().read(unsigned_body));
+        deed.data["manifest_body_sha256"] = hash_hex(sha256(body));
+        deed.also = {{Purpose::release_manifest, body}};
+        return m_desk->commit(
+            caller, ask, deed, check, [&](Writer& writer, const TakenStep& step) -> Result<Json> {
+                const Signature& signature = step.also.front();
+                WEAVE_CHECK_OK(writer.sign_release(id, {signature.key, signature.value, step.event}));
+                const Deed next = in_force(design, reason, loom, number);
+                return signed_answer(writer, id, m_desk->statement_of(caller.login, ask.request, next));
+            });
     });
 }
 
 Result<Json> ReleaseDesk::withdraw(const Caller& caller, const Ask& ask, const std::string& loom,
                                    std::int64_t number, const std::string& reason) {
-    WEAVE_CHECK_OK(check_text(reason, "reason", 1, most_reason));
     Deed deed{"release.withdrawn", {}, reason, {{"loom", loom}, {"release", number}}};
     deed.is_signed = true;
     return m_desk->take(
         caller, ask, deed,
         [&](const Reader& reader, const Caller& now) -> Status {
             if (!now.is(PersonRole::approver)) WEAVE_CHECK_OK(need_role(now, PersonRole::engineer));
+            WEAVE_CHECK_OK(check_text(reason, "reason", 1, most_reason));
             WEAVE_TRY(const FoundRelease found, find_release(reader, now, loom, number));
             if (found.release.state == ReleaseStage::released ||
                 found.release.state == ReleaseStage::prepared)
                 return {};
-            return deny(Denial::conflict, std::string("the release is ") + release_word(found.release.state));
+            return deny(Denial::conflict, std::string("the release is ") + release_word(found.release.state) +
+                                              " already: no loom takes it any more");
         },
         [&](Writer& writer, const TakenStep& step) -> Result<Json> {
             WEAVE_TRY(const FoundRelease found, find_release(writer, caller, loom, number));

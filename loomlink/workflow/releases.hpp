@@ -56,6 +56,9 @@ class ReleaseDesk {
                        std::uint64_t head_from);
 
   private:
+    struct ProvenRelease;
+    Result<Json> store_release(const Caller& caller, const Ask& ask, const Deed& deed,
+                               const ReleaseWish& wish, const ProvenRelease& proven);
     Result<RevisionClothPtr> cloth_of(const Caller& caller, const std::string& loom, std::int64_t number);
 
     Desk* m_desk;

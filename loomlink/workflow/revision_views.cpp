@@ -167,8 +167,10 @@ Result<Json> revision_json(const Reader& reader, const Caller& caller, const Fou
 
 Result<FoundRevision> DesignDesk::found(const Caller& caller, const std::string& design,
                                         std::int64_t number) {
-    return m_desk->store().read(
-        [&](const Reader& reader) { return find_revision(reader, caller, design, number); });
+    return m_desk->look(caller, {"revision.viewed", design, {}, {{"revision", number}}}, [&] {
+        return m_desk->store().read(
+            [&](const Reader& reader) { return find_revision(reader, caller, design, number); });
+    });
 }
 
 Result<RevisionClothPtr> DesignDesk::cloth(const Caller& caller, const std::string& design,
@@ -215,11 +217,13 @@ Result<std::string> DesignDesk::card(const Caller& caller, const std::string& de
 Result<Json> DesignDesk::check(const Caller& caller, const std::string& design, std::int64_t number,
                                const std::string& loom) {
     WEAVE_TRY(const RevisionClothPtr woven, cloth(caller, design, number));
-    WEAVE_TRY(const ProfileInForce profile,
-              m_desk->store().read([&](const Reader& reader) -> Result<ProfileInForce> {
-                  WEAVE_TRY(const Loom found_loom, find_loom(reader, caller, loom));
-                  return profile_in_force(reader, found_loom.id);
-              }));
+    const Deed deed{"revision.checked", design, {}, {{"revision", number}, {"loom", loom}}};
+    WEAVE_TRY(const ProfileInForce profile, m_desk->look(caller, deed, [&] {
+        return m_desk->store().read([&](const Reader& reader) -> Result<ProfileInForce> {
+            WEAVE_TRY(const Loom found_loom, find_loom(reader, caller, loom));
+            return profile_in_force(reader, found_loom.id);
+        });
+    }));
     return to_json(check_with_file(*woven, profile.profile, straight_map(woven->design),
                                    release_stem(design, number)));
 }

@@ -49,8 +49,8 @@ Result<Json> Accounts::log_in(const std::string& name, const std::string& passwo
     if (!m_desk->hasher().matches(stored, password)) {
         // What was typed as a name may be a password: only names that exist are written down.
         const std::string actor = person ? person->login : "nobody";
-        return m_desk->refuse(actor, make_token(), {"person.signed_in", {}, {}, Json::object()},
-                              deny(Denial::who, "name or password is wrong"));
+        return m_desk->refuse_stranger(actor, {"person.signed_in", {}, {}, Json::object()},
+                                       deny(Denial::who, "name or password is wrong"));
     }
     m_desk->forgive("log in " + name);
     if (m_desk->hasher().is_stale(*stored)) {

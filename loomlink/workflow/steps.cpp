@@ -1,6 +1,7 @@
 #include <algorithm>
 #include <loomlink/keys/codes.hpp>
 #include <loomlink/workflow/missing.hpp>
+#include <loomlink/workflow/names.hpp>
 #include <loomlink/workflow/release_files.hpp>
 #include <loomlink/workflow/steps.hpp>
 
@@ -36,6 +37,13 @@ Status check_reason(const StepWish& wish) {
     return check_text(wish.reason, "reason", 1, most_reason);
 }
 
+Status check_undecided(const Reader& reader, const Caller& caller, Id revision) {
+    WEAVE_TRY(const auto decisions, reader.decisions(revision));
+    for (const Decision& decision : decisions)
+        if (decision.person == caller.id) return deny(Denial::conflict, "you have decided on it already");
+    return {};
+}
+
 std::string in_one(const std::vector<std::string>& texts) {
     std::string all;
     for (const std::string& text : texts) all += (all.empty() ? "" : "; ") + text;
@@ -51,17 +59,14 @@ Status log_validation(Writer& writer, const Desk& desk, const std::string& reque
     return logged ? Status() : Status(logged.error());
 }
 
-/// The revision, once it is known that the caller may do this; a refusal is logged.
-Result<FoundRevision> Steps::found(const Caller& caller, Action action, const Ask& ask, const Deed& deed,
-                                   const StepWish& wish) {
-    auto here = m_desk->store().read([&](const Reader& reader) -> Result<FoundRevision> {
+/// The revision, once it is known that the caller may do this.
+Result<FoundRevision> Steps::found(const Caller& caller, Action action, const StepWish& wish) {
+    return m_desk->store().read([&](const Reader& reader) -> Result<FoundRevision> {
         WEAVE_TRY(const Caller now, fresh_caller(reader, caller));
         WEAVE_TRY(FoundRevision one, find_revision(reader, now, wish.design, wish.number));
         WEAVE_CHECK_OK(may(now, action, one.revision));
         return one;
     });
-    if (!here) return m_desk->refuse(caller.login, ask.request, deed, here.error());
-    return here;
 }
 
 Result<std::vector<Validation>> Steps::validate_for(const FoundRevision& here,
@@ -106,113 +111,116 @@ Status Steps::renew_validations(const FoundRevision& here) {
 
 Result<Json> Steps::submit(const Caller& caller, const Ask& ask, const StepWish& wish,
                            const std::vector<std::string>& looms) {
-    WEAVE_CHECK_OK(check_reason(wish));
     Deed deed = deed_of("revision.submitted", wish, true);
-    WEAVE_TRY(const auto known, m_desk->recorded(caller, ask.request, deed));
-    if (known) return *known;
-    WEAVE_TRY(const FoundRevision here, found(caller, Action::submit, ask, deed, wish));
-    deed.data = bound(here);
-    WEAVE_TRY(const auto validations, validate_for(here, looms));
-    return m_desk->take(
-        caller, ask, deed, check_action(wish, Action::submit),
-        [&](Writer& writer, const TakenStep& step) -> Result<Json> {
-            WEAVE_CHECK_OK(writer.set_state(here.revision.id, RevisionState::submitted, step.event));
-            for (const Validation& validation : validations)
-                WEAVE_CHECK_OK(log_validation(writer, *m_desk, ask.request, here, validation));
-            return state_answer(RevisionState::submitted);
-        });
+    deed.data["looms"] = looms;
+    return m_desk->attempt(caller, ask, deed, [&]() -> Result<Json> {
+        WEAVE_TRY(const FoundRevision here, found(caller, Action::submit, wish));
+        WEAVE_CHECK_OK(check_reason(wish));
+        WEAVE_TRY(const auto validations, validate_for(here, looms));
+        deed.data = bound(here);
+        return m_desk->commit(
+            caller, ask, deed, check_action(wish, Action::submit),
+            [&](Writer& writer, const TakenStep& step) -> Result<Json> {
+                WEAVE_CHECK_OK(writer.set_state(here.revision.id, RevisionState::submitted, step.event));
+                for (const Validation& validation : validations)
+                    WEAVE_CHECK_OK(log_validation(writer, *m_desk, ask.request, here, validation));
+                return state_answer(RevisionState::submitted);
+            });
+    });
 }
 
 Result<Json> Steps::comment(const Caller& caller, const Ask& ask, const StepWish& wish,
                             std::optional<std::int64_t> pick, std::optional<std::int64_t> end) {
-    WEAVE_CHECK_OK(check_text(wish.reason, "text", 1, most_reason));
     Deed deed = deed_of("revision.commented", wish, false);
-    WEAVE_TRY(const auto known, m_desk->recorded(caller, ask.request, deed));
-    if (known) return *known;
-    WEAVE_TRY(const FoundRevision here, found(caller, Action::comment, ask, deed, wish));
-    if ((pick && (*pick < 1 || *pick > here.revision.picks)) ||
-        (end && (*end < 1 || *end > here.revision.ends)))
-        return bad_input("is not on the card", "pick");
-    deed.data = bound(here);
     if (pick) deed.data["pick"] = *pick;
     if (end) deed.data["end"] = *end;
-    return m_desk->take(
-        caller, ask, deed, check_action(wish, Action::comment),
-        [&](Writer& writer, const TakenStep& step) -> Result<Json> {
-            WEAVE_CHECK_OK(writer.add_comment({here.revision.id, caller.id, wish.reason, step.event}));
-            return state_answer(here.revision.state);
-        });
+    return m_desk->attempt(caller, ask, deed, [&]() -> Result<Json> {
+        WEAVE_TRY(const FoundRevision here, found(caller, Action::comment, wish));
+        WEAVE_CHECK_OK(check_text(wish.reason, "text", 1, most_reason));
+        if ((pick && (*pick < 1 || *pick > here.revision.picks)) ||
+            (end && (*end < 1 || *end > here.revision.ends)))
+            return bad_input("is not on the card", "pick");
+        deed.data.update(bound(here));
+        return m_desk->commit(
+            caller, ask, deed, check_action(wish, Action::comment),
+            [&](Writer& writer, const TakenStep& step) -> Result<Json> {
+                WEAVE_CHECK_OK(writer.add_comment({here.revision.id, caller.id, wish.reason, step.event}));
+                return state_answer(here.revision.state);
+            });
+    });
 }
 
 Result<Json> Steps::request_changes(const Caller& caller, const Ask& ask, const StepWish& wish) {
-    WEAVE_CHECK_OK(check_reason(wish));
     Deed deed = deed_of("revision.changes_requested", wish, true);
-    WEAVE_TRY(const auto known, m_desk->recorded(caller, ask.request, deed));
-    if (known) return *known;
-    WEAVE_TRY(const FoundRevision here, found(caller, Action::request_changes, ask, deed, wish));
-    deed.data = bound(here);
-    const auto check = [&](const Reader& reader, const Caller& now) -> Status {
-        WEAVE_CHECK_OK(check_action(wish, Action::request_changes)(reader, now));
-        WEAVE_TRY(const auto decisions, reader.decisions(here.revision.id));
-        for (const Decision& decision : decisions)
-            if (decision.person == now.id) return deny(Denial::conflict, "you have decided on it already");
-        return {};
-    };
-    return m_desk->take(caller, ask, deed, check, [&](Writer& writer, const TakenStep& step) -> Result<Json> {
-        WEAVE_CHECK_OK(
-            writer.add_decision({here.revision.id, caller.id, DecisionKind::request_changes, step.event}));
-        WEAVE_CHECK_OK(writer.set_state(here.revision.id, RevisionState::changes_requested, step.event));
-        return state_answer(RevisionState::changes_requested);
+    return m_desk->attempt(caller, ask, deed, [&]() -> Result<Json> {
+        WEAVE_TRY(const FoundRevision here, found(caller, Action::request_changes, wish));
+        WEAVE_CHECK_OK(check_reason(wish));
+        deed.data = bound(here);
+        const auto check = [&](const Reader& reader, const Caller& now) -> Status {
+            WEAVE_CHECK_OK(check_action(wish, Action::request_changes)(reader, now));
+            return check_undecided(reader, now, here.revision.id);
+        };
+        return m_desk->commit(
+            caller, ask, deed, check, [&](Writer& writer, const TakenStep& step) -> Result<Json> {
+                WEAVE_CHECK_OK(writer.add_decision(
+                    {here.revision.id, caller.id, DecisionKind::request_changes, step.event}));
+                WEAVE_CHECK_OK(
+                    writer.set_state(here.revision.id, RevisionState::changes_requested, step.event));
+                return state_answer(RevisionState::changes_requested);
+            });
     });
 }
 
 Result<Json> Steps::waive(const Caller& caller, const Ask& ask, const StepWish& wish, const std::string& rule,
                           const std::string& loom) {
-    WEAVE_CHECK_OK(check_reason(wish));
-    if (std::none_of(rules().begin(), rules().end(), [&](const Rule& one) { return one.id == rule; }))
-        return bad_input("is no rule of the validation", "rule");
     Deed deed = deed_of("revision.waived", wish, true);
-    WEAVE_TRY(const auto known, m_desk->recorded(caller, ask.request, deed));
-    if (known) return *known;
-    WEAVE_TRY(const FoundRevision here, found(caller, Action::waive, ask, deed, wish));
-    deed.data = bound(here);
     deed.data["rule"] = rule;
     deed.data["loom"] = loom;
-    const auto check = [&](const Reader& reader, const Caller& now) -> Status {
-        WEAVE_CHECK_OK(check_action(wish, Action::waive)(reader, now));
-        WEAVE_TRY(const auto there, reader.loom(loom));
-        return there ? Status() : Status(deny(Denial::absent, "there is no such loom"));
-    };
-    return m_desk->take(caller, ask, deed, check, [&](Writer& writer, const TakenStep& step) -> Result<Json> {
-        WEAVE_CHECK_OK(writer.add_waiver({here.revision.id, rule, wish.reason, caller.id, step.event}));
-        return state_answer(here.revision.state);
+    return m_desk->attempt(caller, ask, deed, [&]() -> Result<Json> {
+        WEAVE_TRY(const FoundRevision here, found(caller, Action::waive, wish));
+        WEAVE_CHECK_OK(check_reason(wish));
+        if (std::none_of(rules().begin(), rules().end(), [&](const Rule& one) { return one.id == rule; }))
+            return bad_input("is no rule of the validation", "rule");
+        deed.data.update(bound(here));
+        const auto check = [&](const Reader& reader, const Caller& now) -> Status {
+            WEAVE_CHECK_OK(check_action(wish, Action::waive)(reader, now));
+            WEAVE_TRY(const auto there, reader.loom(loom));
+            return there ? Status() : Status(deny(Denial::absent, "there is no such loom"));
+        };
+        return m_desk->commit(
+            caller, ask, deed, check, [&](Writer& writer, const TakenStep& step) -> Result<Json> {
+                WEAVE_CHECK_OK(
+                    writer.add_waiver({here.revision.id, rule, wish.reason, caller.id, step.event}));
+                return state_answer(here.revision.state);
+            });
     });
 }
 
 Result<Json> Steps::approve(const Caller& caller, const Ask& ask, const StepWish& wish) {
-    WEAVE_CHECK_OK(check_reason(wish));
     Deed deed = deed_of("revision.approved", wish, true);
-    WEAVE_TRY(const auto known, m_desk->recorded(caller, ask.request, deed));
-    if (known) return *known;
-    WEAVE_TRY(const FoundRevision here, found(caller, Action::approve, ask, deed, wish));
-    WEAVE_CHECK_OK(renew_validations(here));
-    deed.data = bound(here);
-    const auto check = [&](const Reader& reader, const Caller& now) -> Status {
-        WEAVE_CHECK_OK(check_action(wish, Action::approve)(reader, now));
-        WEAVE_TRY(const auto decisions, reader.decisions(here.revision.id));
-        for (const Decision& decision : decisions)
-            if (decision.person == now.id) return deny(Denial::conflict, "you have decided on it already");
-        WEAVE_TRY(const SitePolicy policy, policy_in_force(reader));
-        WEAVE_TRY(const auto lacks, missing_evidence(reader, here.design, here.revision, policy));
-        return lacks.empty() ? Status() : Status(deny(Denial::conflict, "still missing: " + in_one(lacks)));
-    };
-    return m_desk->take(caller, ask, deed, check, [&](Writer& writer, const TakenStep& step) -> Result<Json> {
-        WEAVE_CHECK_OK(writer.add_decision({here.revision.id, caller.id, DecisionKind::approve, step.event}));
-        WEAVE_TRY(const SitePolicy policy, policy_in_force(writer));
-        WEAVE_TRY(const std::size_t approvals, approvals_of(writer, here.revision.id));
-        if (approvals < policy.approvals) return state_answer(RevisionState::submitted);
-        WEAVE_CHECK_OK(writer.set_state(here.revision.id, RevisionState::approved, step.event));
-        return state_answer(RevisionState::approved);
+    return m_desk->attempt(caller, ask, deed, [&]() -> Result<Json> {
+        WEAVE_TRY(const FoundRevision here, found(caller, Action::approve, wish));
+        WEAVE_CHECK_OK(check_reason(wish));
+        WEAVE_CHECK_OK(renew_validations(here));
+        deed.data = bound(here);
+        const auto check = [&](const Reader& reader, const Caller& now) -> Status {
+            WEAVE_CHECK_OK(check_action(wish, Action::approve)(reader, now));
+            WEAVE_CHECK_OK(check_undecided(reader, now, here.revision.id));
+            WEAVE_TRY(const SitePolicy policy, policy_in_force(reader));
+            WEAVE_TRY(const auto lacks, missing_evidence(reader, here.design, here.revision, policy));
+            return lacks.empty() ? Status()
+                                 : Status(deny(Denial::conflict, "still missing: " + in_one(lacks)));
+        };
+        return m_desk->commit(
+            caller, ask, deed, check, [&](Writer& writer, const TakenStep& step) -> Result<Json> {
+                WEAVE_CHECK_OK(
+                    writer.add_decision({here.revision.id, caller.id, DecisionKind::approve, step.event}));
+                WEAVE_TRY(const SitePolicy policy, policy_in_force(writer));
+                WEAVE_TRY(const std::size_t approvals, approvals_of(writer, here.revision.id));
+                if (approvals < policy.approvals) return state_answer(RevisionState::submitted);
+                WEAVE_CHECK_OK(writer.set_state(here.revision.id, RevisionState::approved, step.event));
+                return state_answer(RevisionState::approved);
+            });
     });
 }
 

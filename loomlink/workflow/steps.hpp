@@ -38,8 +38,7 @@ class Steps {
     Result<Json> approve(const Caller& caller, const Ask& ask, const StepWish& wish);
 
   private:
-    Result<FoundRevision> found(const Caller& caller, Action action, const Ask& ask, const Deed& deed,
-                                const StepWish& wish);
+    Result<FoundRevision> found(const Caller& caller, Action action, const StepWish& wish);
     Result<std::vector<Validation>> validate_for(const FoundRevision& here,
                                                  const std::vector<std::string>& looms);
     Status renew_validations(const FoundRevision& here);

@@ -123,8 +123,13 @@ Result<Json> TrustChain::pending(const Caller& caller) {
 Result<Json> TrustChain::publish(const Caller& caller, const Ask& ask, bool keep_server_keys) {
     Deed deed{"trust.published", "trust", {}, Json::object()};
     deed.is_signed = true;
-    WEAVE_TRY(const auto known, m_desk->recorded(caller, ask.request, deed));
-    if (known) return *known;
+    return m_desk->attempt(caller, ask, deed,
+                           [&] { return publish_next(caller, ask, deed, keep_server_keys); });
+}
+
+/// Signs the document that is due; what is signed is added to the deed.
+Result<Json> TrustChain::publish_next(const Caller& caller, const Ask& ask, Deed& deed,
+                                      bool keep_server_keys) {
     std::optional<TrustDocument> before;
     WEAVE_TRY(const TrustDocument next,
               m_desk->store().read([&](const Reader& reader) -> Result<TrustDocument> {
@@ -133,7 +138,7 @@ Result<Json> TrustChain::publish(const Caller& caller, const Ask& ask, bool keep
               }));
     deed.data = {{"number", next.version}, {"body_sha256", body_sha256({trust_body(next), {}})}};
     deed.also = {{Purpose::trust_document, canonical_json(trust_body(next))}};
-    return m_desk->take(
+    return m_desk->commit(
         caller, ask, deed,
         [&](const Reader& reader, const Caller& now) -> Status {
             WEAVE_CHECK_OK(need_role(now, PersonRole::administrator));

@@ -26,6 +26,8 @@ class TrustChain {
     Result<Json> pending(const Caller& caller);
 
   private:
+    Result<Json> publish_next(const Caller& caller, const Ask& ask, Deed& deed, bool keep_server_keys);
+
     Desk* m_desk;
 };
 

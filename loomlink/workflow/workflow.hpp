@@ -37,6 +37,11 @@ class Workflow {
     Result<Json> waiting(const Caller& caller) { return waiting_for(m_desk, caller); }
     /// The newest signed head of the log.
     Result<SignedTreeHead> log_head() { return current_head(m_desk); }
+    /// Logs that an attempt of somebody who is signed in was refused before it came to the workflow, and
+    /// gives the error back.
+    Error refuse(const Caller& caller, const std::string& request, const Deed& attempt, Error error) {
+        return m_desk.refuse(caller, request, attempt, std::move(error));
+    }
     [[nodiscard]] Store& store() { return m_desk.store(); }
 
   private:

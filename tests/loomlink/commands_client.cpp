@@ -129,6 +129,15 @@ TEST_CASE("what a server answers is believed for what it is, and nothing more", 
     }
 }
 
+TEST_CASE("an error names what was asked for as people write it", "[commands]") {
+    ScriptedServer server(
+        {http("404 Not Found", R"({"error":{"kind":"refused","message":"is not there"}})")});
+    ApiClient client = client_of(server);
+    const auto answer = client.change("POST", api_path({"looms", "EP 1", "releases"}), {{"x", 1}});
+    REQUIRE_FALSE(answer);
+    CHECK(answer.error().text() == "looms/EP 1/releases: is not there");
+}
+
 TEST_CASE("bytes beyond what was asked for are refused", "[commands]") {
     ScriptedServer server({http("200 OK", "12345678}")});
     ApiClient client = client_of(server);

@@ -44,6 +44,7 @@ struct FlowSite {
     ServerKeys keys{KeyPair::generate(), KeyPair::generate()};
     std::unique_ptr<Workflow> flow;
     std::map<std::string, Caller> people;
+    net::ThrottleRate refusals = DeskSettings().refusals;  ///< that are logged; read by open()
     int requests = 0;
     bool is_tampered = false;  ///< the test changed the file behind the back of the workflow
 
@@ -77,6 +78,7 @@ struct FlowSite {
         flow.reset();
         DeskSettings settings;
         settings.key_cost = settings.login_cost = test_cost();
+        settings.refusals = refusals;
         flow =
             got(Workflow::open(Store::open(path).value(),
                                {KeyPair::from_seed(keys.log.seed()), KeyPair::from_seed(keys.stamp.seed())},
@@ -165,13 +167,18 @@ struct FlowSite {
         sqlite3_close(handle);
         return text;
     }
-    /// Kinds of the records from a number on.
-    [[nodiscard]] std::vector<std::string> kinds(Seq from) const {
-        std::vector<std::string> list;
+    /// What the records from a number on say.
+    [[nodiscard]] std::vector<Statement> statements(Seq from) const {
+        std::vector<Statement> list;
         const auto events = flow->store().read([&](const Reader& reader) {
             return reader.events({from, 1000, {}, {}});
         });
-        for (const auto& [seq, bytes] : got(events)) list.push_back(parse_record(bytes)->statement.kind);
+        for (const auto& [seq, bytes] : got(events)) list.push_back(parse_record(bytes)->statement);
+        return list;
+    }
+    [[nodiscard]] std::vector<std::string> kinds(Seq from) const {
+        std::vector<std::string> list;
+        for (const Statement& statement : statements(from)) list.push_back(statement.kind);
         return list;
     }
     [[nodiscard]] Seq log_size() const {

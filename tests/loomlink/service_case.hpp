@@ -11,7 +11,9 @@
 #include <loomlink/service/watchers.hpp>
 #include <loomlink/workflow/denial.hpp>
 #include <map>
+#include <mutex>
 #include <string>
+#include <utility>
 #include <vector>
 
 namespace weave::loomlink::testing {
@@ -48,6 +50,13 @@ inline Json sample_of(const Json& schema) {
     return schema.value("minimum", 1);
 }
 
+/// What the gate tells of somebody whom it sends away.
+struct ToldRefusal {
+    std::string login, request;
+    Deed attempt;
+    Error error;
+};
+
 /// A service whose handlers all answer `{"route": NAME}` and count, with the sessions that a test wants.
 struct StubService {
     std::map<std::string, SignedIn> sessions;
@@ -76,6 +85,11 @@ struct StubService {
             if (found == sessions.end()) return deny(Denial::who, "sign in first");
             return found->second;
         };
+        parts.refused = [this](const Caller& caller, const std::string& request, const Deed& attempt,
+                               const Error& error) {
+            const std::lock_guard lock(m_mutex);
+            m_refusals.push_back({caller.login, request, attempt, error});
+        };
         parts.metrics = std::make_shared<net::Metrics>();
         parts.health = {{"store", [] { return Status(); }}};
         parts.version = "test";
@@ -95,8 +109,16 @@ struct StubService {
         return options;
     }
 
+    /// What the gate told of, oldest first; it is forgotten.
+    std::vector<ToldRefusal> take_refusals() {
+        const std::lock_guard lock(m_mutex);
+        return std::exchange(m_refusals, {});
+    }
+
   private:
     net::ThrottleRate m_strangers;
+    std::mutex m_mutex;
+    std::vector<ToldRefusal> m_refusals;
 };
 
 /// Asks, and fails the test where nothing comes.
@@ -106,6 +128,11 @@ inline net::Response ask(net::HttpClient& client, const std::string& method, con
     auto answer = client.send(request);
     if (!answer) FAIL(method << " " << target << ": " << answer.error().text());
     return *std::move(answer);
+}
+
+/// The same members in the order of their names.
+inline Json sorted(const Json& json) {
+    return parse_json(canonical_json(json)).value();
 }
 
 inline Json json_of(const net::Response& response) {

@@ -3,6 +3,7 @@
 #include <weave/net/websocket_client.hpp>
 
 #include <algorithm>
+#include <loomlink/workflow/refusals.hpp>
 
 using namespace weave;
 using namespace weave::loomlink;
@@ -238,4 +239,55 @@ TEST_CASE("the table of routes and what is expected of it name the same routes")
     for (const ApiRoute& line : api_table()) lines.push_back(line.method + " " + line.path);
     for (const auto& [line, who] : expected) CHECK(std::count(lines.begin(), lines.end(), line) == 1);
     CHECK(lines.size() == expected.size());
+}
+
+TEST_CASE("whom the gate sends away is told of with what was asked for, and who is not signed in is not") {
+    Rights rights;
+    const auto send = [&](const std::string& token, const std::string& method, const std::string& target,
+                          const std::string& body = {}) {
+        net::Headers headers{{"Authorization", "Bearer " + token}};
+        if (!body.empty()) headers.set("Content-Type", "application/json");
+        return ask(*rights.client, method, api_root + target, headers, body).status;
+    };
+    const auto told = [&] {
+        const auto all = rights.service.take_refusals();
+        REQUIRE(all.size() == 1);
+        return all[0];
+    };
+    CHECK(send("token-d", "POST", "/designs/shoe/revisions/3/approve",
+               R"({"request":"request-1","reason":"good","password":"a pass phrase"})") == 403);
+    ToldRefusal refusal = told();
+    CHECK(refusal.login == "d");
+    CHECK(refusal.request == "request-1");
+    CHECK(sorted(refusal_record(refusal.attempt, refusal.error).data) ==
+          sorted(Json{{"what", "revision.approve"}, {"revision", 3}}));
+    CHECK(refusal.attempt.subject == "shoe");
+    CHECK(refusal.error.code == ErrorCode::refused);
+
+    CHECK(send("token-e", "GET", "/looms/EP%201/releases/2/files/a.jc5?x=1") == 400);
+    refusal = told();
+    CHECK(sorted(refusal_record(refusal.attempt, refusal.error).data) ==
+          sorted(Json{{"what", "release.file"}, {"loom", "EP 1"}, {"release", 2}, {"file", "a.jc5"}}));
+    CHECK(send("token-d", "POST", "/releases",
+               R"({"request":"request-2","design":"shoe","revision":4,"loom":"EP 1","feeders":[1]})") == 403);
+    refusal = told();
+    CHECK(refusal.attempt.subject == "shoe");
+    CHECK(sorted(refusal_record(refusal.attempt, refusal.error).data) ==
+          sorted(Json{{"what", "release.make"}, {"revision", 4}, {"loom", "EP 1"}, {"feeders", {1}}}));
+    CHECK(send("token-d", "GET", "/designs/shoe/revisions/first") == 400);
+    CHECK(refusal_record(told().attempt, {}).data.at("revision") == "first");
+    CHECK(send("token-m", "POST", "/people/mary/disable", "{") == 400);
+    CHECK(told().attempt.subject == "mary");
+    CHECK(send("token-nothing", "GET", "/designs/shoe") == 403);
+    CHECK(told().login == "n");
+    CHECK(ask(*rights.client, "POST", "/api/v1/logout",
+              {{"Cookie", "loomlink=token-d"}, {"Content-Type", "application/json"}},
+              R"({"request":"request-3"})")
+              .status == 403);
+    CHECK(told().attempt.kind == "logout");
+
+    CHECK(send("forged", "POST", "/releases", R"({"request":"request-4"})") == 401);
+    CHECK(send("token-d", "POST", "/login", R"({"request":7})") == 400);
+    CHECK(ask(*rights.client, "GET", "/api/v1/people").status == 401);
+    CHECK(rights.service.take_refusals().empty());
 }

@@ -4,7 +4,8 @@ import { h, field } from './dom.js';
 /**
  * Asks for the fields and runs `act(values)`; an error that it throws is shown and the dialog stays. Resolves to what act gave, or
  * undefined where the person left it.
- * fields: [{name, label, hint, kind: 'text' | 'area' | 'password' | 'number' | 'choice' | 'checks' | 'file', choices, value, required}]
+ * fields: [{name, label, hint, kind: 'text' | 'area' | 'password' | 'number' | 'choice' | 'checks' | 'file', choices, value, required}],
+ * of numbers also min (1 where not said), max and step.
  */
 export function ask({ title, text, fields = [], button, danger = false, act }) {
     return new Promise(resolve => {
@@ -37,7 +38,7 @@ export function ask({ title, text, fields = [], button, danger = false, act }) {
     });
 }
 
-function input_of({ kind = 'text', choices, value, required = true, name }) {
+function input_of({ kind = 'text', choices, value, required = true, name, min = 1, max, step }) {
     if (kind === 'area') {
         const area = h('textarea', { rows: 3, required, maxlength: 4000 });
         area.value = value ?? '';
@@ -50,7 +51,7 @@ function input_of({ kind = 'text', choices, value, required = true, name }) {
         h('input', { type: 'checkbox', value: id, checked: value?.includes(id) }), text)));
     if (kind === 'file') return h('input', { type: 'file', required });
     return h('input', {
-        type: kind, required, value, min: kind === 'number' ? 1 : undefined,
+        type: kind, required, value, ...(kind === 'number' ? { min, max, step } : {}),
         autocomplete: kind === 'password' ? (name === 'new' ? 'new-password' : 'current-password') : 'off',
     });
 }

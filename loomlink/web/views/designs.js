@@ -6,7 +6,7 @@ export async function show({ me, go }) {
     const { designs } = await get('/designs');
     const make = async () => {
         const name = await ask({
-            title: 'New design', button: 'Make it', fields: [{ name: 'name', label: 'Name', hint: 'Lower-case letters, digits and hyphens' }],
+            title: 'New design', button: 'Make it', fields: [{ name: 'name', label: 'Name', hint: 'Letters a to z, digits, dot, dash, underscore' }],
             act: async values => { await post('/designs', values); return values.name; },
         });
         if (name) go(at('designs', name));

@@ -27,7 +27,7 @@ export async function show({ signed_in, go }) {
                 }
             },
         }, h('h1', {}, 'Join with an invitation'),
-            field('Invitation code', code), field('Name to sign in with', name, 'Lower-case letters, digits, dot, dash'),
+            field('Invitation code', code), field('Name to sign in with', name, 'Small letters a to z, digits, dot, dash, underscore'),
             field('Full name', full_name, 'It stands beside everything that you sign'),
             field('Password', password, 'At least 12 characters. It also seals your signing key: nobody can reset it for you without giving you a new key.'),
             field('Password again', again), trouble, h('button', { class: 'main', type: 'submit' }, 'Join')),

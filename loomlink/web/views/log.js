@@ -7,7 +7,8 @@ const page = 100;
 
 const words = {
     'design.added': 'Design made', 'evidence.added': 'Evidence added', 'log.exported': 'Log downloaded', 'log.viewed': 'Log looked at',
-    'loom.added': 'Loom added', 'loom.fault_reported': 'Fault reported', 'loom.loaded': 'Loaded on the loom', 'loom.operators_set': 'Operators set',
+    'design.viewed': 'Design looked at', 'loom.index_pulled': 'List of releases pulled', 'loom.viewed': 'Loom looked at', 'loom.watched': 'Loom watched',
+    'revision.checked': 'Checked for a loom', 'loom.added': 'Loom added', 'loom.fault_reported': 'Fault reported', 'loom.loaded': 'Loaded on the loom', 'loom.operators_set': 'Operators set',
     'loom.place_kept': 'Last pick remembered', 'loom.profile_set': 'Profile put in force', 'person.disabled': 'Disabled', 'person.enabled': 'Enabled',
     'person.invited': 'Invited', 'person.joined': 'Joined', 'person.password_changed': 'Password changed', 'person.password_rehashed': 'Password kept by a costlier hash', 'person.reset': 'Key revoked, invited again',
     'person.roles_set': 'Roles set', 'person.signed_in': 'Signed in', 'person.signed_out': 'Signed out', 'policy.set': 'Policy put in force',
@@ -24,7 +25,8 @@ function about({ subject, data }) {
         data?.pick ? `pick ${grouped(data.pick)}` : null, data?.file].filter(Boolean).join(', ');
 }
 
-const what = event => (event.kind === 'refused' ? `Refused: ${words[event.data.what] ?? event.data.what}` : words[event.kind] ?? event.kind);
+// What was sent away before it came to a step is told by the name of its call.
+const what = event => (event.kind === 'refused' ? `Refused: ${words[event.data.what] ?? 'call ' + event.data.what}` : words[event.kind] ?? event.kind);
 
 export async function show({ search, go }) {
     const size = (await get('/audit/head')).size;

@@ -49,16 +49,18 @@ function trust(changes, done) {
 }
 
 function policy_card(policy, done) {
+    const percent = Number((100 * policy.coverage).toFixed(6)); // 0.07 is 7 %, whatever floating point makes of it
     const change = () => ask({
         title: 'Policy of the site', button: 'Put in force', fields: [
             { name: 'approvals', label: 'People who must approve', kind: 'number', value: policy.approvals }, { name: 'release_signatures', label: 'People who must sign a release', kind: 'number', value: policy.release_signatures },
             { name: 'simulation', label: 'Simulation before approval', kind: 'choice', value: policy.simulation, choices: [['required', 'Required'], ['optional', 'Not required']] },
             { name: 'fidelity', label: 'Least fidelity', kind: 'choice', value: policy.fidelity, choices: [['draft', 'draft'], ['standard', 'standard'], ['reference', 'reference']] },
+            { name: 'coverage', label: 'Share of the crossings that simulations cover, in percent', kind: 'number', value: percent, min: 0, max: 100, step: 'any', hint: '0: any part will do' },
             { name: 'index_valid_hours', label: 'Hours that a loom may go on without the server', kind: 'number', value: policy.index_valid_hours }],
-        act: values => put('/policy', { ...policy, ...values }),
+        act: values => put('/policy', { ...policy, ...values, coverage: values.coverage / 100 }),
     }).then(done('The policy is in force'));
     return h('section', { class: 'card' }, h('h2', {}, 'Policy of the site'), facts([['Approvals', policy.approvals], ['Signatures', `${policy.release_signatures} for a release`],
-        ['Simulation', policy.simulation === 'required' ? `required, ${policy.fidelity} or better` : 'not required'], ['Without server', `a loom may go on for ${policy.index_valid_hours} hours`]]),
+        ['Simulation', policy.simulation === 'required' ? `required, ${policy.fidelity} or better` + (percent > 0 ? `, of ${percent} % of the crossings` : '') : 'not required'], ['Without server', `a loom may go on for ${policy.index_valid_hours} hours`]]),
     h('p', { class: 'buttons' }, h('button', { type: 'button', onclick: change }, 'Change the policy …')));
 }
 

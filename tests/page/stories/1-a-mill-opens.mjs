@@ -29,9 +29,14 @@ async function set_policy(admin) {
     await admin.to('People');
     await admin.button('Change the policy …').click();
     await admin.dialog().getByLabel('Simulation before approval').selectOption('Not required');
+    await admin.dialog().getByLabel('Share of the crossings').fill('7.5');
     await accessible(admin.page, 'the dialog of the policy');
     await admin.answered('Put in force');
     await admin.sees('not required');
+    await admin.settled();
+    await admin.button('Change the policy …').click();
+    assert.equal(await admin.dialog().getByLabel('Share of the crossings').inputValue(), '7.5');
+    await admin.button('Cancel', admin.dialog()).click();
 }
 
 async function add_loom(admin) {

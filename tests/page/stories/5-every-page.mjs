@@ -48,8 +48,18 @@ async function look_at(person, [name, path, heading], device, is_tablet) {
     if (is_tablet) await large_targets(person.page, `${name}, ${device}`);
 }
 
+/** The page's own way to an address that is no UTF-8, such as an old bookmark's: the server answers it by itself when it is loaded. */
+async function follow_a_broken_address(person) {
+    await person.page.evaluate(() => {
+        history.pushState(null, '', '/designs/%ff');
+        dispatchEvent(new PopStateEvent('popstate'));
+    });
+    await person.sees_heading(/no such page/);
+}
+
 export async function run({ browser, mill, people }) {
     await enter_with_all_roles({ browser, mill, people });
+    await follow_a_broken_address(people.vera);
     for (const [device, size] of [['desk', desk], ['tablet', tablet]]) {
         const person = await Person.enter(browser, mill, { name: 'vera', full_name: 'Vera Everywhere', device: size });
         people['vera_at_' + device] = person;
