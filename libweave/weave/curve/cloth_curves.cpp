@@ -23,6 +23,8 @@ constexpr double share_of_line = 0.25;
 constexpr double steep = 1.4;
 /// How often turns are laid otherwise before it is given up.
 constexpr std::size_t most_tries = 400;
+/// After so many tries the rows that turns come near to are led otherwise as well.
+constexpr std::size_t tries_of_turns = 100;
 
 double scaled(double radius_mm, const SystemScene& scene) {
     return radius_mm * scene.radius_scale.value_or(1);
@@ -127,6 +129,13 @@ class Layout {
         std::vector<std::size_t> turn;  ///< per key, none in the stacks
     };
 
+    /// How turns and rows were laid in one try, and how near two yarns then came.
+    struct Way {
+        double distance_mm = 0;
+        std::size_t pick = 0;  ///< one of the two
+        std::vector<std::size_t> turn_variant, row_effort;
+    };
+
     void measure(const CurveOptions& options) {
         const Scene& scene = m_design.scene;
         const double columns = static_cast<double>(m_block.columns()),
@@ -225,7 +234,8 @@ class Layout {
     double level_of(const WeftPart& part, std::size_t column) const {
         const double level = m_settled ? m_settled->of_pick(part.pick, column)
                                        : static_cast<double>(m_places.of_pick(part.pick, part.row, column));
-        return level + part.offset;
+        // Two wefts of one pick share its slot, so they are a part of a slot apart, however thick slots are.
+        return level + part.offset * (m_settled ? settled_gap : 1);
     }
     double level_of(std::size_t end, std::size_t row, std::size_t column) const {
         return m_settled ? m_settled->of_end(end, row) : static_cast<double>(m_places.of_end(end, row, column));
@@ -361,34 +371,45 @@ class Layout {
         }
     }
 
-    /// Lays turns otherwise, and leads picks further aside, until no two yarns come too near or nothing
-    /// helps.
+    /// Lays turns otherwise, and leads picks further aside, until no two yarns come too near. Where nothing
+    /// helps, the way that keeps them farthest apart is taken.
     Status clear_turns() {
         const double least_mm = share_of_radius * m_radii.thinnest_mm;
-        bool is_changed = true;
-        for (std::size_t tried = 0; is_changed && tried < most_tries; ++tried) {
+        Way best;
+        for (std::size_t tried = 0; tried < most_tries; ++tried) {
             assemble();
             const std::vector<CloseSegments> close = close_segments(m_cloth, least_mm);
             if (close.empty()) return {};
-            is_changed = change(close, tried % 2 == 0);
+            const Meeting& nearest = std::ranges::min_element(close, {}, [](const CloseSegments& pair) {
+                                         return pair.meeting.distance_mm;
+                                     })->meeting;
+            if (tried == 0 || nearest.distance_mm > best.distance_mm)
+                best = {nearest.distance_mm, m_cloth.yarns[nearest.yarn].number, m_turn_variant,
+                        m_row_effort};
+            if (!change(close, tried % 2 == 0, tried >= tries_of_turns)) break;
             lay_wefts();
         }
-        assemble();
-        const auto meeting = first_meeting(m_cloth, 1e-6 * least_mm);
-        if (!meeting) return {};
-        return invalid("found no way to lay the turns of the weft clear of one another",
-                       "pick " + std::to_string(m_cloth.yarns[meeting->yarn].number + 1));
+        if (best.distance_mm < 1e-6 * least_mm)
+            return invalid("found no way to lay the turns of the weft clear of one another",
+                           "pick " + std::to_string(best.pick + 1));
+        m_turn_variant = std::move(best.turn_variant);
+        m_row_effort = std::move(best.row_effort);
+        lay_wefts();
+        return {};
     }
 
-    /// Changes one of each pair, first the one yarn, then the other.
-    bool change(const std::vector<CloseSegments>& close, bool other_first) {
+    /// Changes one of each pair, first the one yarn, then the other: a turn, or where neither turns (or
+    /// `rows_too`) a row.
+    bool change(const std::vector<CloseSegments>& close, bool other_first, bool rows_too) {
         m_is_changed.assign(m_turn_variant.size(), false);
         bool any = false;
         for (const CloseSegments& pair : close) {
             std::pair one{pair.meeting.yarn, pair.segment}, two{pair.meeting.other, pair.other_segment};
             if (other_first) std::swap(one, two);
-            any = change_turn(one.first, one.second) || change_turn(two.first, two.second) ||
-                  change_row(one.first, one.second) || change_row(two.first, two.second) || any;
+            const bool turn = change_turn(one.first, one.second) || change_turn(two.first, two.second);
+            const bool row = (!turn || rows_too) &&
+                             (change_row(one.first, one.second) || change_row(two.first, two.second));
+            any = any || turn || row;
         }
         return any;
     }
@@ -407,7 +428,9 @@ class Layout {
 
     bool change_row(std::size_t yarn, std::size_t segment) {
         if (yarn >= m_wefts_laid.size()) return false;
-        std::size_t& effort = m_row_effort[m_wefts_laid[yarn].curve.keys[segment].row];
+        const std::size_t row = m_wefts_laid[yarn].curve.keys[segment].row;
+        if (row == KeyPoint::none) return false;
+        std::size_t& effort = m_row_effort[row];
         if (effort == most_effort) return false;
         ++effort;
         return true;

@@ -49,7 +49,7 @@ struct Crossing {
 };
 
 /// Every yarn of a cloth, or of a part of it, before it relaxes (paper, section 4.2 and A.3). A pick without
-/// feeder has no yarn; one with two feeders has two, a quarter of a level below and above its place.
+/// feeder has no yarn; one with two feeders has two, a quarter of a slot below and above its place.
 struct ClothCurves {
     std::vector<YarnCurve> yarns;  ///< wefts by number, then warps by number
     std::vector<Crossing> crossings;

@@ -2,6 +2,12 @@
 //
 // All yarns of a line run through it at the same rate, so two meet only where at one and the same parameter
 // they have one height and one sideways place: a question about one cubic, their difference.
+//
+// Heights that a spline gives can cross as near to a stack as they like, where no yarn is aside yet, and then
+// no way aside is wide enough. So the last resort is another height, with which that cannot be: level in the
+// stacks, and from one to the next half a cosine, while the yarns go aside by half a sine. Heights of two then
+// cross only where the two change places, and they go round one another on half an ellipse: at levels d and D
+// apart in the stacks, when they are equally high they are 2 sqrt(dD)/(d + D) of their full distance aside.
 
 #include <weave/curve/nearness.hpp>
 #include <weave/curve/passing.hpp>
@@ -39,8 +45,7 @@ class Line {
     }
 
     std::vector<Lead> leads(std::size_t effort) {
-        if (m_passes.empty()) return all_leads(1);
-        std::vector<Lead> found;
+        if (m_passes.empty() && effort < most_effort) return all_leads(1);
         for (std::size_t keys = 2; keys <= most_keys; keys *= 2) {
             for (const bool wider : {false, true}) {
                 if (wider) widen();
@@ -48,11 +53,12 @@ class Line {
                     --effort;
                     continue;
                 }
-                found = all_leads(keys);
+                std::vector<Lead> found = all_leads(keys);
                 if (keep_apart(found)) return found;
             }
         }
-        return found;
+        m_is_level_in_stacks = true;
+        return all_leads(most_keys);
     }
 
   private:
@@ -121,24 +127,33 @@ class Line {
 
     std::vector<Lead> all_leads(std::size_t keys) const {
         std::vector<Lead> leads;
-        for (std::size_t a = 0; a < m_yarns.size(); ++a) leads.push_back(lead(a, m_aside[a] == 0 ? 1 : keys));
+        for (std::size_t a = 0; a < m_yarns.size(); ++a) {
+            const bool goes_plainly = m_aside[a] == 0 && !m_is_level_in_stacks;
+            leads.push_back(lead(a, goes_plainly ? 1 : keys));
+        }
         return leads;
     }
 
     Lead lead(std::size_t yarn, std::size_t keys) const {
         Lead lead{keys, {}, {}};
-        const Spline& heights = m_heights[yarn];
-        const std::size_t segments = heights.segments();
+        const std::size_t segments = m_heights[yarn].segments();
         for (std::size_t k = 0; k < segments * keys + (m_spacing.is_periodic ? 0 : 1); ++k) {
             const std::size_t s = k / keys, part = k % keys;
             const double way = static_cast<double>(part) / static_cast<double>(keys);
-            lead.level.push_back(part == 0
-                                     ? m_yarns[yarn].levels[s]
-                                     : heights.place(static_cast<double>(s) + way).z() / m_spacing.level_mm);
+            lead.level.push_back(part == 0 ? m_yarns[yarn].levels[s] : level_between(yarn, s, way));
             const bool aside = part != 0 && m_led[yarn][s] != 0;
             lead.aside_mm.push_back(aside ? m_aside[yarn] * std::sin(std::numbers::pi * way) : 0);
         }
         return lead;
+    }
+
+    /// The level at which a yarn runs at `way`, 0 to 1, from stack `s` of its line to the next.
+    double level_between(std::size_t yarn, std::size_t s, double way) const {
+        if (!m_is_level_in_stacks)
+            return m_heights[yarn].place(static_cast<double>(s) + way).z() / m_spacing.level_mm;
+        const std::vector<double>& levels = m_yarns[yarn].levels;
+        const double from = levels[s], to = levels[(s + 1) % levels.size()];
+        return from + (to - from) * (1 - std::cos(std::numbers::pi * way)) / 2;
     }
 
     Spline curve(std::size_t yarn, const Lead& lead) const {
@@ -179,6 +194,7 @@ class Line {
     std::vector<Pass> m_passes;
     std::vector<std::vector<std::uint8_t>> m_led;  ///< per yarn and segment: led aside there
     std::vector<double> m_aside;
+    bool m_is_level_in_stacks = false;  ///< and climbs between them as half a cosine does
 };
 
 }  // namespace

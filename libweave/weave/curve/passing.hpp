@@ -28,14 +28,16 @@ struct Lead {
 };
 
 /// The furthest that lead_past can start on.
-inline constexpr std::size_t most_effort = 5;
+inline constexpr std::size_t most_effort = 6;
 
 /// Leads the yarns of a line past one another (paper, A.3). Where the curves of two of them come within a
 /// quarter of a level from one stack to the next, both are led aside there, each by an amount of its own; in
 /// the stacks themselves no yarn leaves its place, so that what it crosses there is as planned however steep
 /// it runs. The heights of the interpolating splines are the same with and without the additional key points.
 /// Where two key points a stack do not keep them well apart, a longer way aside and 4 and 8 key points are
-/// tried; `effort`, to most_effort, leaves out so many of the six tries.
+/// tried; `effort`, to most_effort, leaves out so many of the six tries. Where none helps, as when two change
+/// places right beside a stack, every yarn of the line runs level in the stacks and changes its level midway
+/// between them, so that no two pass near a stack; with most_effort that is done even where none pass.
 std::vector<Lead> lead_past(const std::vector<LineYarn>& yarns, const LineSpacing& spacing,
                             std::size_t effort = 0);
 

@@ -18,7 +18,7 @@ struct WeftPart {
     std::size_t first_end = 0, last_end = 0;        ///< between which it crosses the ends
     std::size_t first_column = 0, last_column = 0;  ///< between which it is drawn; wider where it is crossed
     bool is_leftwards = false;
-    double offset = 0;  ///< levels: two wefts in one pick lie a quarter below and above its place
+    double offset = 0;  ///< slots: two wefts in one pick lie a quarter below and above its place
     std::array<std::size_t, 2> turn{none, none};  ///< at its left and right end: index into WeftParts::bends
 };
 
