@@ -3,6 +3,7 @@
 #include <weave/core/text.hpp>
 
 #include <loomlink/commands/client_command.hpp>
+#include <loomlink/commands/names.hpp>
 #include <loomlink/commands/revision_place.hpp>
 
 namespace weave::loomlink {
@@ -54,6 +55,7 @@ void add_submit(CLI::App& app, CommandOutcome& outcome) {
     step.client.command
         ->add_option("--loom", step.words->looms,
                      "a loom that it is meant for; may be repeated; all if not given")
+        ->check(loom_name())
         ->allow_extra_args(false)
         ->type_name("LOOM");
     on_signed_step(step, outcome, "submit", [](const StepWords& words) {
@@ -68,7 +70,7 @@ void add_waive(CLI::App& app, CommandOutcome& outcome) {
         add_signed_step(app, outcome, "waive", "Let the findings of one rule for one loom pass",
                         "loomlink waive shoe 3 --rule floats.warp --loom 'EP 1' --reason 'Wanted'");
     add_text(step.client.command, "--rule", step.words->rule, "the rule, as check names it")->required();
-    add_text(step.client.command, "--loom", step.words->loom, "the loom")->required();
+    add_loom_name(step.client.command, "--loom", step.words->loom, "the loom")->required();
     on_signed_step(step, outcome, "waive", [](const StepWords& words) {
         return Json{{"rule", words.rule}, {"loom", words.loom}, {"reason", words.reason}};
     });
@@ -120,7 +122,7 @@ void add_check(CLI::App& app, CommandOutcome& outcome) {
         "loomlink check shoe 3 --loom 'EP 1'");
     const auto place = add_revision_place(command.command);
     const auto loom = std::make_shared<std::string>();
-    add_text(command.command, "--loom", *loom, "the loom")->required();
+    add_loom_name(command.command, "--loom", *loom, "the loom")->required();
     on_client_run(command, outcome, [place, loom, &outcome](ApiClient& client) {
         return check(client, *place, *loom, outcome);
     });
