@@ -33,18 +33,20 @@ SignedStep add_signed_step(CLI::App& app, CommandOutcome& outcome, const std::st
     return step;
 }
 
+/// What a person is told of a step that was done: the revision's new state, if nothing else matters.
+std::string state_told(const Json& answer, const StepWords&) {
+    return told(answer, "state");
+}
+
 void on_signed_step(const SignedStep& step, CommandOutcome& outcome, const std::string& below,
-                    std::function<Json(const StepWords&)> body_of) {
+                    std::function<Json(const StepWords&)> body_of,
+                    std::function<std::string(const Json&, const StepWords&)> done_words = state_told) {
     on_client_run(
         step.client, outcome,
         [=, wish = step.client.wish, place = step.place, words = step.words, body_of = std::move(body_of),
-         &outcome](ApiClient& client) -> Status {
+         done_words = std::move(done_words), &outcome](ApiClient& client) -> Status {
             WEAVE_TRY(const Json answer, sign_and_post(client, *wish, place->path(below), body_of(*words)));
-            outcome.answer(answer, place->words() + ": " +
-                                       (answer.contains("state")
-                                            ? told(answer, "state")
-                                            : told(answer, "rule") + " waived for " + told(answer, "loom")) +
-                                       "\n");
+            outcome.answer(answer, place->words() + ": " + done_words(answer, *words) + "\n");
             return {};
         });
 }
@@ -71,8 +73,11 @@ void add_waive(CLI::App& app, CommandOutcome& outcome) {
                         "loomlink waive shoe 3 --rule floats.warp --loom 'EP 1' --reason 'Wanted'");
     add_text(step.client.command, "--rule", step.words->rule, "the rule, as check names it")->required();
     add_loom_name(step.client.command, "--loom", step.words->loom, "the loom")->required();
-    on_signed_step(step, outcome, "waive", [](const StepWords& words) {
+    const auto body_of = [](const StepWords& words) {
         return Json{{"rule", words.rule}, {"loom", words.loom}, {"reason", words.reason}};
+    };
+    on_signed_step(step, outcome, "waive", body_of, [](const Json&, const StepWords& words) {
+        return on_one_line(words.rule) + " waived for " + on_one_line(words.loom);
     });
 }
 

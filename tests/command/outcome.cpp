@@ -113,7 +113,9 @@ TEST_CASE("a call that makes no sense ends with 2 and says what there is") {
     CHECK(says({"--fast"}) == "loom: there is no option '--fast'");
     CHECK(says({"beam"}) == "loom: name what to do; beam has wind and turn");
     CHECK(says({"beam", "burn"}) == "loom: there is no command 'burn' of beam; beam has wind and turn");
-    CHECK(parse_json(run({"beam", "--json"}, nothing).out).value().at("error").at("kind") == "usage");
+    const Json error = parse_json(run({"beam", "--json"}, nothing).out).value().at("error");
+    CHECK(error.at("kind") == "usage");
+    CHECK(error.at("message") == "name what to do; beam has wind and turn");
 }
 
 TEST_CASE("help and version are told, with what the exit status means") {

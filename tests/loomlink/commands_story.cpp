@@ -1,5 +1,6 @@
 #include "commands_case.hpp"
 
+#include <algorithm>
 #include <sstream>
 
 using namespace weave;
@@ -103,16 +104,14 @@ TEST_CASE("the log in words tells a line a record: of what, why, and signed with
     std::istringstream all(told.out);
     for (std::string line; std::getline(all, line);) lines.push_back(line);
     REQUIRE(lines.size() == events.size());
-    const auto line_of = [&](const std::string& kind) -> std::string {
-        for (const std::string& line : lines)
-            if (line.find(" " + kind + " ") != std::string::npos) return line;
-        return "";
-    };
-    const std::string key = mill.done("abel", {"key", "show"}).at("id").get<std::string>().substr(0, 16);
+    const std::string id = mill.done("abel", {"key", "show"}).at("id").get<std::string>();
+    const std::string key = id.substr(0, 16);
     const auto says = [&](const std::string& kind, const std::vector<std::string>& pieces) {
-        const std::string line = line_of(kind);
-        INFO(kind);
-        for (const std::string& piece : pieces) CHECK_THAT(line, Catch::Contains(piece));
+        INFO(kind << " in\n" << told.out);
+        CHECK(std::any_of(lines.begin(), lines.end(), [&](const std::string& line) {
+            const auto holds = [&](const std::string& text) { return line.find(text) != std::string::npos; };
+            return holds(" " + kind + " ") && std::all_of(pieces.begin(), pieces.end(), holds);
+        }));
     };
     says("person.joined", {"mary", "roles admin"});
     says("person.invited", {"roles designer approver"});
@@ -121,7 +120,7 @@ TEST_CASE("the log in words tells a line a record: of what, why, and signed with
     says("release.made", {"revision 1, loom seven, release 1", "signed by \"The abel\", key " + key});
     says("release.signed", {"loom seven, release 1", "key " + key});
     says("release.pulled", {"otto", "loom seven, release 1", "file "});
-    CHECK(told.out.find(std::string(17, 'f')) == std::string::npos);
+    CHECK(told.out.find(id) == std::string::npos);  // in full only in the JSON
 }
 
 TEST_CASE("a step that the server knows of already is refused with its reason", "[commands]") {

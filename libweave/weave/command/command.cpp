@@ -8,6 +8,7 @@
 #include <new>
 #include <string_view>
 #include <utility>
+#include <vector>
 
 namespace weave {
 
@@ -37,7 +38,8 @@ std::string usage_trouble(const CLI::App& app, const CLI::ParseError& trouble) {
     const CLI::App* last = &app;
     while (!last->get_subcommands().empty()) last = last->get_subcommands().front();
     if (last->get_require_subcommand_min() == 0) return trouble.what();
-    const auto unknown = last->remaining();
+    auto unknown = last->remaining();
+    std::erase(unknown, "--json");  // which says how to answer, and is no reason
     const std::string has = last == &app ? "" : "; " + last->get_name() + " has " + commands_of(*last);
     if (unknown.empty()) return last == &app ? "name a command" : "name what to do" + has;
     const bool option = unknown.front().starts_with('-');

@@ -31,13 +31,18 @@ class ChangeRings {
     [[nodiscard]] double line() const;
 
   private:
+    /// What the changes in one square of the picture cover.
     struct Bin {
-        bool used = false;
-        double left = 0, right = 0, top = 0, bottom = 0;  ///< what the changes in it cover
+        double area = 0, left = 0, right = 0, top = 0, bottom = 0;
+        [[nodiscard]] bool used() const { return area > 0; }
         void cover(const Bin& other);
     };
     [[nodiscard]] double longest() const;
-    [[nodiscard]] Bin gathered(std::size_t first, std::vector<bool>& seen) const;
+    /// Calls visit(bin) for a bin and those that touch it.
+    template <class Visit>
+    void each_neighbour(std::size_t bin, Visit visit) const;
+    /// Whether the changes in a bin are part of a patch that is large enough to be seen.
+    [[nodiscard]] bool is_seen(std::size_t bin) const;
 
     const Grid* m_grid;
     double m_reach;  ///< least radius of a ring, and the side of a bin
