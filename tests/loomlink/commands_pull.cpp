@@ -77,7 +77,17 @@ TEST_CASE("a loom pulls what was released, finds what was altered, and gives up 
 
     CHECK(verify(mill, folder).code == 0);
     mill.done("mary", {"trust", "show", "-o", mill.at("trust.json")});
-    CHECK(mill.run({"verify-files", folder, "--trust", mill.at("trust.json")}).code == 0);
+    const auto by_paper = [&] {
+        return mill.run({"verify-files", folder, "--trust", mill.at("trust.json"), "--json"});
+    };
+    CHECK(by_paper().code == 0);
+    std::string paper = read_file(mill.at("trust.json")).value();
+    char& digit = paper[paper.find("\"value\":\"") + 9];
+    digit = digit == '0' ? '1' : '0';
+    REQUIRE(write_file(mill.at("trust.json"), paper));
+    const Ended false_paper = by_paper();
+    CHECK(false_paper.code == 1);
+    CHECK(false_paper.json().at("error").at("kind") == "invalid");
     const fs::path file = some_file(folder);
     flip(file, 0);
     const Ended altered = verify(mill, folder);
