@@ -1,47 +1,18 @@
 #pragma once
 
-#include <weave/core/json.hpp>
-#include <weave/core/result.hpp>
+#include <weave/command/command.hpp>
 
 #include <CLI/CLI.hpp>
 
 #include <cstdint>
-#include <functional>
 #include <optional>
 #include <string>
 #include <vector>
 
 namespace weave::loomlink {
 
-/// What every command of `loomlink` has: whether a program reads along, and how it ended.
-struct CommandOutcome {
-    bool json = false;
-    int exit_code = 0;
-
-    /// Tells the error and remembers its exit code. A program that reads along gets it as the answer,
-    /// `{"error": …}`, unless it has had one.
-    void fail(const Error& error);
-    /// Remembers that the command was done and found something: exit code 1.
-    void found_something() { exit_code = 1; }
-    /// A line for people on standard error.
-    static void note(const std::string& line);
-    /// The answer: one line of JSON if a program reads along, else these words, on standard output. Names
-    /// from outside must come through on_one_line() in `words`, whose line breaks are kept.
-    void answer(const Json& json_answer, const std::string& words);
-
-  private:
-    bool m_answered = false;
-};
-
-/// Adds a command with --json; its help shows the example, a whole line as a person types it.
-CLI::App* add_command(CLI::App& app, CommandOutcome& outcome, const std::string& name,
-                      const std::string& help, const std::string& example = {});
-
 /// Adds a command that has commands of its own, one of which must follow.
 CLI::App& add_group(CLI::App& app, const std::string& name, const std::string& help);
-
-/// Lets `run` be the command's work: its error, if any, is told and becomes the exit code.
-void on_run(CLI::App* command, CommandOutcome& outcome, std::function<Status()> run);
 
 /// An option or a place that is a whole number from 1 on, in decimal digits. `value` must outlive the
 /// command.
@@ -55,9 +26,6 @@ CLI::Option* add_numbers(CLI::App* command, const std::string& name, std::vector
 /// An option or a place that is a text; it must not be empty. `value` must outlive the command.
 CLI::Option* add_text(CLI::App* command, const std::string& name, std::string& value,
                       const std::string& help);
-
-/// What is wrong with a call that could not be parsed, in a sentence.
-std::string usage_trouble(const CLI::App& app, const CLI::ParseError& trouble);
 
 /// The commands, one group a file.
 void add_init_command(CLI::App& app, CommandOutcome& outcome);

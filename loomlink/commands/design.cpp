@@ -4,6 +4,7 @@
 #include <weave/core/text.hpp>
 
 #include <loomlink/commands/client_command.hpp>
+#include <loomlink/commands/names.hpp>
 #include <loomlink/commands/revision_place.hpp>
 
 namespace weave::loomlink {
@@ -100,7 +101,7 @@ void add_save(CLI::App& app, CommandOutcome& outcome) {
                            "loomlink save shoe.weave shoe --message 'Toe a pick longer'");
     const auto words = std::make_shared<SaveWords>();
     add_text(command.command, "FILE", words->file, "the .weave file")->required();
-    add_text(command.command, "DESIGN", words->design, "the design")->required();
+    add_name(command.command, "DESIGN", words->design, "the design")->required();
     add_text(command.command, "-m,--message", words->message, "what changed")->required();
     add_text(command.command, "--branch", words->branch, "the branch that it goes on; main if not given");
     add_number(command.command, "--expected", words->expected,
@@ -166,7 +167,7 @@ void add_diff(CLI::App& app, CommandOutcome& outcome) {
         app, outcome, "diff", "Tell in what two revisions differ (exit 0: the same design, 1: they differ)",
         "loomlink diff shoe 3 5 -o changes.png");
     const auto words = std::make_shared<DiffWords>();
-    add_text(command.command, "DESIGN", words->design, "the design")->required();
+    add_name(command.command, "DESIGN", words->design, "the design")->required();
     add_number(command.command, "BEFORE", words->before, "a revision")->required();
     add_number(command.command, "AFTER", words->after, "the revision that is compared with it")->required();
     add_text(command.command, "-o,--out", words->out, "draw both cards laid on each other, as PNG")
@@ -199,7 +200,7 @@ void add_design_commands(CLI::App& app, CommandOutcome& outcome) {
     on_client_run(list, outcome, [&outcome](ApiClient& client) { return list_designs(client, outcome); });
     const auto make = add_client_command(design, outcome, "make", "Make a design that has no revisions yet");
     const auto name = std::make_shared<std::string>();
-    add_text(make.command, "NAME", *name, "its name")->required();
+    add_name(make.command, "NAME", *name, "its name")->required();
     on_client_run(make, outcome, [name, &outcome](ApiClient& client) -> Status {
         WEAVE_TRY(const Json answer, client.post("/designs", {{"name", *name}}));
         outcome.answer(answer, "Made the design " + on_one_line(*name) + "\n");

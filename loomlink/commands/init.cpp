@@ -1,3 +1,5 @@
+#include <weave/core/text.hpp>
+
 #include <loomlink/commands/command.hpp>
 #include <loomlink/commands/site_folder.hpp>
 #include <loomlink/workflow/workflow.hpp>
@@ -18,10 +20,12 @@ Status make_new_site(const SiteFolder& folder, const ServeConfig& config, Comman
     WEAVE_TRY(const auto workflow, Workflow::open(std::move(site.store), std::move(site.keys)));
     WEAVE_TRY(const Json invitation, workflow->accounts().first_invitation());
     const std::string code = invitation.value("code", std::string());
-    outcome.answer({{"site", name}, {"certificate_sha256", certificate.fingerprint}, {"code", code}},
-                   "Made the site " + name + ".\ncertificate (SHA-256): " + certificate.fingerprint +
-                       "\nThe first administrator joins with this code, once: " + code +
-                       "\nServe it: loomlink serve\n");
+    const std::string where = folder.whole_path();
+    outcome.answer(
+        {{"site", name}, {"made_in", where}, {"certificate_sha256", certificate.fingerprint}, {"code", code}},
+        "Made the new, empty site " + name + " in " + on_one_line(where) + ".\ncertificate (SHA-256): " +
+            certificate.fingerprint + "\nThe first administrator joins with this code, once: " + code +
+            "\nServe it: loomlink serve " + on_one_line(folder.path.string()) + "\n");
     return {};
 }
 
@@ -31,7 +35,7 @@ void add_init_command(CLI::App& app, CommandOutcome& outcome) {
     CLI::App* const command = add_command(app, outcome, "init", "Make a site in an empty folder");
     auto folder = std::make_shared<std::string>(".");
     auto config = std::make_shared<ServeConfig>();
-    command->add_option("folder", *folder, "the folder of the site; the current one if not given");
+    add_text(command, "folder", *folder, "the folder of the site; the current one if not given");
     command->add_option("--site", config->site, "the name of the site (mill)");
     command->add_option("--host", config->hosts,
                         "a name or address that clients use, for the certificate; may be repeated");

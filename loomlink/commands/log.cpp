@@ -6,6 +6,8 @@
 #include <algorithm>
 #include <loomlink/audit/head.hpp>
 #include <loomlink/commands/client_command.hpp>
+#include <loomlink/commands/log_words.hpp>
+#include <loomlink/commands/names.hpp>
 #include <loomlink/commands/verify_audit.hpp>
 
 namespace weave::loomlink {
@@ -53,11 +55,7 @@ Result<std::vector<Json>> records(ApiClient& client, const LogWords& words) {
 Status tell_log(ApiClient& client, const LogWords& words, CommandOutcome& outcome) {
     WEAVE_TRY(const auto found, records(client, words));
     std::vector<std::vector<std::string>> lines;
-    for (const Json& record : found)
-        lines.push_back({told(record, "seq"), told(record, "at"), told(record, "actor"), told(record, "kind"),
-                         told(record, "subject"),
-                         told(record, "signed").empty() ? "" : "signed by " + told(record, "signed"),
-                         told(record, "reason")});
+    for (const Json& record : found) lines.push_back(log_cells(record));
     outcome.answer({{"events", found}}, in_columns(lines));
     return {};
 }
@@ -67,7 +65,7 @@ void add_log(CLI::App& app, CommandOutcome& outcome) {
         add_client_command(app, outcome, "log", "Tell what happened: the newest records of the log",
                            "loomlink log --design shoe --limit 20");
     const auto words = std::make_shared<LogWords>();
-    add_text(command.command, "--design", words->design, "only what is about this design")->type_name("NAME");
+    add_name(command.command, "--design", words->design, "only what is about this design")->type_name("NAME");
     command.command
         ->add_option_function<std::string>(
             "--from",

@@ -4,6 +4,7 @@
 #include <weave/core/text.hpp>
 
 #include <loomlink/commands/client_command.hpp>
+#include <loomlink/commands/names.hpp>
 
 namespace weave::loomlink {
 
@@ -65,7 +66,7 @@ void add_profile_command(CLI::App& app, CommandOutcome& outcome, bool is_new) {
                                  "Put a new version of its profile in force; what was released for the "
                                  "version before has to be released again");
     const auto wish = std::make_shared<ProfileWish>();
-    add_text(command.command, "LOOM", wish->loom, "the loom's name")->required();
+    add_loom_name(command.command, "LOOM", wish->loom, "the loom's name")->required();
     add_text(command.command, "FILE", wish->file, "its profile, a .json file (weave: PROFILE.md)")
         ->required();
     on_client_run(command, outcome, [wish, is_new, &outcome](ApiClient& client) {
@@ -95,7 +96,7 @@ void add_loom_commands(CLI::App& app, CommandOutcome& outcome) {
     on_client_run(list, outcome, [&outcome](ApiClient& client) { return list_looms(client, outcome); });
     const auto name = std::make_shared<std::string>();
     const auto show = add_client_command(loom, outcome, "show", "Tell all of a loom and its releases");
-    add_text(show.command, "LOOM", *name, "the loom")->required();
+    add_loom_name(show.command, "LOOM", *name, "the loom")->required();
     on_client_run(show, outcome,
                   [name, &outcome](ApiClient& client) { return show_loom(client, *name, outcome); });
     add_profile_command(loom, outcome, true);
@@ -104,7 +105,7 @@ void add_loom_commands(CLI::App& app, CommandOutcome& outcome) {
         add_client_command(loom, outcome, "operators", "Say who works at a loom; nobody else then",
                            "loomlink loom operators 'EP 1' otto olga");
     const auto people = std::make_shared<std::vector<std::string>>();
-    add_text(operators.command, "LOOM", *name, "the loom")->required();
+    add_loom_name(operators.command, "LOOM", *name, "the loom")->required();
     operators.command->add_option("NAME", *people, "operators; nobody if none is given")->type_name("");
     on_client_run(operators, outcome, [name, people, &outcome](ApiClient& client) -> Status {
         WEAVE_TRY(const Json answer,
@@ -114,7 +115,7 @@ void add_loom_commands(CLI::App& app, CommandOutcome& outcome) {
     });
     const auto faults =
         add_client_command(app, outcome, "faults", "List the faults that a loom's operators reported");
-    add_text(faults.command, "LOOM", *name, "the loom")->required();
+    add_loom_name(faults.command, "LOOM", *name, "the loom")->required();
     on_client_run(faults, outcome,
                   [name, &outcome](ApiClient& client) { return list_faults(client, *name, outcome); });
 }

@@ -43,7 +43,7 @@ class LoomWatch {
             tell_trouble(report.error());
             return {};
         }
-        if (!m_trouble.empty()) CommandOutcome::note("the server answers again");
+        if (!m_trouble.empty()) m_outcome->note("the server answers again");
         m_trouble.clear();
         const std::size_t kept = report->kept.size();
         if (report->has_news() || !m_pulled_once || kept != m_kept)
@@ -56,11 +56,11 @@ class LoomWatch {
 
     /// Each trouble is told once, and once that the index has run out meanwhile.
     void tell_trouble(const Error& error) {
-        if (m_trouble != error.text()) CommandOutcome::note(error.text() + "; trying on");
+        if (m_trouble != error.text()) m_outcome->note(error.text() + "; trying on");
         m_trouble = error.text();
         if (!m_expires || system_clock()() < *m_expires) return;
-        CommandOutcome::note("the last index has run out at " + utc_text(*m_expires) +
-                             ": start nothing new until the server answers");
+        m_outcome->note("the last index has run out at " + utc_text(*m_expires) +
+                        ": start nothing new until the server answers");
         m_expires.reset();
     }
 

@@ -2,6 +2,7 @@
 
 #include <loomlink/commands/client_command.hpp>
 #include <loomlink/commands/loom_watch.hpp>
+#include <loomlink/commands/names.hpp>
 #include <loomlink/commands/sign_in.hpp>
 #include <loomlink/keys/secret_bytes.hpp>
 
@@ -21,7 +22,8 @@ Result<PullWish> wish_of(const PullWords& words) {
         WEAVE_TRY(wish.state_file, usual_state_file(words.loom));
     }
     if (!words.trust.empty()) {
-        WEAVE_TRY(wish.trust, parse_fingerprint(words.trust));
+        WEAVE_TRY(wish.trust, parse_fingerprint(words.trust, "--trust",
+                                                "as an administrator reads them from loomlink trust show"));
     }
     if (words.release && words.all) return Error{ErrorCode::usage, "takes either --release or --all", "pull"};
     if (words.every && !words.watch) return Error{ErrorCode::usage, "goes with --watch", "--every"};
@@ -67,11 +69,12 @@ void add_pull_command(CLI::App& app, CommandOutcome& outcome) {
     const auto command =
         add_client_command(app, outcome, "pull",
                            "At the loom: fetch what is released for it, hold every byte to what people "
-                           "signed, and remove what was "
-                           "recalled (exit 1 where recalled files could not be removed)",
+                           "signed, and remove what was recalled (exit 1: bytes that are not what was "
+                           "signed, or recalled files that could not be removed; 4: recalled, expired or "
+                           "replayed)",
                            "loomlink pull 'EP 1' --to /loom --watch --password-file operator.password");
     const auto words = std::make_shared<PullWords>();
-    add_text(command.command, "LOOM", words->loom, "the loom")->required();
+    add_loom_name(command.command, "LOOM", words->loom, "the loom")->required();
     add_text(command.command, "--to", words->to, "the folder of its releases; each gets one of its own there")
         ->type_name("FOLDER")
         ->required();

@@ -139,7 +139,7 @@ class Pull {
         const std::string name = std::to_string(number);
         WEAVE_TRY(const std::string bytes,
                   m_client->get_bytes(path({"releases", name, "manifest"}), most_manifest_bytes));
-        auto manifest = open_manifest(bytes, checked.state.trust);
+        auto manifest = check_manifest(bytes, checked.state.trust);
         if (!manifest) return std::move(manifest).error().under("manifest");
         std::vector<PulledFile> files;
         for (const ReleasedFile& file : manifest->files) {

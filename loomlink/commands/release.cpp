@@ -3,6 +3,7 @@
 #include <weave/core/text.hpp>
 
 #include <loomlink/commands/client_command.hpp>
+#include <loomlink/commands/names.hpp>
 #include <loomlink/commands/revision_place.hpp>
 
 namespace weave::loomlink {
@@ -50,7 +51,7 @@ void add_release(CLI::App& app, CommandOutcome& outcome) {
         "loomlink release shoe 3 --loom 'EP 1' --feeders 2,1 --supersedes 4 --reason 'For the spring order'");
     const auto place = add_revision_place(command.command);
     const auto words = std::make_shared<ReleaseWords>();
-    add_text(command.command, "--loom", words->loom, "the loom")->required();
+    add_loom_name(command.command, "--loom", words->loom, "the loom")->required();
     add_numbers(command.command, "--feeders", words->feeders,
                 "the loom's feeder of each of the design's; 1,2,3 … if not given");
     add_number(command.command, "--supersedes", words->supersedes,
@@ -71,7 +72,7 @@ void add_step(CLI::App& app, CommandOutcome& outcome, const std::string& step, c
               const std::string& example) {
     const auto command = add_client_command(app, outcome, step, help, example);
     const auto place = std::make_shared<ReleasePlace>();
-    add_text(command.command, "LOOM", place->loom, "the loom")->required();
+    add_loom_name(command.command, "LOOM", place->loom, "the loom")->required();
     add_number(command.command, "RELEASE", place->number, "the number of its release")->required();
     add_text(command.command, "-r,--reason", place->reason, "why; it stands in the log")->required();
     add_password_option(command);

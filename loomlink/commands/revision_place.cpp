@@ -1,6 +1,7 @@
 #include <weave/core/text.hpp>
 
 #include <loomlink/commands/api_client.hpp>
+#include <loomlink/commands/names.hpp>
 #include <loomlink/commands/revision_place.hpp>
 
 namespace weave::loomlink {
@@ -16,7 +17,7 @@ std::string RevisionPlace::words() const {
 
 std::shared_ptr<RevisionPlace> add_revision_place(CLI::App* command, bool needs_number) {
     auto place = std::make_shared<RevisionPlace>();
-    add_text(command, "DESIGN", place->design, "the design")->required();
+    add_name(command, "DESIGN", place->design, "the design")->required();
     add_number(command, "REVISION", place->number, "the number of its revision")->required(needs_number);
     return place;
 }

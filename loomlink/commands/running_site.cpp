@@ -14,6 +14,7 @@ struct RunningSite::Parts {
     FolderLock lock;
     ServeConfig config;
     std::string name;
+    std::string made_in;  ///< the folder of a site that is new; else empty
     std::unique_ptr<Workflow> workflow;
     std::optional<net::TlsFiles> tls;
     std::unique_ptr<HeadKeeper> heads;  ///< where a second place is configured
@@ -63,7 +64,8 @@ Result<std::unique_ptr<RunningSite>> RunningSite::start(const SiteFolder& folder
     WEAVE_TRY(const auto tls, tls_of(folder, config));
     WEAVE_TRY(auto workflow, Workflow::open(std::move(site.store), std::move(site.keys), settings));
     auto parts = std::make_unique<Parts>(
-        Parts{std::move(site.lock), config, std::move(site.name), std::move(workflow), tls, {}, {}, {}});
+        Parts{std::move(site.lock), config, std::move(site.name), {}, std::move(workflow), tls, {}, {}, {}});
+    if (site.is_new) parts->made_in = folder.whole_path();
     if (!config.heads.empty()) {
         WEAVE_TRY(parts->heads, HeadKeeper::start(config.heads, [&flow = *parts->workflow] {
                       return flow.log_head();
@@ -90,6 +92,7 @@ std::uint16_t RunningSite::port() const {
 Result<Json> RunningSite::introduction() {
     const std::string url = origin_of(m_parts->config, port());
     Json told{{"site", m_parts->name}, {"url", url}};
+    if (!m_parts->made_in.empty()) told["made_in"] = m_parts->made_in;
     if (m_parts->tls) {
         WEAVE_TRY(const auto certificate, net::read_certificate(m_parts->tls->certificate));
         told["certificate_sha256"] = certificate.fingerprint;

@@ -58,8 +58,12 @@ Result<ServeConfig> whole_config(const ServeOptions& options) {
 }
 
 std::string words_of(const Json& started) {
-    std::string words = "loomlink serves " + started.value("site", std::string()) + " at " +
-                        started.value("url", std::string()) + "\n";
+    std::string words;
+    if (started.contains("made_in"))
+        words += "There was no site in " + on_one_line(started["made_in"].get<std::string>()) +
+                 ": made a new, empty one\n";
+    words += "loomlink serves " + started.value("site", std::string()) + " at " +
+             started.value("url", std::string()) + "\n";
     if (started.contains("certificate_sha256"))
         words += "certificate (SHA-256): " + started["certificate_sha256"].get<std::string>() + "\n";
     if (started.contains("trust_sha256"))
@@ -94,11 +98,11 @@ Status serve(const ServeOptions& options, CommandOutcome& outcome) {
 }  // namespace
 
 void add_serve_command(CLI::App& app, CommandOutcome& outcome) {
-    CLI::App* const command =
-        add_command(app, outcome, "serve", "Serve a site; in an empty folder, make it first");
+    CLI::App* const command = add_command(
+        app, outcome, "serve", "Serve a site; where the folder is empty or missing, make a new one first");
     auto options = std::make_shared<ServeOptions>();
     options->command = command;
-    command->add_option("folder", options->folder, "the folder of the site; the current one if not given");
+    add_text(command, "folder", options->folder, "the folder of the site; the current one if not given");
     command->add_option("--config", options->config_file, "a file of JSON with what else stands here");
     command->add_flag("--check-config", options->check_only,
                       "say whether the configuration is valid, and end");

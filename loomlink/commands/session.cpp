@@ -88,13 +88,14 @@ Result<KeptSession> load_session_if_any(const fs::path& file) {
     return load_session(file);
 }
 
-Result<std::string> parse_fingerprint(const std::string& text) {
+Result<std::string> parse_fingerprint(const std::string& text, const std::string& option,
+                                      const std::string& source) {
     constexpr std::size_t digits = 64;
     std::string hex;
     for (const char c : text)
         if (c != ':') hex += c >= 'A' && c <= 'F' ? static_cast<char>(c - 'A' + 'a') : c;
     if (is_hex(hex, digits)) return hex;
-    return bad_input("must be 64 hexadecimal digits, as the server tells them when it starts", "fingerprint");
+    return bad_input("must be 64 hexadecimal digits, " + source, option);
 }
 
 Result<net::ClientOptions> client_options(const KeptSession& session) {

@@ -39,9 +39,11 @@ Result<KeptSession> load_session(const std::filesystem::path& file);
 /// The same, but an empty session where there is no file.
 Result<KeptSession> load_session_if_any(const std::filesystem::path& file);
 
-/// The fingerprint of a certificate as a person gives it: 64 hexadecimal digits, with or without colons.
-/// Lower case. Errors: bad_input.
-Result<std::string> parse_fingerprint(const std::string& text);
+/// A fingerprint as a person gives it: 64 hexadecimal digits, with or without colons. Lower case. Errors:
+/// bad_input; it names the option, and says where people find the fingerprint, such as `as the server tells
+/// them when it starts`.
+Result<std::string> parse_fingerprint(const std::string& text, const std::string& option,
+                                      const std::string& source);
 
 /// How to reach the server of a session. Errors: bad_input for what is no origin; refused for plain HTTP to
 /// another machine, where passwords could be read on the way.

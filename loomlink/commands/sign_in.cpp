@@ -12,7 +12,8 @@ Result<KeptSession> server_wished(const std::string& origin, const std::string& 
     if (session.origin.empty())
         return Error{ErrorCode::usage, "say which server, such as https://mill:8443", ""};
     if (!fingerprint.empty()) {
-        WEAVE_TRY(session.fingerprint, parse_fingerprint(fingerprint));
+        WEAVE_TRY(session.fingerprint,
+                  parse_fingerprint(fingerprint, "--fingerprint", "as the server tells them when it starts"));
     }
     return session;
 }

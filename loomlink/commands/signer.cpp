@@ -3,6 +3,7 @@
 #include <weave/core/text.hpp>
 
 #include <loomlink/commands/client_command.hpp>
+#include <loomlink/commands/names.hpp>
 #include <loomlink/commands/sign_in.hpp>
 #include <loomlink/keys/hex.hpp>
 #include <loomlink/keys/server_key.hpp>
@@ -74,7 +75,7 @@ void add_signer_commands(CLI::App& app, CommandOutcome& outcome) {
     const auto name = std::make_shared<std::string>();
     const auto invite = add_client_command(
         signer, outcome, "invite", "Make a code for a machine to enrol with", "loomlink signer invite gpu-1");
-    add_text(invite.command, "NAME", *name, "what the machine is called")->required();
+    add_name(invite.command, "NAME", *name, "what the machine is called")->required();
     on_client_run(invite, outcome, [name, &outcome](ApiClient& client) -> Status {
         WEAVE_TRY(const Json answer, client.post("/signers", {{"name", *name}}));
         outcome.answer(answer, "Enrol it with this code, once, until " + told(answer, "expires") + ": " +
@@ -83,7 +84,7 @@ void add_signer_commands(CLI::App& app, CommandOutcome& outcome) {
     });
     add_enrol(signer, outcome);
     const auto revoke = add_client_command(signer, outcome, "revoke", "Let a machine's key count no more");
-    add_text(revoke.command, "NAME", *name, "the machine")->required();
+    add_name(revoke.command, "NAME", *name, "the machine")->required();
     on_client_run(revoke, outcome, [name, &outcome](ApiClient& client) -> Status {
         WEAVE_CHECK_OK(client.post(api_path({"signers", *name, "revoke"})));
         outcome.answer({{"revoked", *name}}, on_one_line(*name) + " counts no more\n");

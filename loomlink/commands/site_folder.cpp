@@ -21,6 +21,16 @@ Error fault(const fs::path& path, const std::string& action) {
     return system_fault("cannot " + action + ": " + std::strerror(errno), path.string());
 }
 
+/// Makes the folder of a site where it is missing. Not those above it: a name that was mistyped would make a
+/// site where nobody looks for one.
+Status make_folder(const fs::path& folder) {
+    if (::mkdir(folder.c_str(), 0700) == 0 || errno == EEXIST) return {};
+    if (errno != ENOENT) return fault(folder, "make the folder");
+    return bad_input(
+        "cannot be made, since the folder above it is missing; make that first, or mend the name",
+        folder.string());
+}
+
 /// Whether a folder holds nothing but, perhaps, our lock.
 Result<bool> holds_nothing(const fs::path& folder) {
     std::error_code trouble;
@@ -48,6 +58,11 @@ Result<OpenSite> open_old_site(FolderLock lock, const SiteFolder& folder) {
 }
 
 }  // namespace
+
+std::string SiteFolder::whole_path() const {
+    std::error_code unknown;
+    return fs::absolute(path, unknown).lexically_normal().string();
+}
 
 Status check_site_folder(const SiteFolder& folder) {
     std::error_code trouble;
@@ -80,10 +95,9 @@ FolderLock& FolderLock::operator=(FolderLock&& other) noexcept {
 }
 
 Result<OpenSite> open_site(const SiteFolder& folder, const ServeConfig& config) {
-    std::error_code trouble;
-    fs::create_directories(folder.path, trouble);
-    if (trouble) return system_fault("cannot be made: " + trouble.message(), folder.path.string());
+    WEAVE_CHECK_OK(make_folder(folder.path));
     WEAVE_CHECK_OK(check_site_folder(folder));
+    std::error_code trouble;
     WEAVE_TRY(FolderLock lock, FolderLock::take(folder.path));
     if (fs::exists(folder.store(), trouble)) return open_old_site(std::move(lock), folder);
     if (::chmod(folder.path.c_str(), 0700) != 0) return fault(folder.path, "close it to others");

@@ -29,6 +29,8 @@ class FolderLock {
 /// Where things lie in the folder of a site.
 struct SiteFolder {
     std::filesystem::path path;
+    /// Its path from the root, to be told to people.
+    [[nodiscard]] std::string whole_path() const;
     [[nodiscard]] std::filesystem::path store() const { return path / "loomlink.db"; }
     [[nodiscard]] std::filesystem::path log_key() const { return path / "log.key"; }
     [[nodiscard]] std::filesystem::path stamp_key() const { return path / "stamp.key"; }
@@ -48,7 +50,8 @@ struct OpenSite {
 };
 
 /// Opens the site in a folder, or makes it where the folder is missing or empty: the store, and the keys for
-/// log and stamps (mode 0600). Refused: a folder that holds other things, or half a site.
+/// log and stamps (mode 0600). Errors: a folder that is missing with the one above it (bad_input); refused:
+/// one that holds other things, or half a site.
 Result<OpenSite> open_site(const SiteFolder& folder, const ServeConfig& config);
 
 /// The certificate that is served with: the one of the configuration, or the folder's own, which is made

@@ -3,6 +3,7 @@
 #include <weave/core/text.hpp>
 
 #include <loomlink/commands/client_command.hpp>
+#include <loomlink/commands/names.hpp>
 #include <loomlink/commands/revision_place.hpp>
 
 namespace weave::loomlink {
@@ -32,18 +33,20 @@ SignedStep add_signed_step(CLI::App& app, CommandOutcome& outcome, const std::st
     return step;
 }
 
+/// What a person is told of a step that was done: the revision's new state, if nothing else matters.
+std::string state_told(const Json& answer, const StepWords&) {
+    return told(answer, "state");
+}
+
 void on_signed_step(const SignedStep& step, CommandOutcome& outcome, const std::string& below,
-                    std::function<Json(const StepWords&)> body_of) {
+                    std::function<Json(const StepWords&)> body_of,
+                    std::function<std::string(const Json&, const StepWords&)> done_words = state_told) {
     on_client_run(
         step.client, outcome,
         [=, wish = step.client.wish, place = step.place, words = step.words, body_of = std::move(body_of),
-         &outcome](ApiClient& client) -> Status {
+         done_words = std::move(done_words), &outcome](ApiClient& client) -> Status {
             WEAVE_TRY(const Json answer, sign_and_post(client, *wish, place->path(below), body_of(*words)));
-            outcome.answer(answer, place->words() + ": " +
-                                       (answer.contains("state")
-                                            ? told(answer, "state")
-                                            : told(answer, "rule") + " waived for " + told(answer, "loom")) +
-                                       "\n");
+            outcome.answer(answer, place->words() + ": " + done_words(answer, *words) + "\n");
             return {};
         });
 }
@@ -54,6 +57,7 @@ void add_submit(CLI::App& app, CommandOutcome& outcome) {
     step.client.command
         ->add_option("--loom", step.words->looms,
                      "a loom that it is meant for; may be repeated; all if not given")
+        ->check(loom_name())
         ->allow_extra_args(false)
         ->type_name("LOOM");
     on_signed_step(step, outcome, "submit", [](const StepWords& words) {
@@ -68,9 +72,12 @@ void add_waive(CLI::App& app, CommandOutcome& outcome) {
         add_signed_step(app, outcome, "waive", "Let the findings of one rule for one loom pass",
                         "loomlink waive shoe 3 --rule floats.warp --loom 'EP 1' --reason 'Wanted'");
     add_text(step.client.command, "--rule", step.words->rule, "the rule, as check names it")->required();
-    add_text(step.client.command, "--loom", step.words->loom, "the loom")->required();
-    on_signed_step(step, outcome, "waive", [](const StepWords& words) {
+    add_loom_name(step.client.command, "--loom", step.words->loom, "the loom")->required();
+    const auto body_of = [](const StepWords& words) {
         return Json{{"rule", words.rule}, {"loom", words.loom}, {"reason", words.reason}};
+    };
+    on_signed_step(step, outcome, "waive", body_of, [](const Json&, const StepWords& words) {
+        return on_one_line(words.rule) + " waived for " + on_one_line(words.loom);
     });
 }
 
@@ -120,7 +127,7 @@ void add_check(CLI::App& app, CommandOutcome& outcome) {
         "loomlink check shoe 3 --loom 'EP 1'");
     const auto place = add_revision_place(command.command);
     const auto loom = std::make_shared<std::string>();
-    add_text(command.command, "--loom", *loom, "the loom")->required();
+    add_loom_name(command.command, "--loom", *loom, "the loom")->required();
     on_client_run(command, outcome, [place, loom, &outcome](ApiClient& client) {
         return check(client, *place, *loom, outcome);
     });

@@ -3,6 +3,7 @@
 #include <weave/core/text.hpp>
 
 #include <loomlink/commands/client_command.hpp>
+#include <loomlink/commands/names.hpp>
 #include <loomlink/commands/sign_in.hpp>
 #include <loomlink/keys/secret_bytes.hpp>
 
@@ -109,7 +110,7 @@ void add_named_steps(CLI::App& app, CommandOutcome& outcome) {
     const auto roles = std::make_shared<std::vector<std::string>>();
     const auto set_roles = add_client_command(app, outcome, "roles", "Set what a person may do, from now on",
                                               "loomlink user roles dora designer approver");
-    add_text(set_roles.command, "NAME", *name, "the person")->required();
+    add_name(set_roles.command, "NAME", *name, "the person")->required();
     add_roles(set_roles.command, *roles);
     on_client_run(set_roles, outcome, [name, roles, &outcome](ApiClient& client) -> Status {
         WEAVE_TRY(const Json answer, client.post(api_path({"people", *name, "roles"}), {{"roles", *roles}}));
@@ -120,7 +121,7 @@ void add_named_steps(CLI::App& app, CommandOutcome& outcome) {
         const std::string step = enable ? "enable" : "disable";
         const auto command = add_client_command(
             app, outcome, step, enable ? "Let a person sign in again" : "Let a person sign in no more");
-        add_text(command.command, "NAME", *name, "the person")->required();
+        add_name(command.command, "NAME", *name, "the person")->required();
         on_client_run(command, outcome, [name, step, enable, &outcome](ApiClient& client) -> Status {
             WEAVE_TRY(const Json answer, client.post(api_path({"people", *name, step})));
             outcome.answer(answer,
@@ -130,7 +131,7 @@ void add_named_steps(CLI::App& app, CommandOutcome& outcome) {
     }
     const auto reset = add_client_command(
         app, outcome, "reset", "Revoke the key of a person who lost the password, and invite anew");
-    add_text(reset.command, "NAME", *name, "the person")->required();
+    add_name(reset.command, "NAME", *name, "the person")->required();
     on_client_run(reset, outcome, [name, &outcome](ApiClient& client) -> Status {
         WEAVE_TRY(const Json answer, client.post(api_path({"people", *name, "reset"})));
         tell_code(client, answer, outcome);

@@ -1,9 +1,11 @@
 // verify-files: whether what lies at a loom is what people signed, without any server.
 
+#include <weave/core/exit_code.hpp>
 #include <weave/core/file.hpp>
 #include <weave/core/text.hpp>
 
 #include <loomlink/commands/command.hpp>
+#include <loomlink/commands/names.hpp>
 #include <loomlink/commands/puller.hpp>
 #include <loomlink/commands/words.hpp>
 #include <memory>
@@ -30,6 +32,8 @@ Result<Believed> believed(const VerifyWords& words) {
     if (!words.trust_file.empty()) {
         WEAVE_TRY(const std::string bytes, read_file(words.trust_file, most_trust_bytes));
         auto trust = read_trust(bytes);
+        if (!trust && trust.error().code == ErrorCode::refused)  // it is not what its people signed either
+            return invalid(trust.error().message, trust.error().where).in(words.trust_file);
         if (!trust) return std::move(trust).error().in(words.trust_file);
         return Believed{*std::move(trust), {}};
     }
@@ -63,14 +67,16 @@ Json report_json(const FolderReport& report, const Status& recall, bool knows_re
         findings.push_back({{"file", finding.path},
                             {"trouble", trouble_word(finding.trouble)},
                             {"message", finding.message}});
-    return {{"loom", report.manifest.loom},
-            {"release", report.manifest.release},
-            {"design", report.manifest.design},
-            {"revision", report.manifest.revision},
-            {"files", report.manifest.files.size()},
-            {"findings", std::move(findings)},
-            {"recall_known", knows_recalls},
-            {"may_not_be_woven", recall ? Json(nullptr) : Json(recall.error().message)}};
+    Json json{{"loom", report.manifest.loom},
+              {"release", report.manifest.release},
+              {"design", report.manifest.design},
+              {"revision", report.manifest.revision},
+              {"files", report.manifest.files.size()},
+              {"findings", std::move(findings)},
+              {"recall_known", knows_recalls},
+              {"may_not_be_woven", recall ? Json(nullptr) : Json(recall.error().message)}};
+    if (!recall) json["error"] = error_json(recall.error());
+    return json;
 }
 
 std::string report_words(const FolderReport& report, bool knows_recalls) {
@@ -102,15 +108,16 @@ Status verify(const VerifyWords& words, CommandOutcome& outcome) {
 void add_verify_files_command(CLI::App& app, CommandOutcome& outcome) {
     CLI::App* const command = add_command(
         app, outcome, "verify-files",
-        "Prove offline that the files of a release are what people signed; exit status 1 where one is not, 4 "
-        "where the release was recalled",
+        "Prove offline that the files of a release are what people signed; exit status 1 where one is not, "
+        "or "
+        "the manifest itself is not, 3 where the folder has no manifest, 4 where the release was recalled",
         "loomlink verify-files /loom/release-5-0a1b2c3d4e5f --loom 'EP 1'");
     const auto words = std::make_shared<VerifyWords>();
     add_text(command, "FOLDER", words->folder, "the folder of the release, with its manifest.json")
         ->required();
     add_text(command, "--state", words->state_file, "what the terminal trusts and has seen (pull --state)")
         ->type_name("FILE");
-    add_text(command, "--loom", words->loom, "the same, of this loom, where pull keeps it")
+    add_loom_name(command, "--loom", words->loom, "the same, of this loom, where pull keeps it")
         ->type_name("LOOM");
     add_text(command, "--trust", words->trust_file, "a trust document, as trust show -o wrote it")
         ->type_name("FILE");

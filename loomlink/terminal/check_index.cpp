@@ -162,7 +162,7 @@ Result<TerminalState> adopt_trust(const TerminalState& state, std::span<const st
 Result<CheckedIndex> check_index(const TerminalState& state, std::string_view index_bytes, Instant now,
                                  const ConsistencyCheck& consistent) {
     auto opened = open_index(index_bytes, state.trust);
-    if (!opened) return std::move(opened).error().under("index");
+    if (!opened) return invalid(opened.error().message, opened.error().where).under("index");
     const ReleaseIndex& index = *opened;
     const LogHead& head = index.tree_head.head;
     WEAVE_CHECK_OK(check_subject(state, index));

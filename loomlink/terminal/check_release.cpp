@@ -53,14 +53,14 @@ Status check_match(const ReleaseManifest& manifest, const IndexEntry& entry, con
 Status check_file(const ReleasedFile& listed, const std::vector<PulledFile>& files) {
     const auto same = [&](const PulledFile& file) { return file.path == listed.path; };
     const auto pulled = std::find_if(files.begin(), files.end(), same);
-    if (pulled == files.end()) return refused("is missing among the files that came", listed.path);
-    if (std::count_if(files.begin(), files.end(), same) > 1) return refused("came twice", listed.path);
+    if (pulled == files.end()) return invalid("is missing among the files that came", listed.path);
+    if (std::count_if(files.begin(), files.end(), same) > 1) return invalid("came twice", listed.path);
     if (pulled->bytes.size() != listed.size)
-        return refused("has " + counted(pulled->bytes.size(), "byte") + " where " +
+        return invalid("has " + counted(pulled->bytes.size(), "byte") + " where " +
                            std::to_string(listed.size) + " were signed: cut, or of another release",
                        listed.path);
     if (sha256_hex(pulled->bytes) != listed.sha256)
-        return refused("is not the file that was signed: altered, or of another release", listed.path);
+        return invalid("is not the file that was signed: altered, or of another release", listed.path);
     return {};
 }
 
@@ -70,7 +70,7 @@ Status check_files(const ReleaseManifest& manifest, const std::vector<PulledFile
         const bool listed = std::any_of(manifest.files.begin(), manifest.files.end(),
                                         [&](const ReleasedFile& one) { return one.path == file.path; });
         if (!listed)
-            return refused("came with the release but does not belong to it", on_one_line(file.path));
+            return invalid("came with the release but does not belong to it", on_one_line(file.path));
     }
     return {};
 }
@@ -83,17 +83,23 @@ std::string folder_of(const IndexEntry& entry) {
 
 }  // namespace
 
+Result<ReleaseManifest> check_manifest(std::string_view bytes, const TrustDocument& trust) {
+    auto manifest = open_manifest(bytes, trust);
+    if (!manifest) return invalid(manifest.error().message, manifest.error().where);
+    return manifest;
+}
+
 Result<CheckedRelease> check_release(const CheckedIndex& checked, std::uint64_t number,
                                      std::string_view manifest_bytes, std::vector<PulledFile> files,
                                      Instant now) {
     WEAVE_TRY(const IndexEntry entry, released_entry(checked, number, now));
     if (manifest_bytes.size() > most_manifest_bytes)
-        return refused(
+        return invalid(
             "is too large: a manifest has at most " + std::to_string(most_manifest_bytes) + " bytes",
             "manifest");
     if (sha256_hex(manifest_bytes) != entry.manifest_sha256)
-        return refused("is not the one that the index lists for " + release_name(number), "manifest");
-    auto manifest = open_manifest(manifest_bytes, checked.state.trust);
+        return invalid("is not the one that the index lists for " + release_name(number), "manifest");
+    auto manifest = check_manifest(manifest_bytes, checked.state.trust);
     if (!manifest) return std::move(manifest).error().under("manifest");
     WEAVE_CHECK_OK(check_match(*manifest, entry, checked.state));
     WEAVE_CHECK_OK(check_files(*manifest, files));

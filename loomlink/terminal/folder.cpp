@@ -40,6 +40,19 @@ std::optional<FileFinding> look_at(const fs::path& file, std::uint64_t size, con
     return {};
 }
 
+/// Whether a manifest can be what people signed before it is read; one that is missing is told by the
+/// reading.
+Status check_manifest_file(const fs::path& place) {
+    std::error_code code;
+    const fs::file_status status = fs::symlink_status(place, code);
+    if (!fs::exists(status)) return {};
+    if (!fs::is_regular_file(status))
+        return invalid("is not a file of its own, but a link or something else", place.string());
+    const auto size = fs::file_size(place, code);
+    if (code || size <= most_manifest_bytes) return {};
+    return invalid("is too large for a manifest: " + counted(size, "byte"), place.string());
+}
+
 void look_for_more(const fs::path& folder, FolderReport& report) {
     std::error_code code;
     for (fs::directory_iterator entry(folder, code), end; !code && entry != end; entry.increment(code)) {
@@ -77,10 +90,13 @@ void remember(TerminalState& state, const CheckedRelease& release) {
 
 /// Whether the folder holds exactly these files, byte for byte.
 Status check_placed(const TrustDocument& trust, const CheckedRelease& release, const fs::path& folder) {
-    WEAVE_TRY(const FolderReport report, verify_files(folder, trust));
-    if (!report.findings.empty())
-        return refused(folder, report.findings.front().path + ": " + report.findings.front().message);
-    if (body_sha256(report.manifest.document) != body_sha256(release.manifest.document))
+    const auto report = verify_files(folder, trust);
+    if (!report && report.error().code == ErrorCode::system) return report.error();
+    if (!report) return invalid(report.error().message, report.error().where);
+    if (!report->findings.empty())
+        return invalid(report->findings.front().path + ": " + report->findings.front().message,
+                       folder.string());
+    if (body_sha256(report->manifest.document) != body_sha256(release.manifest.document))
         return refused(folder, "holds another release");
     return {};
 }
@@ -170,10 +186,9 @@ Result<fs::path> place_release(TerminalState& state, const CheckedRelease& relea
 
 Result<FolderReport> verify_files(const fs::path& folder, const TrustDocument& trust) {
     const fs::path place = folder / manifest_name;
-    std::error_code code;
-    if (fs::is_symlink(fs::symlink_status(place, code))) return refused(place, "is a symbolic link");
+    WEAVE_CHECK_OK(check_manifest_file(place));
     WEAVE_TRY(const std::string bytes, read_file(place, most_manifest_bytes));
-    auto manifest = open_manifest(bytes, trust);
+    auto manifest = check_manifest(bytes, trust);
     if (!manifest) return std::move(manifest).error().in(place.string());
     FolderReport report{std::move(*manifest), {}};
     for (const ReleasedFile& file : report.manifest.files)

@@ -12,8 +12,8 @@ namespace weave::loomlink {
 /// Writes a release into its folder below `releases`, whole or not at all: the files go into a folder beside
 /// it, are read back and hashed there, and only then get their name. Before that it is noted in `state`, and
 /// the state is saved to `state_file`, so that a recall finds the files even if the power fails in between. A
-/// folder that is there already and holds exactly this release is left as it is. Gives the folder. Refused:
-/// one that holds anything else.
+/// folder that is there already and holds exactly this release is left as it is. Gives the folder. Errors:
+/// one whose bytes are not as signed (`invalid`); one that holds another release (refused).
 Result<std::filesystem::path> place_release(TerminalState& state, const CheckedRelease& release,
                                             const std::filesystem::path& state_file,
                                             const std::filesystem::path& releases);
@@ -37,8 +37,8 @@ inline constexpr std::size_t most_folder_findings = 1000;
 
 /// Holds a folder against the manifest in it, offline: its signatures under the newest trust document that is
 /// known here, every file by size and hash, and that nothing else lies there. Errors: a manifest that is
-/// missing, forged, of a revoked key or of another site. What happened since (a recall) only the server
-/// knows: see check_recall() for what the terminal saw.
+/// missing (bad_input); forged, of a revoked key, of another site, or no file of its own (`invalid`). What
+/// happened since (a recall) only the server knows: see check_recall() for what the terminal saw.
 Result<FolderReport> verify_files(const std::filesystem::path& folder, const TrustDocument& trust);
 
 /// Refused where this terminal has seen that the release is for another loom, other than what it had seen

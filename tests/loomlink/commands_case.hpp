@@ -43,7 +43,8 @@ struct Ended {
 /// The program `loomlink` under way: without a terminal, at home in a folder of the test.
 class Running {
   public:
-    Running(std::vector<std::string> words, const std::filesystem::path& home, const std::string& input = {})
+    Running(std::vector<std::string> words, const std::filesystem::path& home, const std::string& input = {},
+            const std::vector<std::string>& more_environment = {})
         : m_base(home / ("run-" + std::to_string(++runs()))) {
         REQUIRE(write_file(name(".in"), input));
         posix_spawn_file_actions_t actions;
@@ -60,6 +61,7 @@ class Running {
         words.insert(words.begin(),
                      (std::filesystem::path(WEAVE_PROGRAM).parent_path() / "loomlink").string());
         std::vector<std::string> environment{"HOME=" + home.string(), "PATH=/usr/bin:/bin"};
+        environment.insert(environment.end(), more_environment.begin(), more_environment.end());
         auto word_list = pointers(words), variables = pointers(environment);
         REQUIRE(::posix_spawn(&m_process, word_list.front(), &actions, &attributes, word_list.data(),
                               variables.data()) == 0);
@@ -117,6 +119,7 @@ struct CommandMill {
     std::uint16_t port = 0;
     bool plain = false;
     std::filesystem::path heads;  ///< a second place for the heads of the log; none: empty
+    std::filesystem::path certificate, key;  ///< to serve with; empty: the site's own
 
     explicit CommandMill(bool without_tls = false) : plain(without_tls) {
         put_private("password", std::string(password) + "\n");
@@ -127,6 +130,8 @@ struct CommandMill {
         ServeConfig config;
         config.port = port;
         config.plain = plain;
+        config.certificate = certificate;
+        config.key = key;
         config.hosts = {"127.0.0.1", "localhost"};
         config.heads = heads;
         DeskSettings settings;

@@ -58,6 +58,10 @@ TEST_CASE("a loom pulls what was released, finds what was altered, and gives up 
     CHECK_THAT(unknown.err, Catch::Contains("--trust"));
     const Ended false_trust = mill.run(mill.pull_words({"--trust", std::string(64, 'a')}));
     CHECK(false_trust.code == 4);
+    const Ended no_trust = mill.run(mill.pull_words({"--trust", "1234"}));
+    CHECK(no_trust.code == 3);
+    CHECK_THAT(no_trust.err,
+               Catch::Contains("--trust: must be 64") && Catch::Contains("loomlink trust show"));
     CHECK(release_folders(mill.at("loom")).empty());
 
     const Ended pulled = mill.run(mill.pull_words({"--trust", mill.trust_fingerprint()}));
@@ -73,19 +77,34 @@ TEST_CASE("a loom pulls what was released, finds what was altered, and gives up 
 
     CHECK(verify(mill, folder).code == 0);
     mill.done("mary", {"trust", "show", "-o", mill.at("trust.json")});
-    CHECK(mill.run({"verify-files", folder, "--trust", mill.at("trust.json")}).code == 0);
+    const auto by_paper = [&] {
+        return mill.run({"verify-files", folder, "--trust", mill.at("trust.json"), "--json"});
+    };
+    CHECK(by_paper().code == 0);
+    std::string paper = read_file(mill.at("trust.json")).value();
+    char& digit = paper[paper.find("\"value\":\"") + 9];
+    digit = digit == '0' ? '1' : '0';
+    REQUIRE(write_file(mill.at("trust.json"), paper));
+    const Ended false_paper = by_paper();
+    CHECK(false_paper.code == 1);
+    CHECK(false_paper.json().at("error").at("kind") == "invalid");
     const fs::path file = some_file(folder);
     flip(file, 0);
     const Ended altered = verify(mill, folder);
     CHECK(altered.code == 1);
     CHECK(altered.json().at("findings").at(0).at("file") == file.filename().string());
-    CHECK(mill.run(mill.pull_words()).code == 4);  // not written over: a person has to look
+    const Ended left = mill.run(mill.pull_words());  // not written over: a person has to look
+    CHECK(left.code == 1);
+    CHECK(left.json().at("error").at("kind") == "invalid");
     flip(file, 0);
     REQUIRE(write_file(folder / "more.txt", "more"));
     CHECK(verify(mill, folder).json().at("findings").at(0).at("trouble") == "too many");
     fs::remove(folder / "more.txt");
     flip(folder / manifest_name, read_file(folder / manifest_name).value().find("\"picks\":") + 8);
-    CHECK(verify(mill, folder).code == 4);
+    const Ended forged = verify(mill, folder);
+    CHECK(forged.code == 1);
+    CHECK(forged.json().at("error").at("kind") == "invalid");
+    CHECK_THAT(forged.err, Catch::Contains("manifest.json") && Catch::Contains("forged or altered"));
     flip(folder / manifest_name, read_file(folder / manifest_name).value().find("\"picks\":") + 8);
     CHECK(verify(mill, folder).code == 0);
 
@@ -97,6 +116,8 @@ TEST_CASE("a loom pulls what was released, finds what was altered, and gives up 
     CHECK_FALSE(fs::exists(folder));
     const Ended kept = verify(mill, mill.at("kept"));
     CHECK(kept.code == 4);
+    CHECK(kept.json().at("error").at("kind") == "refused");
+    CHECK(kept.json().at("may_not_be_woven").is_string());
     CHECK_THAT(kept.err, Catch::Contains("must not be woven"));
     CHECK(mill.run(mill.pull_words({"--release", "1"})).code == 4);
 }

@@ -14,8 +14,9 @@ TEST_CASE("a call that makes no sense ends with 2 and says what is missing", "[c
         {{}, "name a command"},
         {{"weave"}, "there is no command 'weave'"},
         {{"--loud"}, "there is no option '--loud'"},
-        {{"user"}, "name what to do"},
-        {{"user", "bake"}, "there is no command 'bake' of user"},
+        {{"user"},
+         "name what to do; user has list, invite, join, roles, disable, enable, reset and password"},
+        {{"user", "bake"}, "there is no command 'bake' of user; user has list, invite"},
         {{"login", "--name", "dora"}, "say which server"},
         {{"login", "https://127.0.0.1:1"}, "say who you are"},
         {{"login", "https://127.0.0.1:1", "--name", "dora"}, "--password-file"},
@@ -30,6 +31,22 @@ TEST_CASE("a call that makes no sense ends with 2 and says what is missing", "[c
         {{"audit", "verify", "x", "--key", "a", "--trust", "b"}, "one of --key, --trust and --state"},
         {{"verify-files", "x"}, "one of --state, --loom and --trust"},
         {{"log", "--from", "-1"}, "--from"},
+        {{"design", "make", "a/b"}, "'a/b' is no name: it must be 1 to 64 letters"},
+        {{"design", "show", ".."}, "'..' is no name"},
+        {{"submit", "", "1", "--reason", "x"}, "'' is no name"},
+        {{"submit", "cloth", "1", "--reason", "x", "--loom", "a/b"}, "'a/b' is no name"},
+        {{"diff", "../cloth", "1", "2"}, "'../cloth' is no name"},
+        {{"save", "a.weave", "a b", "-m", "x"}, "'a b' is no name"},
+        {{"release", "cloth", "1", "--loom", "..", "--reason", "x"}, "'..' is no name"},
+        {{"loom", "show", ""}, "'' is no name"},
+        {{"faults", "seven/../eight"}, "'seven/../eight' is no name"},
+        {{"pull", "..", "--to", "x"}, "'..' is no name"},
+        {{"withdraw", "a/b", "1", "--reason", "x"}, "'a/b' is no name"},
+        {{"verify-files", "x", "--loom", "../x"}, "'../x' is no name"},
+        {{"user", "disable", ".."}, "'..' is no name"},
+        {{"signer", "revoke", "../x"}, "'../x' is no name"},
+        {{"log", "--design", "a/b"}, "'a/b' is no name"},
+        {{"serve", ""}, "folder: must not be empty"},
     };
     for (const Call& call : calls) {
         const Ended ended = Running(call.words, folder.path).wait();
@@ -37,6 +54,22 @@ TEST_CASE("a call that makes no sense ends with 2 and says what is missing", "[c
         CHECK(ended.code == 2);
         CHECK(ended.out.empty());
         CHECK_THAT(ended.err, Catch::Contains(call.says));
+    }
+}
+
+TEST_CASE("a group without a command tells those that it has", "[commands]") {
+    const TemporaryFolder folder;
+    const std::vector<std::pair<std::string, std::string>> groups{
+        {"design", "list, make and show"},      {"loom", "list, show, add, profile and operators"},
+        {"trust", "show, pending and publish"}, {"key", "list and show"},
+        {"audit", "head, bundle and verify"},   {"evidence", "add and list"}};
+    for (const auto& [group, commands] : groups) {
+        const Ended ended = Running({group, "--json"}, folder.path).wait();
+        INFO(group << ": " << ended.err);
+        CHECK(ended.code == 2);
+        const Json error = ended.json().at("error");
+        CHECK(error.at("kind") == "usage");
+        CHECK(error.at("message") == "name what to do; " + group + " has " + commands);
     }
 }
 
@@ -94,7 +127,10 @@ TEST_CASE("a server that is not the one that is meant gets no password", "[comma
     CHECK(untrusted.code == 4);
     CHECK_THAT(untrusted.err, Catch::Contains("not trusted"));
     CHECK(log_in({"--fingerprint", std::string(64, 'a')}).code == 4);
-    CHECK(log_in({"--fingerprint", "4f3a"}).code == 3);
+    const Ended too_short = log_in({"--fingerprint", "4f3a"});
+    CHECK(too_short.code == 3);
+    CHECK_THAT(too_short.err,
+               Catch::Contains("--fingerprint: must be 64") && Catch::Contains("when it starts"));
     CHECK_FALSE(std::filesystem::exists(mill.at("other")));
     std::string colons;
     for (const char c : mill.fingerprint())
@@ -141,5 +177,4 @@ TEST_CASE("files that cannot be understood are bad input, with their name", "[co
     CHECK(profile.code == 3);
     CHECK_THAT(profile.err, Catch::Contains("bad.weave"));
     CHECK(mill.as("dora", {"design", "show", "nothing"}).code == 4);
-    CHECK(mill.as("dora", {"design", "make", "a/b"}).code == 3);
 }

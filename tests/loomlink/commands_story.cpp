@@ -1,5 +1,8 @@
 #include "commands_case.hpp"
 
+#include <algorithm>
+#include <sstream>
+
 using namespace weave;
 using namespace weave::loomlink;
 using namespace weave::loomlink::testing;
@@ -41,6 +44,83 @@ TEST_CASE("a design goes from a first file to the loom and back by commands alon
     const Json log = mill.done("emil", {"log", "--design", "cloth", "--limit", "3"});
     CHECK(log.at("events").size() == 3);
     CHECK(mill.done("emil", {"log", "--from", "0", "--limit", "2"}).at("events")[0].at("seq") == 0);
+}
+
+TEST_CASE("a finding of one rule for one loom is waived with a reason, and nothing else passes by that",
+          "[commands]") {
+    CommandMill mill;
+    mill.set_up();
+    Json strict = parse_json(read_file(WEAVE_SOURCE_DIR "/db/looms/tc2.json").value()).value();
+    strict["limits"] = {{"float_face", 1}, {"float_back", 1}};
+    strict["severities"] = {{"float.face", "error"}, {"float.back", "error"}};
+    REQUIRE(write_file(mill.at("strict.json"), strict.dump()));
+    mill.done("mary", {"loom", "profile", "seven", mill.at("strict.json")});
+    mill.save("twill-2-2");
+    const auto waive = [&](const std::string& who, const std::string& rule) {
+        return mill.as(who, {"waive", "cloth", "1", "--rule", rule, "--loom", "seven", "--reason", "Wanted"},
+                       true);
+    };
+    const auto approve = [&] {
+        return mill.as("abel", {"approve", "cloth", "1", "--reason", "Looked at"}, true);
+    };
+    CHECK(waive("abel", "float.face").code == 4);  // nobody has submitted it
+    mill.signs("dora", {"submit", "cloth", "1"});
+    CHECK(mill.as("abel", {"check", "cloth", "1", "--loom", "seven"}).code == 1);
+    CHECK(approve().code != 0);
+    CHECK(waive("emil", "float.face").code == 4);  // no approver
+    CHECK(waive("dora", "float.face").code == 4);  // the author
+    CHECK(mill.as("abel", {"waive", "cloth", "1", "--rule", "float.face", "--loom", "seven"}, true).code ==
+          2);
+
+    const Ended waived = waive("abel", "float.face");
+    INFO(waived.err);
+    REQUIRE(waived.code == 0);
+    const Ended half = approve();
+    CHECK(half.code != 0);
+    CHECK_THAT(half.err, Catch::Contains("float.back") && !Catch::Contains("float.face"));
+    const Ended in_words =
+        mill.run({"waive", "cloth", "1", "--rule", "float.back", "--loom", "seven", "--reason", "Wanted too",
+                  "--session", mill.at("abel"), "--password-file", mill.at("password")});
+    CHECK(in_words.out == "cloth, revision 1: float.back waived for seven\n");
+    CHECK(approve().code == 0);
+    CHECK(mill.release("1").at("state") == "released");
+    const Json waivers = mill.done("emil", {"design", "show", "cloth", "1"}).at("waivers");
+    REQUIRE(waivers.size() == 2);
+    CHECK(waivers.at(0) ==
+          Json{{"rule", "float.face"}, {"loom", "seven"}, {"by", "The abel"}, {"reason", "Wanted"}});
+}
+
+TEST_CASE("the log in words tells a line a record: of what, why, and signed with which key", "[commands]") {
+    CommandMill mill;
+    mill.set_up();
+    mill.save("twill-2-2");
+    mill.approve("1");
+    mill.release("1");
+    REQUIRE(mill.run(mill.pull_words({"--trust", mill.trust_fingerprint()})).code == 0);
+    const Json events = mill.done("emil", {"log", "--from", "0", "--limit", "1000"}).at("events");
+    const Ended told = mill.run({"log", "--from", "0", "--limit", "1000", "--session", mill.at("emil")});
+    REQUIRE(told.code == 0);
+    std::vector<std::string> lines;
+    std::istringstream all(told.out);
+    for (std::string line; std::getline(all, line);) lines.push_back(line);
+    REQUIRE(lines.size() == events.size());
+    const std::string id = mill.done("abel", {"key", "show"}).at("id").get<std::string>();
+    const std::string key = id.substr(0, 16);
+    const auto says = [&](const std::string& kind, const std::vector<std::string>& pieces) {
+        INFO(kind << " in\n" << told.out);
+        CHECK(std::any_of(lines.begin(), lines.end(), [&](const std::string& line) {
+            const auto holds = [&](const std::string& text) { return line.find(text) != std::string::npos; };
+            return holds(" " + kind + " ") && std::all_of(pieces.begin(), pieces.end(), holds);
+        }));
+    };
+    says("person.joined", {"mary", "roles admin"});
+    says("person.invited", {"roles designer approver"});
+    says("revision.saved", {"cloth", "branch main", "message \"A twill-2-2\""});
+    says("revision.approved", {"revision 1", "because \"It is so\"", "signed by \"The abel\", key " + key});
+    says("release.made", {"revision 1, loom seven, release 1", "signed by \"The abel\", key " + key});
+    says("release.signed", {"loom seven, release 1", "key " + key});
+    says("release.pulled", {"otto", "loom seven, release 1", "file "});
+    CHECK(told.out.find(id) == std::string::npos);  // in full only in the JSON
 }
 
 TEST_CASE("a step that the server knows of already is refused with its reason", "[commands]") {

@@ -33,14 +33,57 @@ TEST_CASE("one command makes a site, serves it, and ends in good order when aske
     CHECK(log.find(code) == std::string::npos);
 }
 
+TEST_CASE("a new site is told where it was made, and is made nowhere else than where it was meant") {
+    namespace fs = std::filesystem;
+    const TemporaryFolder folder;
+    const std::string told = folder.path / "told.txt";
+    const auto serve = [&](const std::string& site) {
+        Program program({"serve", site, "--port", "0", "--plain", "--json"}, told);
+        const Json answer = parse_json(program.line()).value();
+        program.end(SIGTERM);
+        return std::pair(answer, program.exit_code());
+    };
+    const auto [mistyped, mistyped_code] = serve(folder.path / "mils" / "site");
+    CHECK(mistyped_code == 3);
+    CHECK_THAT(mistyped.at("error").at("message").get<std::string>(), Catch::Contains("folder above it"));
+    CHECK_FALSE(fs::exists(folder.path / "mils"));
+    const fs::path letters = folder.path / "letters";
+    fs::create_directory(letters);
+    REQUIRE(write_file(letters / "letter.txt", "dear"));
+    const auto [other, other_code] = serve(letters);
+    CHECK(other_code == 4);
+    CHECK_THAT(other.at("error").at("message").get<std::string>(), Catch::Contains("not empty"));
+    CHECK(std::distance(fs::directory_iterator(letters), fs::directory_iterator()) == 1);
+    REQUIRE(write_file(folder.path / "file", "x"));
+    CHECK(serve(folder.path / "file").second != 0);
+
+    const auto [made, made_code] = serve(folder.path / "." / "site");
+    CHECK(made_code == 0);
+    CHECK(made.at("made_in") == (folder.path / "site").string());
+    const auto [again, again_code] = serve(folder.path / "site");
+    CHECK(again_code == 0);
+    CHECK_FALSE(again.contains("made_in"));
+
+    fs::create_directory(folder.path / "empty");
+    Program in_words({"serve", folder.path / "empty", "--port", "0", "--plain"}, told);
+    CHECK(in_words.line() ==
+          "There was no site in " + (folder.path / "empty").string() + ": made a new, empty one");
+    in_words.end(SIGTERM);
+    in_words.exit_code();
+}
+
 TEST_CASE("init makes a site once") {
     const TemporaryFolder folder;
     const std::string told = folder.path / "told.txt", site = folder.path / "site";
     Program first({"init", site, "--site", "the mill", "--json"}, told);
     const Json made = parse_json(first.line()).value();
     CHECK(made.at("site") == "the mill");
+    CHECK(made.at("made_in") == site);
     CHECK(made.contains("code"));
     CHECK(first.exit_code() == 0);
+    Program mistyped({"init", folder.path / "mils" / "site", "--json"}, told);
+    CHECK(mistyped.exit_code() == 3);
+    CHECK_FALSE(std::filesystem::exists(folder.path / "mils"));
     Program second({"init", site, "--json"}, told);
     CHECK(parse_json(second.line()).value().at("error").at("exit") == 4);
     CHECK(second.exit_code() == 4);

@@ -142,4 +142,18 @@ void check_refused(const Outcome& outcome, const std::string& words) {
     CHECK_THAT(outcome.error().text(), Catch::Contains(words));
 }
 
+/// A finding: bytes that are not what was signed, which a program tells by its exit status from what was
+/// signed and may not be used.
+template <class Outcome>
+void check_forged(const Outcome& outcome, const std::string& words) {
+    check_refused(outcome, words);
+    CHECK(outcome.error().code == ErrorCode::invalid);
+}
+/// Signed as it should be, and yet not to be used.
+template <class Outcome>
+void check_forbidden(const Outcome& outcome, const std::string& words) {
+    check_refused(outcome, words);
+    CHECK(outcome.error().code == ErrorCode::refused);
+}
+
 }  // namespace weave::testing

@@ -10,6 +10,8 @@
 
 using namespace weave;
 using namespace weave::loomlink;
+using testing::check_forbidden;
+using testing::check_forged;
 using testing::check_refused;
 using testing::Site;
 namespace fs = std::filesystem;
@@ -77,8 +79,8 @@ TEST_CASE("two releases stand beside each other, and the same again changes noth
           placed.folder);
     CHECK(load_state(placed.state_file).value().placed.size() == 2);
     REQUIRE(write_file(placed.folder / "shoe.jc5", "other"));
-    check_refused(place_release(placed.state, placed.release, placed.state_file, placed.releases),
-                  "shoe.jc5: differs");
+    check_forged(place_release(placed.state, placed.release, placed.state_file, placed.releases),
+                 "shoe.jc5: differs");
     CHECK(read_file(placed.folder / "shoe.jc5").value() == "other");
 }
 
@@ -121,7 +123,10 @@ TEST_CASE("a link to the right bytes is no file of a release") {
     CHECK(placed.findings() == Told{"shoe.jc5: is not a file of its own, but a link or something else"});
     fs::rename(placed.folder / "manifest.json", placed.home.path / "manifest");
     fs::create_symlink(placed.home.path / "manifest", placed.folder / "manifest.json");
-    check_refused(verify_files(placed.folder, placed.state.trust), "is a symbolic link");
+    check_forged(verify_files(placed.folder, placed.state.trust), "manifest.json: is not a file of its own");
+    fs::remove(placed.folder / "manifest.json");
+    fs::create_directory(placed.folder / "manifest.json");
+    check_forged(verify_files(placed.folder, placed.state.trust), "manifest.json: is not a file of its own");
 }
 
 TEST_CASE("a folder without a manifest that counts is refused as a whole") {
@@ -129,34 +134,39 @@ TEST_CASE("a folder without a manifest that counts is refused as a whole") {
     const fs::path manifest = placed.folder / "manifest.json";
     REQUIRE(write_file(
         manifest, Site::sign_manifest(Site::manifest_terms(2), {&placed.site.anna, &placed.site.thief})));
-    check_refused(verify_files(placed.folder, placed.state.trust), "unknown or revoked");
+    check_forged(verify_files(placed.folder, placed.state.trust), "unknown or revoked");
     REQUIRE(write_file(manifest, placed.site.manifest(2) + " "));
-    check_refused(verify_files(placed.folder, placed.state.trust), "manifest.json: is not in canonical form");
+    check_forged(verify_files(placed.folder, placed.state.trust), "manifest.json: is not in canonical form");
+    REQUIRE(write_file(manifest, std::string(most_manifest_bytes + 1, ' ')));
+    check_forged(verify_files(placed.folder, placed.state.trust),
+                 "manifest.json: is too large for a manifest");
     REQUIRE(write_file(manifest, placed.site.manifest(1)));  // of another release, soundly signed
     CHECK(placed.findings().size() == 2);
     fs::remove(manifest);
-    check_refused(verify_files(placed.folder, placed.state.trust), "cannot open");
+    const auto missing = verify_files(placed.folder, placed.state.trust);
+    check_refused(missing, "cannot open");
+    CHECK(missing.error().code == ErrorCode::bad_input);
     TrustDocument terms = placed.site.trust_terms(2);
     terms.keys.erase(terms.keys.begin() + 2);
     REQUIRE(write_file(manifest, placed.site.manifest(2)));
     const TrustDocument newer =
         read_trust(Site::sign_trust(terms, {&placed.site.anna, &placed.site.ben})).value();
-    check_refused(verify_files(placed.folder, newer), "trust document 2 does not know: unknown or revoked");
+    check_forged(verify_files(placed.folder, newer), "trust document 2 does not know: unknown or revoked");
 }
 
 TEST_CASE("what this terminal saw of a release is held against its folder") {
     Placed placed;
     ReleaseManifest manifest = placed.release.manifest;
     manifest.loom = "loom 8";
-    check_refused(check_recall(placed.state, manifest), "is for the loom 'loom 8'");
+    check_forbidden(check_recall(placed.state, manifest), "is for the loom 'loom 8'");
     manifest = placed.release.manifest;
     manifest.revision_sha256 = Site::revision(1);
-    check_refused(check_recall(placed.state, manifest), "is another one than this terminal has seen");
+    check_forbidden(check_recall(placed.state, manifest), "is another one than this terminal has seen");
     manifest = placed.release.manifest;
     manifest.document.body["picks"] = 5;
-    check_refused(check_recall(placed.state, manifest), "is another one than this terminal has seen");
+    check_forbidden(check_recall(placed.state, manifest), "is another one than this terminal has seen");
     placed.recall(2);
-    check_refused(check_recall(placed.state, placed.release.manifest), "release 2 was withdrawn");
+    check_forbidden(check_recall(placed.state, placed.release.manifest), "release 2 was withdrawn");
 }
 
 TEST_CASE("what is not recalled stays") {

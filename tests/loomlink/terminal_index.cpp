@@ -7,6 +7,8 @@
 
 using namespace weave;
 using namespace weave::loomlink;
+using testing::check_forbidden;
+using testing::check_forged;
 using testing::check_refused;
 using testing::Site;
 
@@ -55,11 +57,11 @@ TEST_CASE("a forged index is refused, whoever forged it") {
         return used.check(Site::sign(purpose, body, {&pair}), 31);
     };
     REQUIRE(signed_by(Purpose::release_index, used.site.stamp));
-    check_refused(signed_by(Purpose::release_index, used.site.thief), "does not know: unknown or revoked");
-    check_refused(signed_by(Purpose::release_index, used.site.anna), "does not have the role stamp");
-    check_refused(signed_by(Purpose::release_index, used.site.log), "does not have the role stamp");
-    check_refused(signed_by(Purpose::tree_head, used.site.stamp), "forged or altered");
-    check_refused(
+    check_forged(signed_by(Purpose::release_index, used.site.thief), "does not know: unknown or revoked");
+    check_forged(signed_by(Purpose::release_index, used.site.anna), "does not have the role stamp");
+    check_forged(signed_by(Purpose::release_index, used.site.log), "does not have the role stamp");
+    check_forged(signed_by(Purpose::tree_head, used.site.stamp), "forged or altered");
+    check_forged(
         used.check(Site::sign(Purpose::release_index, body, {&used.site.stamp, &used.site.thief}), 31),
         "unknown or revoked");
 }
@@ -75,10 +77,10 @@ TEST_CASE("an index for others is refused") {
 
 TEST_CASE("rollback: an older epoch is refused, and so is an older stamp of the same one") {
     const Used used;
-    check_refused(used.check(used.site.index(9, 2, 30), 31), "an old one is being replayed");
-    check_refused(used.check(used.site.index(10, 2, -5), 1), "before one that this terminal has seen");
-    check_refused(used.check(used.site.index(10, 3, 30), 31),
-                  "lists other releases than the index of the same epoch");
+    check_forbidden(used.check(used.site.index(9, 2, 30), 31), "an old one is being replayed");
+    check_forbidden(used.check(used.site.index(10, 2, -5), 1), "before one that this terminal has seen");
+    check_forbidden(used.check(used.site.index(10, 3, 30), 31),
+                    "lists other releases than the index of the same epoch");
 }
 
 TEST_CASE("freeze: an index that has run out is refused, and a clock that was turned back does not save it") {
@@ -103,16 +105,16 @@ TEST_CASE("no stamp holds for long, whatever it says") {
 
 TEST_CASE("fast-forward: an epoch beyond the log that it shows is refused") {
     const Used used;
-    check_refused(used.stamped([](auto& i) { i.epoch = 23; }),
-                  "but its log has only 22 records: it runs ahead");
+    check_forbidden(used.stamped([](auto& i) { i.epoch = 23; }),
+                    "but its log has only 22 records: it runs ahead");
     CHECK(used.stamped([](auto& i) { i.epoch = 22; }));
-    check_refused(used.stamped([](auto& i) { i.epoch = static_cast<std::uint64_t>(most_count); }),
-                  "it runs ahead");
-    check_refused(used.stamped([&](auto& i) {
+    check_forbidden(used.stamped([](auto& i) { i.epoch = static_cast<std::uint64_t>(most_count); }),
+                    "it runs ahead");
+    check_forged(used.stamped([&](auto& i) {
         i.epoch = 1000;
         i.tree_head = used.site.head(1000, used.site.stamp);  // who has the stamp key alone
     }),
-                  "does not have the role log");
+                 "does not have the role log");
 }
 
 TEST_CASE("a log that is not the one seen before is refused") {
@@ -165,15 +167,15 @@ TEST_CASE("an index in bad form is refused with its place") {
         change(json);
         return used.check(Site::sign(Purpose::release_index, json, {&used.site.stamp}), 31);
     };
-    check_refused(body([](Json& j) { j["version"] = 2; }), "newer than this program");
-    check_refused(body([](Json& j) { j["format"] = "other"; }), "must be weave-release-index");
-    check_refused(body([](Json& j) { j["releases"][0]["state"] = "gone"; }), "index.body.releases[0].state");
-    check_refused(body([](Json& j) { j["releases"][1]["number"] = 1; }),
-                  "must be greater than the number before");
-    check_refused(body([](Json& j) { j["releases"][1]["more"] = 1; }), "is not known here");
-    check_refused(body([](Json& j) { j["epoch"] = -1; }), "index.body.epoch");
-    check_refused(body([](Json& j) { j.erase("tree_head"); }), "tree_head");
-    check_refused(used.check(std::string(most_index_bytes + 1, ' '), 31), "is too large");
+    check_forged(body([](Json& j) { j["version"] = 2; }), "newer than this program");
+    check_forged(body([](Json& j) { j["format"] = "other"; }), "must be weave-release-index");
+    check_forged(body([](Json& j) { j["releases"][0]["state"] = "gone"; }), "index.body.releases[0].state");
+    check_forged(body([](Json& j) { j["releases"][1]["number"] = 1; }),
+                 "must be greater than the number before");
+    check_forged(body([](Json& j) { j["releases"][1]["more"] = 1; }), "is not known here");
+    check_forged(body([](Json& j) { j["epoch"] = -1; }), "index.body.epoch");
+    check_forged(body([](Json& j) { j.erase("tree_head"); }), "tree_head");
+    check_forged(used.check(std::string(most_index_bytes + 1, ' '), 31), "is too large");
 }
 
 TEST_CASE("a flipped bit anywhere in an index is refused") {

@@ -6,6 +6,8 @@
 
 using namespace weave;
 using namespace weave::loomlink;
+using testing::check_forbidden;
+using testing::check_forged;
 using testing::check_refused;
 using testing::Site;
 
@@ -59,18 +61,18 @@ TEST_CASE("a release whose every byte is right is taken") {
 TEST_CASE("a manifest stands on enough different people with a release key") {
     Pull pull;
     const Site& site = pull.site;
-    check_refused(pull.signed_by({&site.anna}), "this must be signed by 2 different people, and by 1 is");
-    check_refused(pull.signed_by({&site.anna, &site.thief}), "unknown or revoked");
-    check_refused(pull.signed_by({&site.anna, &site.stamp}), "does not have the role release");
-    check_refused(pull.signed_by({&site.anna, &site.carl, &site.log}), "does not have the role release");
+    check_forged(pull.signed_by({&site.anna}), "this must be signed by 2 different people, and by 1 is");
+    check_forged(pull.signed_by({&site.anna, &site.thief}), "unknown or revoked");
+    check_forged(pull.signed_by({&site.anna, &site.stamp}), "does not have the role release");
+    check_forged(pull.signed_by({&site.anna, &site.carl, &site.log}), "does not have the role release");
     SignedDocument twice{manifest_body(Site::manifest_terms(2)), {}};
     const Signature anna = sign_body(site.anna, Purpose::release_manifest, twice.body);
     twice.signatures = {anna, anna};
     pull.manifest = write_signed(twice);
-    check_refused(pull.pull(), "a key counts once");
+    check_forged(pull.pull(), "a key counts once");
     twice.signatures = {anna, sign_body(site.carl, Purpose::statement, twice.body)};
     pull.manifest = write_signed(twice);
-    check_refused(pull.pull(), "forged or altered");
+    check_forged(pull.pull(), "forged or altered");
 }
 
 TEST_CASE("a key that lost its role releases nothing; signed again by others, the release stands") {
@@ -85,7 +87,7 @@ TEST_CASE("a key that lost its role releases nothing; signed again by others, th
         checked.index.releases[1].manifest_sha256 = sha256_hex(manifest);
         return check_release(checked, 2, manifest, pull.files, Site::at(2));
     };
-    check_refused(judged(pull.manifest), "of carl, which does not have the role release");
+    check_forged(judged(pull.manifest), "of carl, which does not have the role release");
     CHECK(judged(Site::sign_manifest(Site::manifest_terms(2), {&site.anna, &site.ben})));
 }
 
@@ -96,25 +98,25 @@ TEST_CASE("a key that was revoked releases nothing") {
     const std::vector<std::string> documents{Site::sign_trust(terms, {&pull.site.anna, &pull.site.ben})};
     CheckedIndex checked = pull.checked();
     checked.state = adopt_trust(checked.state, documents).value();
-    check_refused(check_release(checked, 2, pull.manifest, pull.files, Site::at(2)),
-                  "which trust document 2 does not know: unknown or revoked");
+    check_forged(check_release(checked, 2, pull.manifest, pull.files, Site::at(2)),
+                 "which trust document 2 does not know: unknown or revoked");
 }
 
 TEST_CASE("what is not released, superseded or withdrawn cannot be pulled") {
     Pull pull;
-    check_refused(pull.pull(3), "release 3 is not released for the loom 'loom 7'");
-    check_refused(pull.pull(0), "is not released");
+    check_forbidden(pull.pull(3), "release 3 is not released for the loom 'loom 7'");
+    check_forbidden(pull.pull(0), "is not released");
     pull.in_index = [](ReleaseIndex& index) { index.releases[1].state = ReleaseState::withdrawn; };
-    check_refused(pull.pull(), "was withdrawn: it must not be woven");
+    check_forbidden(pull.pull(), "was withdrawn: it must not be woven");
     pull.in_index = [](ReleaseIndex& index) { index.releases[1].state = ReleaseState::superseded; };
-    check_refused(pull.pull(), "was superseded by a newer one");
+    check_forbidden(pull.pull(), "was superseded by a newer one");
 }
 
 TEST_CASE("an index that ran out since it was checked releases nothing") {
     const Pull pull;
     CHECK(pull.pull(2, 59));
-    check_refused(pull.pull(2, 60), "the index does not hold any more");
-    check_refused(pull.pull(2, -6), "the index does not hold any more");
+    check_forbidden(pull.pull(2, 60), "the index does not hold any more");
+    check_forbidden(pull.pull(2, -6), "the index does not hold any more");
 }
 
 TEST_CASE("mix and match: manifest or file of another release") {
@@ -142,31 +144,31 @@ TEST_CASE("files that are missing, too many, cut or altered are refused by name"
     Pull pull;
     const auto sound = pull.files;
     pull.files.pop_back();
-    check_refused(pull.pull(), "shoe-picks.csv: is missing");
+    check_forged(pull.pull(), "shoe-picks.csv: is missing");
     pull.files = sound;
     pull.files.push_back({"extra.jc5", "x"});
-    check_refused(pull.pull(), "extra.jc5: came with the release but does not belong to it");
+    check_forged(pull.pull(), "extra.jc5: came with the release but does not belong to it");
     pull.files.back().path = "manifest.json";
-    check_refused(pull.pull(), "manifest.json: came with the release");
+    check_forged(pull.pull(), "manifest.json: came with the release");
     pull.files.back() = sound[0];
-    check_refused(pull.pull(), "came twice");
+    check_forged(pull.pull(), "came twice");
     pull.files = sound;
     pull.files[0].bytes.pop_back();
-    check_refused(pull.pull(), "cut, or of another release");
+    check_forged(pull.pull(), "cut, or of another release");
     pull.files = sound;
     pull.files[1].bytes[3] ^= 1;
-    check_refused(pull.pull(), "shoe-picks.csv: is not the file that was signed");
+    check_forged(pull.pull(), "shoe-picks.csv: is not the file that was signed");
     pull.files = sound;
     pull.files[1].path = "SHOE-PICKS.CSV";
-    check_refused(pull.pull(), "is missing");
+    check_forged(pull.pull(), "is missing");
 }
 
 TEST_CASE("another content under a number that was seen is refused, the same signed by others is not") {
     Pull pull;
     CheckedIndex checked = pull.checked();
     checked.state.releases[1].body_sha256 = sha256_hex("something else");
-    check_refused(check_release(checked, 2, pull.manifest, pull.files, Site::at(2)),
-                  "says other things than the manifest of release 2");
+    check_forbidden(check_release(checked, 2, pull.manifest, pull.files, Site::at(2)),
+                    "says other things than the manifest of release 2");
     checked.state.releases[1].body_sha256 =
         sha256_hex(canonical_json(manifest_body(Site::manifest_terms(2))));
     CHECK(check_release(checked, 2, pull.manifest, pull.files, Site::at(2)));
@@ -197,20 +199,19 @@ TEST_CASE("a manifest in bad form is refused with its place") {
         return pull.pull();
     };
     REQUIRE(body([](Json&) {}));
-    check_refused(body([](Json& j) { j["version"] = 2; }), "newer than this program");
-    check_refused(body([](Json& j) { j["format"] = "weave-export"; }), "must be weave-release");
-    check_refused(body([](Json& j) { j["more"] = 1; }), "is not known here");
-    check_refused(body([](Json& j) { j["files"] = Json::array(); }), "1 to 64 files");
-    check_refused(body([](Json& j) { j["files"][0]["size"] = most_release_bytes + 1; }),
-                  "body.files[0].size");
-    check_refused(body([](Json& j) { j["files"][0]["size"] = j["files"][1]["size"] = most_release_bytes; }),
-                  "makes the release larger");
-    check_refused(body([](Json& j) { j["files"][0]["sha256"] = "AB"; }), "lower-case hexadecimal");
-    check_refused(body([](Json& j) { j["reading"] = 1; }), "reading: must be an object");
-    check_refused(body([](Json& j) { j["feeders"] = 1; }), "feeders: must be a list");
-    check_refused(body([](Json& j) { j["picks"] = 0; }), "body.picks");
+    check_forged(body([](Json& j) { j["version"] = 2; }), "newer than this program");
+    check_forged(body([](Json& j) { j["format"] = "weave-export"; }), "must be weave-release");
+    check_forged(body([](Json& j) { j["more"] = 1; }), "is not known here");
+    check_forged(body([](Json& j) { j["files"] = Json::array(); }), "1 to 64 files");
+    check_forged(body([](Json& j) { j["files"][0]["size"] = most_release_bytes + 1; }), "body.files[0].size");
+    check_forged(body([](Json& j) { j["files"][0]["size"] = j["files"][1]["size"] = most_release_bytes; }),
+                 "makes the release larger");
+    check_forged(body([](Json& j) { j["files"][0]["sha256"] = "AB"; }), "lower-case hexadecimal");
+    check_forged(body([](Json& j) { j["reading"] = 1; }), "reading: must be an object");
+    check_forged(body([](Json& j) { j["feeders"] = 1; }), "feeders: must be a list");
+    check_forged(body([](Json& j) { j["picks"] = 0; }), "body.picks");
     pull.manifest = std::string(most_manifest_bytes + 1, ' ');
-    check_refused(pull.pull(), "is too large");
+    check_forged(pull.pull(), "is too large");
 }
 
 TEST_CASE("a flipped bit anywhere in a release is refused") {

@@ -45,9 +45,9 @@ constexpr const char* what_follows_an_interrupt =
     "what is under way is not kept; again to end at once, without a word on what was done";
 
 /// What an interrupted benchmark has done of what was asked for: into the answer, and the line for people.
-std::string tell_interrupted(Program& program, Json& answer, std::size_t done, std::size_t asked,
+std::string tell_interrupted(CommandOutcome& outcome, Json& answer, std::size_t done, std::size_t asked,
                              const std::string& what) {
-    program.exit_code = findings;
+    outcome.found_something();
     answer.update({{"interrupted", true}, {"done", done}, {"asked", asked}});
     return "\nINTERRUPTED: " + std::to_string(done) + " of " + counted(asked, what) + " done.\n";
 }
@@ -92,7 +92,7 @@ struct TradeoffWish {
     bool missing = false;
 };
 
-Status run_tradeoff(Program& program, const TradeoffWish& wish) {
+Status run_tradeoff(CommandOutcome& outcome, const TradeoffWish& wish) {
     const BenchOptions& options = wish.options;
     for (const std::string& name : options.only) {
         if (const Result<Structure> known = make_structure(name); !known) return known.error();
@@ -114,8 +114,8 @@ Status run_tradeoff(Program& program, const TradeoffWish& wish) {
     WEAVE_CHECK_OK(write_report(options.folder, in_order(known)));
     Json answer{{"machine", machine_json(options.threads)}, {"structures", in_order(known)}};
     std::string words = tradeoff_table(in_order(known));
-    if (done < asked.size()) words += tell_interrupted(program, answer, done, asked.size(), "structure");
-    program.answer(answer, words);
+    if (done < asked.size()) words += tell_interrupted(outcome, answer, done, asked.size(), "structure");
+    outcome.answer(answer, words);
     return {};
 }
 
@@ -133,14 +133,14 @@ Status check_sizes(const ScaleOptions& scale) {
     return {};
 }
 
-Status run_scale(Program& program, const ScaleWish& wish) {
+Status run_scale(CommandOutcome& outcome, const ScaleWish& wish) {
     WEAVE_CHECK_OK(check_sizes(wish.scale));
     const HeldInterrupt held(what_follows_an_interrupt);
     WEAVE_TRY(Json result, measure_scale(wish.options, wish.scale));
     std::string words = scale_table(result);
     const bool whole = !interrupted();
     if (!whole)
-        words += tell_interrupted(program, result, result.at("sizes").size(),
+        words += tell_interrupted(outcome, result, result.at("sizes").size(),
                                   result.at("asked_points").size(), "size");
     if (whole && !wish.options.folder.empty()) {
         WEAVE_CHECK_OK(make_folder(wish.options.folder));
@@ -149,7 +149,7 @@ Status run_scale(Program& program, const ScaleWish& wish) {
     }
     if (!whole && !wish.options.folder.empty())
         words += "Nothing is written to " + on_one_line(wish.options.folder) + ".\n";
-    program.answer(result, words);
+    outcome.answer(result, words);
     return {};
 }
 
@@ -176,7 +176,7 @@ Json extreme_json(const sim::Extreme& extreme, const sim::ExtremeEnd& end, const
             {"report", end.report}};
 }
 
-Status run_stability(Program& program, const StabilityWish& wish) {
+Status run_stability(CommandOutcome& outcome, const StabilityWish& wish) {
     Json cases = Json::array();
     std::string table = "| Case | Must | Points | Steps | s | Ended |\n|---|---|---|---|---|---|\n";
     std::size_t bad = 0;
@@ -199,9 +199,9 @@ Status run_stability(Program& program, const StabilityWish& wish) {
     }
     Json answer{{"machine", machine_json(wish.options.threads)}, {"cases", cases}, {"bad", bad}};
     if (cases.size() < asked.size())
-        table += tell_interrupted(program, answer, cases.size(), asked.size(), "case");
-    program.answer(answer, table);
-    if (bad > 0) program.exit_code = findings;
+        table += tell_interrupted(outcome, answer, cases.size(), asked.size(), "case");
+    outcome.answer(answer, table);
+    if (bad > 0) outcome.found_something();
     return {};
 }
 
@@ -218,9 +218,9 @@ void add_shared_options(CLI::App* command, BenchOptions& options, const std::str
         command->get_footer());
 }
 
-void add_tradeoff(CLI::App& bench, Program& program) {
+void add_tradeoff(CLI::App& bench, CommandOutcome& outcome) {
     CLI::App* command = add_command(
-        bench, program, "tradeoff",
+        bench, outcome, "tradeoff",
         "Speed against accuracy, every solver and fidelity: the eight structures of the paper's Table 1, and "
         "plain-pinned, a plain weave of 8 by 8 pinned yarns on which other simulators were measured");
     const auto wish = std::make_shared<TradeoffWish>();
@@ -235,12 +235,12 @@ void add_tradeoff(CLI::App& bench, Program& program) {
         ->type_name("NAME");
     command->add_flag("--missing", wish->missing, "only structures of which the folder holds nothing");
     add_shared_options(command, wish->options, "cap of each run");
-    on_run(command, program, [=, &program] { return run_tradeoff(program, *wish); });
+    on_run(command, outcome, [=, &outcome] { return run_tradeoff(outcome, *wish); });
 }
 
-void add_scale(CLI::App& bench, Program& program) {
+void add_scale(CLI::App& bench, CommandOutcome& outcome) {
     CLI::App* command =
-        add_command(bench, program, "scale", "How time and memory grow from 500 to a million points");
+        add_command(bench, outcome, "scale", "How time and memory grow from 500 to a million points");
     const auto wish = std::make_shared<ScaleWish>();
     command->add_option("-o,--out", wish->options.folder, "a folder for scale.json and scale.md")
         ->type_name("FOLDER");
@@ -262,28 +262,28 @@ void add_scale(CLI::App& bench, Program& program) {
         ->type_name("N");
     add_shared_options(command, wish->options,
                        "cap of each size; the first that does not come to rest is the last");
-    on_run(command, program, [=, &program] { return run_scale(program, *wish); });
+    on_run(command, outcome, [=, &outcome] { return run_scale(outcome, *wish); });
 }
 
-void add_stability(CLI::App& bench, Program& program) {
+void add_stability(CLI::App& bench, CommandOutcome& outcome) {
     CLI::App* command = add_command(
-        bench, program, "stability",
+        bench, outcome, "stability",
         "The extremes: each ends at rest, or with a report of what and where (exit 1: one did not)");
     const auto wish = std::make_shared<StabilityWish>();
     wish->options.seconds = 30;
     command->add_flag("--long", wish->with_long, "the cases too that take minutes or gigabytes");
     add_shared_options(command, wish->options, "cap of each case");
-    on_run(command, program, [=, &program] { return run_stability(program, *wish); });
+    on_run(command, outcome, [=, &outcome] { return run_stability(outcome, *wish); });
 }
 
 }  // namespace
 
-void add_bench_commands(CLI::App& app, Program& program) {
+void add_bench_commands(CLI::App& app, CommandOutcome& outcome) {
     CLI::App* bench = app.add_subcommand("bench", "Benchmarks of the simulator")->group("Commands");
     bench->require_subcommand(1);
-    add_tradeoff(*bench, program);
-    add_scale(*bench, program);
-    add_stability(*bench, program);
+    add_tradeoff(*bench, outcome);
+    add_scale(*bench, outcome);
+    add_stability(*bench, outcome);
 }
 
 }  // namespace weave::program

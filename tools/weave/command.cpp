@@ -46,37 +46,6 @@ std::string lost_flip_line(const LostFlip& lost) {
 
 }  // namespace
 
-void Program::fail(const Error& error) {
-    exit_code = exit_code_of(error.code);
-    note(error.text());
-    if (json && !m_answered) answer({{"error", error_json(error)}}, "");
-}
-
-void Program::note(const std::string& line) const {
-    std::cerr << "weave: " << on_one_line(line) << '\n';
-}
-
-void Program::answer(const Json& json_answer, const std::string& words) {
-    m_answered = true;
-    if (json) {  // in ASCII: a terminal obeys some characters beyond it
-        std::cout << json_answer.dump(1, ' ', true, Json::error_handler_t::replace) << '\n';
-    } else {
-        std::cout << words;
-    }
-}
-
-CLI::App* add_command(CLI::App& app, Program& program, const std::string& name, const std::string& help) {
-    CLI::App* command = app.add_subcommand(name, help)->group("Commands");
-    command->add_flag("--json", program.json, "answer with one JSON object on standard output");
-    return command;
-}
-
-void on_run(CLI::App* command, Program& program, std::function<Status()> run) {
-    command->callback([&program, run = std::move(run)] {
-        if (Status status = run(); !status) program.fail(status.error());
-    });
-}
-
 std::string settle_whole(std::string& word, std::int64_t low, std::int64_t high) {
     const std::optional<std::int64_t> number = parse_whole(word);
     if (!is_whole(word)) return "'" + word + "' is not a whole number";
@@ -126,23 +95,23 @@ Status keep_apart(const std::string& out, const std::string& other, const std::s
     return Error{ErrorCode::usage, "is " + other_is + ", which would be lost; write to another file", out};
 }
 
-void note_lost_flips(const Program& program, const std::vector<LostFlip>& lost_flips,
+void note_lost_flips(const CommandOutcome& outcome, const std::vector<LostFlip>& lost_flips,
                      const std::string& file) {
-    for (const LostFlip& lost : lost_flips) program.note(file + ": " + lost_flip_line(lost));
+    for (const LostFlip& lost : lost_flips) outcome.note(file + ": " + lost_flip_line(lost));
 }
 
-Result<Cloth> load_cloth(Program& program, const std::string& file) {
+Result<Cloth> load_cloth(CommandOutcome& outcome, const std::string& file) {
     const Progress progress("reading " + file);
     WEAVE_TRY(Design design, load_design(file));
     Result<Evaluation> evaluation = evaluate(design);
     if (!evaluation) return std::move(evaluation).error().in(file);
-    note_lost_flips(program, evaluation->lost_flips, file);
+    note_lost_flips(outcome, evaluation->lost_flips, file);
     return Cloth{std::move(design), std::move(evaluation).value()};
 }
 
-void note_stray_pin(const Program& program, const Cloth& cloth, const std::string& file) {
+void note_stray_pin(const CommandOutcome& outcome, const Cloth& cloth, const std::string& file) {
     const Status status = check_pins(cloth.design.scene, *cloth.evaluation.block);
-    if (!status) program.note(file + ": " + status.error().text() + "; it cannot be simulated so");
+    if (!status) outcome.note(file + ": " + status.error().text() + "; it cannot be simulated so");
 }
 
 std::string given_reading_option(const CLI::App* command) {
@@ -170,7 +139,7 @@ void add_reading_options(CLI::App* command, const std::shared_ptr<BitmapReading>
            &BitmapReading::black_is_lifted);
 }
 
-Status save_cloth(Program& program, const Design& design, const std::string& file, const std::string& sources,
+Status save_cloth(CommandOutcome& outcome, const Design& design, const std::string& file, const std::string& sources,
                   const std::vector<std::string>& warnings) {
     const Progress progress("weaving " + file);
     Result<Outline> woven = outline(design);
@@ -181,11 +150,11 @@ Status save_cloth(Program& program, const Design& design, const std::string& fil
     }
     WEAVE_CHECK_OK(save_design(design, file));
     std::vector<std::string> notes = warnings;
-    for (const std::string& line : warnings) program.note(line);
-    note_lost_flips(program, woven->lost_flips, file);
+    for (const std::string& line : warnings) outcome.note(line);
+    note_lost_flips(outcome, woven->lost_flips, file);
     for (const LostFlip& lost : woven->lost_flips) notes.push_back(lost_flip_line(lost));
     const BlockGrid& grid = woven->grid;
-    program.answer({{"file", file},
+    outcome.answer({{"file", file},
                     {"picks", grid.picks()},
                     {"ends", grid.ends()},
                     {"rows", grid.rows()},

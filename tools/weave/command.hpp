@@ -1,6 +1,6 @@
 #pragma once
 
-#include <weave/core/exit_code.hpp>
+#include <weave/command/command.hpp>
 #include <weave/core/json.hpp>
 #include <weave/core/text.hpp>
 #include <weave/design/design.hpp>
@@ -21,30 +21,6 @@
 #include <vector>
 
 namespace weave::program {
-
-/// Exit codes that scripts rely on.
-enum Exit : int { done = 0, findings = 1, usage = 2, bad_file = 3, refused = 4, fault = 5 };
-
-/// What every command has: whether a program reads along, and how it ended.
-struct Program {
-    bool json = false;
-    int exit_code = done;
-
-    /// Tells the error and remembers its exit code. A program that reads along gets it as the answer,
-    /// `{"error": …}`, unless it has had a fuller one.
-    void fail(const Error& error);
-    /// A line for people on standard error.
-    void note(const std::string& line) const;
-    /// The answer: as JSON if a program reads along, else in words, on standard output. Names from outside
-    /// must come through on_one_line() in `words`, whose line breaks are kept.
-    void answer(const Json& json_answer, const std::string& words);
-
-  private:
-    bool m_answered = false;
-};
-
-/// Adds a command; `run` is called with the program when it is chosen. Every command takes --json.
-CLI::App* add_command(CLI::App& app, Program& program, const std::string& name, const std::string& help);
 
 /// What is wrong with a word that is to be a whole number within these limits, in decimal digits; empty where it
 /// is one. It is written anew, so that a 0 in front does not make it octal.
@@ -100,26 +76,23 @@ CLI::Option* add_list(CLI::App* command, const std::string& name, std::vector<Wh
         ->type_name("N,N,");
 }
 
-/// Lets `run` be the command's work: its error, if any, is told and becomes the exit code.
-void on_run(CLI::App* command, Program& program, std::function<Status()> run);
-
 /// A design from a file, and its cloth. Lost flips are told on standard error.
 struct Cloth {
     Design design;
     Evaluation evaluation;
 };
-Result<Cloth> load_cloth(Program& program, const std::string& file);
+Result<Cloth> load_cloth(CommandOutcome& outcome, const std::string& file);
 
 /// Tells on standard error of the flips in `file` that no longer apply.
-void note_lost_flips(const Program& program, const std::vector<LostFlip>& lost_flips,
+void note_lost_flips(const CommandOutcome& outcome, const std::vector<LostFlip>& lost_flips,
                      const std::string& file);
 
 /// Tells on standard error where the scene pins a yarn that the cloth does not have.
-void note_stray_pin(const Program& program, const Cloth& cloth, const std::string& file);
+void note_stray_pin(const CommandOutcome& outcome, const Cloth& cloth, const std::string& file);
 
 /// Checks that a new design evaluates, saves it, and tells what came out. `sources` names what it was made
 /// from: that is where a person looks when it does not fit together.
-Status save_cloth(Program& program, const Design& design, const std::string& file, const std::string& sources,
+Status save_cloth(CommandOutcome& outcome, const Design& design, const std::string& file, const std::string& sources,
                   const std::vector<std::string>& warnings = {});
 
 /// Relaxed yarns from a file.
@@ -136,13 +109,13 @@ void add_reading_options(CLI::App* command, const std::shared_ptr<BitmapReading>
 
 /// The work of each group of commands.
 void add_make_commands(CLI::App& app,
-                       Program& program);  // samples, preset, tile, attach, stencil, renumber, flip
-void add_import_command(CLI::App& app, Program& program);       // import
-void add_look_commands(CLI::App& app, Program& program);        // info, card, render
-void add_diff_command(CLI::App& app, Program& program);         // diff
-void add_loom_commands(CLI::App& app, Program& program);        // check, export
-void add_simulation_commands(CLI::App& app, Program& program);  // simulate, export-yarns
-void add_inspection_commands(CLI::App& app, Program& program);  // inspect, compare
-void add_bench_commands(CLI::App& app, Program& program);       // bench
+                       CommandOutcome& outcome);  // samples, preset, tile, attach, stencil, renumber, flip
+void add_import_command(CLI::App& app, CommandOutcome& outcome);       // import
+void add_look_commands(CLI::App& app, CommandOutcome& outcome);        // info, card, render
+void add_diff_command(CLI::App& app, CommandOutcome& outcome);         // diff
+void add_loom_commands(CLI::App& app, CommandOutcome& outcome);        // check, export
+void add_simulation_commands(CLI::App& app, CommandOutcome& outcome);  // simulate, export-yarns
+void add_inspection_commands(CLI::App& app, CommandOutcome& outcome);  // inspect, compare
+void add_bench_commands(CLI::App& app, CommandOutcome& outcome);       // bench
 
 }  // namespace weave::program

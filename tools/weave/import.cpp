@@ -170,7 +170,7 @@ std::string in_words(const ImportRequest& request, const Block& block, const Jso
     return words;
 }
 
-Status import_design(Program& program, const ImportRequest& request) {
+Status import_design(CommandOutcome& outcome, const ImportRequest& request) {
     WEAVE_CHECK_OK(keep_apart(request.out, request.in, "the file that is read"));
     WEAVE_CHECK_OK(keep_apart(request.out, request.loom, "the loom's profile"));
     const Progress progress("reading " + request.in);
@@ -183,21 +183,21 @@ Status import_design(Program& program, const ImportRequest& request) {
     Result<Evaluation> cloth = evaluate(design);
     if (!cloth) return bad_input(cloth.error().message, cloth.error().where).in(request.in);
     WEAVE_CHECK_OK(save_design(design, request.out));
-    for (const std::string& warning : read->warnings) program.note(request.in + ": " + warning);
+    for (const std::string& warning : read->warnings) outcome.note(request.in + ": " + warning);
     const Block& block = *cloth->block;
     Json json{{"file", request.out},
               {"picks", block.picks()},
               {"ends", block.ends()},
               {"warnings", read->warnings}};
     if (request.infer) json["groupings"] = groupings;
-    program.answer(json, in_words(request, block, groupings));
+    outcome.answer(json, in_words(request, block, groupings));
     return {};
 }
 
 }  // namespace
 
-void add_import_command(CLI::App& app, Program& program) {
-    CLI::App* command = add_command(app, program, "import",
+void add_import_command(CLI::App& app, CommandOutcome& outcome) {
+    CLI::App* command = add_command(app, outcome, "import",
                                     "Make a design from a card image (PNG, TIFF, BMP), a WIF file or a loom "
                                     "controller's file (JC5, EP, raw)");
     const auto request = std::make_shared<ImportRequest>();
@@ -231,9 +231,9 @@ void add_import_command(CLI::App& app, Program& program) {
         ->type_name("N");
     infer->excludes(t)->excludes(p);
     add_reading_options(command, {request, &request->reading});
-    on_run(command, program, [=, &program] {
+    on_run(command, outcome, [=, &outcome] {
         request->given_option = given_reading_option(command);
-        return import_design(program, *request);
+        return import_design(outcome, *request);
     });
 }
 

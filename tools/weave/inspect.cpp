@@ -20,24 +20,24 @@ bool is_at_rest(const Yarns& yarns) {
     return found != yarns.report.end() && found->is_boolean() && found->get<bool>();
 }
 
-Status run_inspection(Program& program, const std::string& file) {
+Status run_inspection(CommandOutcome& outcome, const std::string& file) {
     WEAVE_TRY(const Yarns yarns, load_yarns(file));
     Result<Inspection> inspection = inspect(yarns);
     if (!inspection) return std::move(inspection).error().in(file);
-    program.answer(inspection_json(yarns, *inspection), inspection_text(yarns, *inspection));
+    outcome.answer(inspection_json(yarns, *inspection), inspection_text(yarns, *inspection));
     if (!is_at_rest(yarns) || !inspection->changed.empty() || !inspection->leaning.empty())
-        program.exit_code = findings;
+        outcome.found_something();
     return {};
 }
 
-void add_inspect(CLI::App& app, Program& program) {
+void add_inspect(CLI::App& app, CommandOutcome& outcome) {
     CLI::App* command = add_command(
-        app, program, "inspect",
+        app, outcome, "inspect",
         "Look relaxed cloth over: take-up, crimp, thickness, what leans, bunches, jams or has moved "
         "(exit 1: not at rest, a crossing changed, or a layer leans)");
     const auto file = std::make_shared<std::string>();
     command->add_option("FILE", *file, "the .yarns file of `weave simulate`")->required();
-    on_run(command, program, [=, &program] { return run_inspection(program, *file); });
+    on_run(command, outcome, [=, &outcome] { return run_inspection(outcome, *file); });
 }
 
 std::string yarn_name(const SimulatedYarn& yarn) {
@@ -168,7 +168,7 @@ std::string comparison_text(const Yarns& yarns, const MeasuredCloth& measured, c
     return text;
 }
 
-Status run_comparison(Program& program, const std::string& file, const std::string& measured_file,
+Status run_comparison(CommandOutcome& outcome, const std::string& file, const std::string& measured_file,
                       const std::string& match) {
     WEAVE_TRY(const Yarns yarns, load_yarns(file));
     WEAVE_TRY(const std::string bytes, read_file(measured_file, std::uint64_t{8} << 30));
@@ -179,14 +179,14 @@ Status run_comparison(Program& program, const std::string& file, const std::stri
                           : std::optional(match == "order" ? MatchedBy::order : MatchedBy::nearness);
     Result<Comparison> comparison = compare(yarns, *measured, wish);
     if (!comparison) return std::move(comparison).error().in(file);
-    program.answer(comparison_json(yarns, *measured, *comparison),
+    outcome.answer(comparison_json(yarns, *measured, *comparison),
                    comparison_text(yarns, *measured, *comparison));
     return {};
 }
 
-void add_compare(CLI::App& app, Program& program) {
+void add_compare(CLI::App& app, CommandOutcome& outcome) {
     CLI::App* command =
-        add_command(app, program, "compare",
+        add_command(app, outcome, "compare",
                     "Tell how far relaxed yarns lie from measured ones, once these are laid on them");
     const auto file = std::make_shared<std::string>(), measured = std::make_shared<std::string>(),
                match = std::make_shared<std::string>();
@@ -203,14 +203,14 @@ void add_compare(CLI::App& app, Program& program) {
             "end where both files name them, else in order where there are as many, else the nearest")
         ->check(CLI::IsMember({"order", "nearness"}))
         ->type_name("HOW");
-    on_run(command, program, [=, &program] { return run_comparison(program, *file, *measured, *match); });
+    on_run(command, outcome, [=, &outcome] { return run_comparison(outcome, *file, *measured, *match); });
 }
 
 }  // namespace
 
-void add_inspection_commands(CLI::App& app, Program& program) {
-    add_inspect(app, program);
-    add_compare(app, program);
+void add_inspection_commands(CLI::App& app, CommandOutcome& outcome) {
+    add_inspect(app, outcome);
+    add_compare(app, outcome);
 }
 
 }  // namespace weave::program

@@ -48,9 +48,9 @@ std::string tree_in_words(const Design& design) {
     return text;
 }
 
-Status tell_info(Program& program, const std::string& file) {
-    WEAVE_TRY(const Cloth cloth, load_cloth(program, file));
-    note_stray_pin(program, cloth, file);
+Status tell_info(CommandOutcome& outcome, const std::string& file) {
+    WEAVE_TRY(const Cloth cloth, load_cloth(outcome, file));
+    note_stray_pin(outcome, cloth, file);
     const Block& block = *cloth.evaluation.block;
     const std::string card = block.card_image().sha256(), design = design_sha256(cloth.design);
     const Json json{{"title", cloth.design.title},
@@ -66,7 +66,7 @@ Status tell_info(Program& program, const std::string& file) {
                     {"scene_sha256", scene_sha256(cloth.design)},
                     {"lost_flips", cloth.evaluation.lost_flips.size()},
                     {"tree", tree_of(cloth.design)}};
-    program.answer(
+    outcome.answer(
         json, on_one_line(cloth.design.title.empty() ? file : cloth.design.title) + "\n" + "picks    " +
                   std::to_string(block.picks()) + " in " + counted(block.rows(), "row") + "\n" + "ends     " +
                   std::to_string(block.ends()) + " in " + counted(block.columns(), "column") + "\n" +
@@ -76,11 +76,11 @@ Status tell_info(Program& program, const std::string& file) {
     return {};
 }
 
-void add_info(CLI::App& app, Program& program) {
-    CLI::App* command = add_command(app, program, "info", "Tell a design's size, hashes and tree of blocks");
+void add_info(CLI::App& app, CommandOutcome& outcome) {
+    CLI::App* command = add_command(app, outcome, "info", "Tell a design's size, hashes and tree of blocks");
     const auto file = std::make_shared<std::string>();
     command->add_option("FILE", *file, "the .weave file")->required();
-    on_run(command, program, [=, &program] { return tell_info(program, *file); });
+    on_run(command, outcome, [=, &outcome] { return tell_info(outcome, *file); });
 }
 
 bool has_loose_yarns(const Block& block) {
@@ -125,7 +125,7 @@ Result<std::string> card_as_wif(const Cloth& cloth, const CardImage& card) {
     return bytes;
 }
 
-Status write_card(Program& program, const std::string& file, const std::string& out,
+Status write_card(CommandOutcome& outcome, const std::string& file, const std::string& out,
                   const BitmapReading& reading, const std::string& given_option) {
     const bool wif = lower_extension(out) == ".wif";
     const Result<BitmapFormat> format = bitmap_format_of(out);
@@ -135,7 +135,7 @@ Status write_card(Program& program, const std::string& file, const std::string& 
         return Error{ErrorCode::usage,
                      given_option + " is for pictures; WIF says itself how it is to be read", out};
     WEAVE_CHECK_OK(keep_apart(out, file, "the design that is read"));
-    WEAVE_TRY(const Cloth cloth, load_cloth(program, file));
+    WEAVE_TRY(const Cloth cloth, load_cloth(outcome, file));
     const Progress progress("writing " + out);
     const CardImage card = cloth.evaluation.block->card_image();
     const Result<std::string> bytes =
@@ -143,17 +143,17 @@ Status write_card(Program& program, const std::string& file, const std::string& 
     if (!bytes) return Error(bytes.error()).in(out);
     WEAVE_CHECK_OK(write_file(out, *bytes));
     const std::string lost = wif ? lost_in_wif(cloth) : "";
-    if (!lost.empty()) program.note(out + ": WIF cannot hold, and the file does not say: " + lost);
-    program.answer(
+    if (!lost.empty()) outcome.note(out + ": WIF cannot hold, and the file does not say: " + lost);
+    outcome.answer(
         {{"file", out}, {"picks", card.picks()}, {"ends", card.ends()}, {"card_sha256", card.sha256()}},
         on_one_line(out) + ": " + counted(card.picks(), "pick") + " and " + counted(card.ends(), "end") +
             "\n");
     return {};
 }
 
-void add_card(CLI::App& app, Program& program) {
+void add_card(CLI::App& app, CommandOutcome& outcome) {
     CLI::App* command =
-        add_command(app, program, "card",
+        add_command(app, outcome, "card",
                     "Write the card image: bottom row pick 1, left column end 1, black = end lifted");
     const auto file = std::make_shared<std::string>();
     const auto out = std::make_shared<std::string>();
@@ -163,8 +163,8 @@ void add_card(CLI::App& app, Program& program) {
         ->type_name("FILE")
         ->required();
     add_reading_options(command, reading);
-    on_run(command, program, [=, &program] {
-        return write_card(program, *file, *out, *reading, given_reading_option(command));
+    on_run(command, outcome, [=, &outcome] {
+        return write_card(outcome, *file, *out, *reading, given_reading_option(command));
     });
 }
 
@@ -177,7 +177,7 @@ struct Rendering {
     std::string given_flat_option;  ///< the first of those for pictures of designs
 };
 
-Status render_cloth(Program& program, const Rendering& wish) {
+Status render_cloth(CommandOutcome& outcome, const Rendering& wish) {
     if (!wish.given_flat_option.empty())
         return Error{ErrorCode::usage, wish.given_flat_option + " is for pictures of designs", "--view 3d"};
     WEAVE_TRY(ClothView view, parse_cloth_view(wish.cloth));
@@ -186,7 +186,7 @@ Status render_cloth(Program& program, const Rendering& wish) {
     const Progress progress("drawing " + wish.out);
     WEAVE_TRY(const std::string bytes, draw_cloth(yarns, view));
     WEAVE_CHECK_OK(write_file(wish.out, bytes));
-    program.answer({{"file", wish.out}, {"view", "3d"}, {"bytes", bytes.size()}}, on_one_line(wish.out) + ": 3d\n");
+    outcome.answer({{"file", wish.out}, {"view", "3d"}, {"bytes", bytes.size()}}, on_one_line(wish.out) + ": 3d\n");
     return {};
 }
 
@@ -196,26 +196,26 @@ Status refuse_3d_options(const Rendering& wish) {
     return Error{ErrorCode::usage, wish.given_3d_option + " is for --view 3d", "--view " + wish.view};
 }
 
-Status render(Program& program, const Rendering& wish) {
+Status render(CommandOutcome& outcome, const Rendering& wish) {
     WEAVE_CHECK_OK(keep_apart(wish.out, wish.file, "the file that is read"));
-    if (wish.view == "3d") return render_cloth(program, wish);
+    if (wish.view == "3d") return render_cloth(outcome, wish);
     WEAVE_CHECK_OK(refuse_3d_options(wish));
     const auto& [file, view, out, trim, from_pick, from_end, cloth_words, given_3d_option, given_flat_option] = wish;
     WEAVE_TRY(const PictureFormat format, picture_format_of(out));
-    WEAVE_TRY(const Cloth cloth, load_cloth(program, file));
+    WEAVE_TRY(const Cloth cloth, load_cloth(outcome, file));
     const Progress progress("drawing " + out);
     WEAVE_TRY(PictureRequest request, parse_view(view, *cloth.evaluation.block));
     WEAVE_CHECK_OK(begin_at(request, *cloth.evaluation.block, from_pick, from_end));
     request.trim = trim;
     WEAVE_TRY(const std::string bytes, draw(cloth.design, cloth.evaluation, request, format));
     WEAVE_CHECK_OK(write_file(out, bytes));
-    program.answer({{"file", out}, {"view", view}, {"bytes", bytes.size()}},
+    outcome.answer({{"file", out}, {"view", view}, {"bytes", bytes.size()}},
                    on_one_line(out) + ": " + on_one_line(view) + "\n");
     return {};
 }
 
-void add_render(CLI::App& app, Program& program) {
-    CLI::App* command = add_command(app, program, "render",
+void add_render(CLI::App& app, CommandOutcome& outcome) {
+    CLI::App* command = add_command(app, outcome, "render",
                                     "Draw a design: card, face, back, floats, layers, slices, or the block");
     const auto wish = std::make_shared<Rendering>();
     command->add_option("FILE", wish->file, "the .weave file; for 3d the .yarns file of `weave simulate`")->required();
@@ -244,10 +244,10 @@ void add_render(CLI::App& app, Program& program) {
     command->add_option("-o,--out", wish->out, "the picture to write: .png or .svg")
         ->type_name("FILE")
         ->required();
-    on_run(command, program, [=, &program] {
+    on_run(command, outcome, [=, &outcome] {
         wish->given_3d_option = given_of(command, {"--side", "--cut", "--colour", "--repeat", "--size", "--perspective"});
         wish->given_flat_option = given_of(command, {"--trim", "--from-pick", "--from-end"});
-        return render(program, *wish);
+        return render(outcome, *wish);
     });
 }
 
@@ -260,10 +260,10 @@ Result<PictureFormat> picture_format_of(const std::string& file) {
     return Error{ErrorCode::usage, "a picture's name ends in .png or .svg", file};
 }
 
-void add_look_commands(CLI::App& app, Program& program) {
-    add_info(app, program);
-    add_card(app, program);
-    add_render(app, program);
+void add_look_commands(CLI::App& app, CommandOutcome& outcome) {
+    add_info(app, outcome);
+    add_card(app, outcome);
+    add_render(app, outcome);
 }
 
 }  // namespace weave::program

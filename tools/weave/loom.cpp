@@ -3,6 +3,7 @@
 #include "command.hpp"
 #include "progress.hpp"
 
+#include <weave/core/exit_code.hpp>
 #include <weave/core/file.hpp>
 #include <weave/core/text.hpp>
 #include <weave/design/document.hpp>
@@ -58,36 +59,36 @@ struct CheckWish {
 };
 
 /// What relaxed yarns tell. Those of the design in another scene are taken, and it is said.
-Result<RelaxedCloth> load_relaxed(const Program& program, const std::string& file, const Cloth& cloth) {
+Result<RelaxedCloth> load_relaxed(const CommandOutcome& outcome, const std::string& file, const Cloth& cloth) {
     WEAVE_TRY(const Yarns yarns, load_yarns(file));
     Result<RelaxedCloth> relaxed = relaxed_cloth(yarns, cloth.design, *cloth.evaluation.block);
     if (!relaxed) return std::move(relaxed).error().in(file);
     if (const auto goes_on = yarns.report.find("goes_on"); goes_on != yarns.report.end() && goes_on->is_string())
-        program.note(on_one_line(file) + " has the yarns in fewer points of a run to " + goes_on->get<std::string>() +
+        outcome.note(on_one_line(file) + " has the yarns in fewer points of a run to " + goes_on->get<std::string>() +
                      " that is under way or was cut off: simulate it to its end for lengths to go by");
     if (yarns.scene_sha256 != scene_sha256(cloth.design))
-        program.note(on_one_line(file) + " was simulated with another scene than the design's");
+        outcome.note(on_one_line(file) + " was simulated with another scene than the design's");
     return relaxed;
 }
 
-Status run_check(Program& program, const CheckWish& wish) {
+Status run_check(CommandOutcome& outcome, const CheckWish& wish) {
     WEAVE_TRY(const LoomProfile profile, load_profile(wish.loom));
-    WEAVE_TRY(const Cloth cloth, load_cloth(program, wish.file));
-    note_stray_pin(program, cloth, wish.file);
+    WEAVE_TRY(const Cloth cloth, load_cloth(outcome, wish.file));
+    note_stray_pin(outcome, cloth, wish.file);
     std::optional<RelaxedCloth> relaxed;
     if (!wish.yarns.empty()) {
-        WEAVE_TRY(relaxed, load_relaxed(program, wish.yarns, cloth));
+        WEAVE_TRY(relaxed, load_relaxed(outcome, wish.yarns, cloth));
     }
     const Progress progress("checking " + wish.file);
     const CheckReport report = check_for_loom(cloth.design, cloth.evaluation, profile, relaxed);
-    program.answer(to_json(report), in_words(report, profile.name));
-    if (report.count(Severity::error) > 0) program.exit_code = findings;
+    outcome.answer(to_json(report), in_words(report, profile.name));
+    if (report.count(Severity::error) > 0) outcome.found_something();
     return {};
 }
 
-void add_check(CLI::App& app, Program& program) {
+void add_check(CLI::App& app, CommandOutcome& outcome) {
     CLI::App* command =
-        add_command(app, program, "check",
+        add_command(app, outcome, "check",
                     "Hold a design to a loom, rule by rule; exit status 1 where a rule finds an error");
     const auto wish = std::make_shared<CheckWish>();
     command->add_option("FILE", wish->file, "the .weave file")->required();
@@ -97,13 +98,13 @@ void add_check(CLI::App& app, Program& program) {
             "--yarns", wish->yarns,
             "its relaxed yarns, a .yarns file: take-up is judged as well, and width and use of yarn told")
         ->type_name("FILE");
-    on_run(command, program, [=, &program] { return run_check(program, *wish); });
+    on_run(command, outcome, [=, &outcome] { return run_check(outcome, *wish); });
 }
 
-Status export_sample(Program& program, const std::string& file, const std::string& loom,
+Status export_sample(CommandOutcome& outcome, const std::string& file, const std::string& loom,
                      const std::string& folder) {
     WEAVE_TRY(const LoomProfile profile, load_profile(loom));
-    WEAVE_TRY(const Cloth cloth, load_cloth(program, file));
+    WEAVE_TRY(const Cloth cloth, load_cloth(outcome, file));
     const Progress progress("exporting " + file);
     const CheckReport report = check_for_loom(cloth.design, cloth.evaluation, profile);
     if (report.count(Severity::error) > 0) {
@@ -111,7 +112,7 @@ Status export_sample(Program& program, const std::string& file, const std::strin
             invalid("does not validate on " + profile.name + ", so nothing is exported", file);
         Json answer = to_json(report);
         answer["error"] = error_json(refusal);
-        program.answer(answer, in_words(report, profile.name));
+        outcome.answer(answer, in_words(report, profile.name));
         return refusal;
     }
     const std::string stem = std::filesystem::path(file).stem().string();
@@ -124,14 +125,14 @@ Status export_sample(Program& program, const std::string& file, const std::strin
         words += on_one_line(entry["path"].get<std::string>()) + "\n";
         listed.push_back(std::move(entry));
     }
-    program.answer(
+    outcome.answer(
         {{"files", std::move(listed)}, {"certified", false}, {"released", false}, {"folder", folder}},
         words + "SAMPLE, NOT RELEASED: only a release may go to production.\n");
     return {};
 }
 
-void add_export(CLI::App& app, Program& program) {
-    CLI::App* command = add_command(app, program, "export",
+void add_export(CLI::App& app, CommandOutcome& outcome) {
+    CLI::App* command = add_command(app, outcome, "export",
                                     "Write a sample for a loom: card image, pick table and manifest. Refused "
                                     "where validation finds errors");
     const auto file = std::make_shared<std::string>();
@@ -143,14 +144,14 @@ void add_export(CLI::App& app, Program& program) {
         ->check(output_name())
         ->type_name("FOLDER")
         ->required();
-    on_run(command, program, [=, &program] { return export_sample(program, *file, *loom, *folder); });
+    on_run(command, outcome, [=, &outcome] { return export_sample(outcome, *file, *loom, *folder); });
 }
 
 }  // namespace
 
-void add_loom_commands(CLI::App& app, Program& program) {
-    add_check(app, program);
-    add_export(app, program);
+void add_loom_commands(CLI::App& app, CommandOutcome& outcome) {
+    add_check(app, outcome);
+    add_export(app, outcome);
 }
 
 }  // namespace weave::program

@@ -3,6 +3,7 @@
 #include "command.hpp"
 #include "progress.hpp"
 
+#include <weave/core/exit_code.hpp>
 #include <weave/core/file.hpp>
 #include <weave/core/text.hpp>
 #include <weave/design/document.hpp>
@@ -32,7 +33,7 @@ Error usage_error(const std::string& message) {
 
 // ---- samples
 
-void list_samples(Program& program) {
+void list_samples(CommandOutcome& outcome) {
     Json list = Json::array();
     std::string names;
     for (const Sample& sample : samples()) {
@@ -40,27 +41,27 @@ void list_samples(Program& program) {
             {{"name", sample.name}, {"title", sample.title}, {"about", sample.about}, {"loom", sample.loom}});
         names += sample.name + "\n";
     }
-    program.answer({{"samples", std::move(list)}}, names);
+    outcome.answer({{"samples", std::move(list)}}, names);
 }
 
-void add_samples(CLI::App& app, Program& program) {
+void add_samples(CLI::App& app, CommandOutcome& outcome) {
     CLI::App* command =
-        add_command(app, program, "samples", "List the designs that come with the program, or write one");
+        add_command(app, outcome, "samples", "List the designs that come with the program, or write one");
     const auto name = std::make_shared<std::string>();
     const auto out = std::make_shared<std::string>();
     command->add_option("NAME", *name, "the sample to write; without it the names are listed, one a line");
     command->add_option("-o,--out", *out, "the .weave file to write")->type_name("FILE");
-    on_run(command, program, [=, &program]() -> Status {
+    on_run(command, outcome, [=, &outcome]() -> Status {
         if (name->empty()) {
             if (!out->empty()) return usage_error("-o needs the NAME of a sample");
-            list_samples(program);
+            list_samples(outcome);
             return {};
         }
         const Sample* sample = find_sample(*name);
         if (sample == nullptr)
             return usage_error("there is no sample '" + *name + "'; 'weave samples' lists them");
         if (out->empty()) return usage_error("name the file to write, such as -o " + *name + ".weave");
-        return save_cloth(program, sample->make(), *out, *name);
+        return save_cloth(outcome, sample->make(), *out, *name);
     });
 }
 
@@ -92,8 +93,8 @@ Result<Preset> parse_preset(const std::string& family, const std::vector<std::st
     return preset;
 }
 
-void add_preset(CLI::App& app, Program& program) {
-    CLI::App* command = add_command(app, program, "preset", "Make a weave of a family by its rule");
+void add_preset(CLI::App& app, CommandOutcome& outcome) {
+    CLI::App* command = add_command(app, outcome, "preset", "Make a weave of a family by its rule");
     const auto family = std::make_shared<std::string>();
     const auto settings = std::make_shared<std::vector<std::string>>();
     const auto out = std::make_shared<std::string>();
@@ -105,20 +106,20 @@ void add_preset(CLI::App& app, Program& program) {
         ->type_name("FILE")
         ->required();
     command->footer(preset_help);
-    on_run(command, program, [=, &program]() -> Status {
+    on_run(command, outcome, [=, &outcome]() -> Status {
         WEAVE_TRY(Preset preset, parse_preset(*family, *settings));
         if (Result<Block> made = make_preset(preset); !made) return usage_error(made.error().text());
         Design design;
         design.title = *family;
         put_root(design, *family, PresetLeaf{std::move(preset)});
-        return save_cloth(program, design, *out, *family);
+        return save_cloth(outcome, design, *out, *family);
     });
 }
 
 // ---- tile, attach, renumber
 
-void add_tile(CLI::App& app, Program& program) {
-    CLI::App* command = add_command(app, program, "tile",
+void add_tile(CLI::App& app, CommandOutcome& outcome) {
+    CLI::App* command = add_command(app, outcome, "tile",
                                     "Repeat a design along the warp (x), the weft (y) and in height (z)");
     const auto file = std::make_shared<std::string>();
     const auto out = std::make_shared<std::string>();
@@ -132,17 +133,17 @@ void add_tile(CLI::App& app, Program& program) {
         ->check(output_name())
         ->type_name("FILE")
         ->required();
-    on_run(command, program, [=, &program]() -> Status {
+    on_run(command, outcome, [=, &outcome]() -> Status {
         WEAVE_TRY(Design design, load_design(*file));
         times->of = design.root;
         put_root(design, design.root + "-tiled", *times);
-        return save_cloth(program, design, *out, *file);
+        return save_cloth(outcome, design, *out, *file);
     });
 }
 
-void add_attach(CLI::App& app, Program& program) {
+void add_attach(CLI::App& app, CommandOutcome& outcome) {
     CLI::App* command =
-        add_command(app, program, "attach",
+        add_command(app, outcome, "attach",
                     "Join B to a face of A: +x after A's last row, +y after its last column, +z on top");
     const auto first = std::make_shared<std::string>();
     const auto second = std::make_shared<std::string>();
@@ -155,7 +156,7 @@ void add_attach(CLI::App& app, Program& program) {
         ->check(output_name())
         ->type_name("FILE")
         ->required();
-    on_run(command, program, [=, &program]() -> Status {
+    on_run(command, outcome, [=, &outcome]() -> Status {
         WEAVE_TRY(Design design, load_design(*first));
         WEAVE_TRY(const Design other, load_design(*second));
         std::vector<std::string> warnings;
@@ -166,13 +167,13 @@ void add_attach(CLI::App& app, Program& program) {
         const auto at = std::find(face_names().begin(), face_names().end(), *face) - face_names().begin();
         design.title = std::filesystem::path(*out).stem().string();
         put_root(design, "attached", AttachOperation{design.root, name, static_cast<Face>(at)});
-        return save_cloth(program, design, *out, *first + " and " + *second, warnings);
+        return save_cloth(outcome, design, *out, *first + " and " + *second, warnings);
     });
 }
 
-void add_renumber(CLI::App& app, Program& program) {
+void add_renumber(CLI::App& app, CommandOutcome& outcome) {
     CLI::App* command =
-        add_command(app, program, "renumber",
+        add_command(app, outcome, "renumber",
                     "Change the insertion order of the picks of a row, or the order of the ends of a column");
     const auto file = std::make_shared<std::string>();
     const auto order = std::make_shared<std::vector<std::size_t>>();
@@ -194,12 +195,12 @@ void add_renumber(CLI::App& app, Program& program) {
         ->check(output_name())
         ->type_name("FILE")
         ->required();
-    on_run(command, program, [=, &program]() -> Status {
+    on_run(command, outcome, [=, &outcome]() -> Status {
         if (row->count() + column->count() == 0) return usage_error("name a --row or a --column");
         WEAVE_TRY(Design design, load_design(*file));
         const System system = row->count() > 0 ? System::weft : System::warp;
         put_root(design, design.root + "-renumbered", RenumberOperation{design.root, system, *line, *order});
-        return save_cloth(program, design, *out, *file);
+        return save_cloth(outcome, design, *out, *file);
     });
 }
 
@@ -244,7 +245,7 @@ Result<StencilMap> read_map(const std::string& picture, const std::map<Colour, s
     return map;
 }
 
-Status make_stencil(Program& program, const std::string& picture, const std::vector<std::string>& mappings,
+Status make_stencil(CommandOutcome& outcome, const std::string& picture, const std::vector<std::string>& mappings,
                     const std::string& out) {
     WEAVE_CHECK_OK(keep_apart(out, picture, "the picture that is read"));
     Design design;
@@ -284,12 +285,12 @@ Status make_stencil(Program& program, const std::string& picture, const std::vec
     stencil.map = std::make_shared<const StencilMap>(std::move(map));
     design.title = std::filesystem::path(out).stem().string();
     put_root(design, "stencilled", std::move(stencil));
-    return save_cloth(program, design, out, sources, warnings);
+    return save_cloth(outcome, design, out, sources, warnings);
 }
 
-void add_stencil(CLI::App& app, Program& program) {
+void add_stencil(CLI::App& app, CommandOutcome& outcome) {
     CLI::App* command = add_command(
-        app, program, "stencil",
+        app, outcome, "stencil",
         "Merge designs by a picture: each pixel is one stack of the design that its colour names");
     const auto picture = std::make_shared<std::string>();
     const auto mappings = std::make_shared<std::vector<std::string>>();
@@ -306,26 +307,26 @@ void add_stencil(CLI::App& app, Program& program) {
         ->check(output_name())
         ->type_name("FILE")
         ->required();
-    on_run(command, program, [=, &program] { return make_stencil(program, *picture, *mappings, *out); });
+    on_run(command, outcome, [=, &outcome] { return make_stencil(outcome, *picture, *mappings, *out); });
 }
 
 // ---- flip
 
 /// Tells a program which yarns stand in the way of a flip, picks and ends from 1 and from the bottom up.
 /// People read it in the error.
-void answer_blocked(Program& program, const PlacedStack& at, std::size_t pick, std::size_t end,
+void answer_blocked(CommandOutcome& outcome, const PlacedStack& at, std::size_t pick, std::size_t end,
                     const Error& error) {
     Json picks = Json::array(), ends = Json::array();
     for (const Slot yarn : flip(at.stack, pick - at.first_pick, end - at.first_end).in_the_way) {
         if (yarn.is_weft()) picks.push_back(at.first_pick + yarn.index() + 1);
         if (yarn.is_warp()) ends.push_back(at.first_end + yarn.index() + 1);
     }
-    program.answer({{"picks", std::move(picks)}, {"ends", std::move(ends)}, {"error", error_json(error)}},
+    outcome.answer({{"picks", std::move(picks)}, {"ends", std::move(ends)}, {"error", error_json(error)}},
                    "");
 }
 
 /// The flip of this crossing, if it can be made; both from 0.
-Result<Flip> flip_wished(Program& program, const Design& design, std::size_t pick, std::size_t end,
+Result<Flip> flip_wished(CommandOutcome& outcome, const Design& design, std::size_t pick, std::size_t end,
                          const std::string& file) {
     const Progress progress("looking at " + file);
     Result<Outline> cloth = outline(design, CardPlace{pick, end});
@@ -334,15 +335,15 @@ Result<Flip> flip_wished(Program& program, const Design& design, std::size_t pic
     const PlacedStack& at = *cloth->at;
     if (Result<Stack> flipped = flip(at, pick, end); !flipped) {
         Error error = std::move(flipped).error().in(file);
-        answer_blocked(program, at, pick, end, error);
+        answer_blocked(outcome, at, pick, end, error);
         return error;
     }
     return Flip{pick, end, !at.stack.weft_over(pick - at.first_pick, end - at.first_end)};
 }
 
-void add_flip(CLI::App& app, Program& program) {
+void add_flip(CLI::App& app, CommandOutcome& outcome) {
     CLI::App* command =
-        add_command(app, program, "flip",
+        add_command(app, outcome, "flip",
                     "Exchange one pick and one end at their crossing: inverts one pixel of the card");
     const auto file = std::make_shared<std::string>();
     const auto out = std::make_shared<std::string>();
@@ -356,24 +357,24 @@ void add_flip(CLI::App& app, Program& program) {
         ->check(output_name())
         ->type_name("FILE")
         ->required();
-    on_run(command, program, [=, &program]() -> Status {
+    on_run(command, outcome, [=, &outcome]() -> Status {
         WEAVE_TRY(Design design, load_design(*file));
-        WEAVE_TRY(const Flip wish, flip_wished(program, design, *pick - 1, *end - 1, *file));
+        WEAVE_TRY(const Flip wish, flip_wished(outcome, design, *pick - 1, *end - 1, *file));
         WEAVE_CHECK_OK(apply_edit(design, PutFlip{design.root, wish}));
-        return save_cloth(program, design, *out, *file);
+        return save_cloth(outcome, design, *out, *file);
     });
 }
 
 }  // namespace
 
-void add_make_commands(CLI::App& app, Program& program) {
-    add_samples(app, program);
-    add_preset(app, program);
-    add_tile(app, program);
-    add_attach(app, program);
-    add_stencil(app, program);
-    add_renumber(app, program);
-    add_flip(app, program);
+void add_make_commands(CLI::App& app, CommandOutcome& outcome) {
+    add_samples(app, outcome);
+    add_preset(app, outcome);
+    add_tile(app, outcome);
+    add_attach(app, outcome);
+    add_stencil(app, outcome);
+    add_renumber(app, outcome);
+    add_flip(app, outcome);
 }
 
 }  // namespace weave::program

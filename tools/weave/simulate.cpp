@@ -477,16 +477,16 @@ bool is_good(const Json& report) {
            std::all_of(flips.begin(), flips.end(), is_done);
 }
 
-Status run_simulation(Program& program, const Wish& wish) {
+Status run_simulation(CommandOutcome& outcome, const Wish& wish) {
     WEAVE_CHECK_OK(check_wish(wish));
-    WEAVE_TRY(const Cloth cloth, load_cloth(program, wish.file));
+    WEAVE_TRY(const Cloth cloth, load_cloth(outcome, wish.file));
     const Block& block = *cloth.evaluation.block;
     auto understood = understand(cloth, wish);
     if (!understood) return std::move(understood).error().in(wish.file);
     Task& task = *understood;
     WEAVE_TRY(const sim::Plan plan, plan_of(task.design, block, task.request, wish.file));
     if (wish.explain) {
-        program.answer({{"plan", sim::lines_json(plan)}, {"yarns", plan.scene.yarns.size()}}, in_words(plan));
+        outcome.answer({{"plan", sim::lines_json(plan)}, {"yarns", plan.scene.yarns.size()}}, in_words(plan));
         return {};
     }
     if (task.request.region) {
@@ -507,13 +507,13 @@ Status run_simulation(Program& program, const Wish& wish) {
             WEAVE_CHECK_OK(save_flipped(cloth.design, task, yarns, wish.save_design));
         }
     }
-    program.answer(answer, words);
-    if (!is_good(yarns.report)) program.exit_code = findings;
+    outcome.answer(answer, words);
+    if (!is_good(yarns.report)) outcome.found_something();
     return {};
 }
 
-void add_simulate(CLI::App& app, Program& program) {
-    CLI::App* command = add_command(app, program, "simulate",
+void add_simulate(CLI::App& app, CommandOutcome& outcome) {
+    CLI::App* command = add_command(app, outcome, "simulate",
                                     "Relax a design into real cloth: where its yarns come to rest (exit 1: not at rest, or a "
                                     "crossing changed)");
     const auto wish = std::make_shared<Wish>();
@@ -559,10 +559,10 @@ void add_simulate(CLI::App& app, Program& program) {
     add_threads(command, wish->threads);
     command->footer("Ctrl-C writes the yarns as they lie (exit 1), for --resume to go on from; again, half a second later or more, ends at "
                     "once without them.\n" + command->get_footer());
-    on_run(command, program, [=, &program] {
+    on_run(command, outcome, [=, &outcome] {
         wish->no_plan_option = given_of(command, {"--out", "--solver", "--residual", "--backend", "--flip", "--save-design", "--resume", "--start-from", "--starts",
                                                   "--symmetry", "--seed", "--steps", "--seconds", "--threads"});
-        return run_simulation(program, *wish);
+        return run_simulation(outcome, *wish);
     });
 }
 
@@ -570,24 +570,24 @@ struct YarnsExport {
     std::string file, out;
 };
 
-Status export_yarns(Program& program, const YarnsExport& wish) {
+Status export_yarns(CommandOutcome& outcome, const YarnsExport& wish) {
     const std::string extension = lower_extension(wish.out);
     if (extension != ".vtp" && extension != ".obj") return usage_error("yarns are exported as .vtp or .obj", wish.out);
     WEAVE_CHECK_OK(keep_apart(wish.out, wish.file, "the file of yarns that is read"));
     WEAVE_TRY(const Yarns yarns, load_yarns(wish.file));
     WEAVE_TRY(const std::string bytes, extension == ".vtp" ? write_vtp(yarns) : write_obj(yarns));
     WEAVE_CHECK_OK(write_file(wish.out, bytes));
-    program.answer({{"file", wish.out}, {"yarns", yarns.yarns.size()}, {"bytes", bytes.size()}},
+    outcome.answer({{"file", wish.out}, {"yarns", yarns.yarns.size()}, {"bytes", bytes.size()}},
                    on_one_line(wish.out) + ": " + counted(yarns.yarns.size(), "yarn") + "\n");
     return {};
 }
 
-void add_yarns_export(CLI::App& app, Program& program) {
-    CLI::App* command = add_command(app, program, "export-yarns", "Write relaxed yarns for other programs: .vtp (ParaView) or .obj");
+void add_yarns_export(CLI::App& app, CommandOutcome& outcome) {
+    CLI::App* command = add_command(app, outcome, "export-yarns", "Write relaxed yarns for other programs: .vtp (ParaView) or .obj");
     const auto wish = std::make_shared<YarnsExport>();
     command->add_option("FILE", wish->file, "the .yarns file")->required();
     command->add_option("-o,--out", wish->out, "the file to write: .vtp or .obj")->type_name("FILE")->required();
-    on_run(command, program, [=, &program] { return export_yarns(program, *wish); });
+    on_run(command, outcome, [=, &outcome] { return export_yarns(outcome, *wish); });
 }
 
 }  // namespace
@@ -599,9 +599,9 @@ Result<Yarns> load_yarns(const std::string& file) {
     return yarns;
 }
 
-void add_simulation_commands(CLI::App& app, Program& program) {
-    add_simulate(app, program);
-    add_yarns_export(app, program);
+void add_simulation_commands(CLI::App& app, CommandOutcome& outcome) {
+    add_simulate(app, outcome);
+    add_yarns_export(app, outcome);
 }
 
 }  // namespace weave::program

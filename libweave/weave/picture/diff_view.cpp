@@ -1,3 +1,4 @@
+#include <weave/picture/change_rings.hpp>
 #include <weave/picture/diff_view.hpp>
 #include <weave/picture/grid.hpp>
 
@@ -12,7 +13,7 @@ namespace {
 /// Okabe and Ito's colours, which people of every kind of sight can tell apart.
 constexpr Colour now_lifted{0x00, 0x72, 0xb2}, now_lowered{0xe6, 0x9f, 0x00}, inserted{0x00, 0x9e, 0x73},
     removed{0xcc, 0x79, 0xa7}, light_lifted{0xcf, 0xcf, 0xcf}, light_weft{0xf6, 0xf6, 0xf6},
-    nowhere{0xff, 0xff, 0xff};
+    nowhere{0xff, 0xff, 0xff}, ring_line{0x00, 0x00, 0x00};
 constexpr double rim = 26, rim_bar = 7;  ///< beside the card, and its bars
 
 /// What is to be seen at one crossing; the larger the more it matters where crossings share a pixel.
@@ -208,25 +209,44 @@ void draw_rims(Canvas& canvas, const Grid& grid, const RimLines& picks, const Ri
     });
 }
 
-/// The matched picks (or ends) in which something changed.
-std::pair<std::vector<bool>, std::vector<bool>> changed_lines(const MergedCard& card) {
-    std::vector<bool> picks(card.picks.size()), ends(card.ends.size());
+/// Where something changed on matched picks and ends.
+struct ChangedPlaces {
+    std::vector<bool> picks, ends;
+    std::vector<Ring> rings;
+    double ring_width = 0;
+};
+
+ChangedPlaces changes_of(const MergedCard& card, const Grid& grid) {
+    ChangedPlaces changes{std::vector<bool>(card.picks.size()), std::vector<bool>(card.ends.size()), {}, 0};
+    ChangeRings rings(grid);
     for (std::size_t row = 0; row < card.picks.size(); ++row) {
         for (std::size_t column = 0; column < card.ends.size(); ++column) {
             if (card.at(row, column) < Sight::becomes_lowered) continue;
-            picks[row] = true;
-            ends[column] = true;
+            changes.picks[row] = true;
+            changes.ends[column] = true;
+            rings.add(row, column);
         }
     }
-    return {std::move(picks), std::move(ends)};
+    changes.rings = rings.rings();
+    changes.ring_width = rings.line();
+    return changes;
+}
+
+/// On white, so that a ring stands out on dark places as well.
+void draw_rings(Canvas& canvas, const ChangedPlaces& changes) {
+    constexpr Colour white{0xff, 0xff, 0xff};
+    for (const Ring& ring : changes.rings)
+        canvas.ring(ring.centre, ring.radius, {.colour = white, .width = 2 * changes.ring_width});
+    for (const Ring& ring : changes.rings)
+        canvas.ring(ring.centre, ring.radius, {.colour = ring_line, .width = changes.ring_width});
 }
 
 std::string title_of(const Design& design) {
     return printable(design.title.empty() ? design.root : design.title, 60);
 }
 
-PageText words_of(const WovenDesign& before, const WovenDesign& after, const CardDiff& card,
-                  const Grid& grid) {
+PageText words_of(const WovenDesign& before, const WovenDesign& after, const CardDiff& card, const Grid& grid,
+                  bool has_rings) {
     PageText text;
     const std::string old = title_of(before.design), now = title_of(after.design);
     text.title = old == now ? now : now + ", compared with " + old;
@@ -241,6 +261,9 @@ PageText words_of(const WovenDesign& before, const WovenDesign& after, const Car
     if (picks.matched() < picks.before || ends.matched() < ends.before)
         bands.swatches.push_back({removed, "removed (-), lifted ends darker"});
     if (!bands.swatches.empty()) text.legend.push_back(bands);
+    if (has_rings)
+        text.legend.push_back(
+            {"found by", {{ring_line, "ring round changes too small to be seen from afar"}}});
     text.notes = scale_notes(grid, "and shows a change where one of them changed");
     text.notes.push_back(
         "Numbers are those of the design after. Bars above and beside the card mark picks and ends with "
@@ -249,7 +272,8 @@ PageText words_of(const WovenDesign& before, const WovenDesign& after, const Car
 }
 
 Result<std::string> draw_merged(const MergedCard& card, const Grid& grid, const PageText& text,
-                                PictureFormat format, std::vector<Mark>* marks) {
+                                const ChangedPlaces& changes, PictureFormat format,
+                                std::vector<Mark>* marks) {
     WEAVE_TRY(Page page, Page::open(format, text, grid_left + static_cast<double>(grid.width()) + rim,
                                     rim + static_cast<double>(grid.height()) + grid_bottom, marks));
     if (grid.cell >= 4) {
@@ -264,8 +288,7 @@ Result<std::string> draw_merged(const MergedCard& card, const Grid& grid, const 
     }
     draw_grid_lines(page.canvas, grid);
     draw_bars(page.canvas, card, grid);
-    const auto [changed_picks, changed_ends] = changed_lines(card);
-    draw_rims(page.canvas, grid, {changed_picks, card.picks}, {changed_ends, card.ends});
+    draw_rims(page.canvas, grid, {changes.picks, card.picks}, {changes.ends, card.ends});
     const auto number = [](const std::vector<MergedLine>& lines) {
         return [&lines](std::size_t k) {
             return k < lines.size()
@@ -274,6 +297,7 @@ Result<std::string> draw_merged(const MergedCard& card, const Grid& grid, const 
         };
     };
     draw_rulers(page.canvas, grid, {number(card.picks), number(card.ends)});
+    draw_rings(page.canvas, changes);
     return std::move(page.canvas).finish();
 }
 
@@ -288,7 +312,9 @@ Result<std::string> draw_diff(const WovenDesign& before, const WovenDesign& afte
                               lines_of(diff.card->alignment.ends)};
         Grid grid = make_grid(card.picks.size(), card.ends.size(), 28, 900);
         grid.corner.y = Page::body_top + rim;
-        return draw_merged(card, grid, words_of(before, after, *diff.card, grid), format, marks);
+        const ChangedPlaces changes = changes_of(card, grid);
+        const PageText text = words_of(before, after, *diff.card, grid, !changes.rings.empty());
+        return draw_merged(card, grid, text, changes, format, marks);
     } catch (const std::bad_alloc&) {
         return system_fault("there is not enough memory to draw this comparison");
     }
