@@ -46,6 +46,7 @@ Result<ServeConfig> parse_config(std::string_view text) {
     config.key = reader.text("key", std::string(), 4096);
     config.plain = reader.boolean("plain", config.plain);
     config.workers = static_cast<std::size_t>(reader.integer("workers", 1, 64, 4));
+    config.heads = reader.text("heads", std::string(), 4096);
     reader.no_others();
     WEAVE_CHECK_OK(reader.status());
     WEAVE_CHECK_OK(check_config(config));
@@ -57,7 +58,7 @@ Result<ServeConfig> load_config(const std::filesystem::path& file) {
     WEAVE_TRY(const std::string text, read_file(file, most_bytes));
     auto config = parse_config(text);
     if (!config) return std::move(config).error().in(file.string());
-    for (auto* path : {&config->certificate, &config->key})
+    for (auto* path : {&config->certificate, &config->key, &config->heads})
         if (!path->empty() && path->is_relative()) *path = file.parent_path() / *path;
     return config;
 }

@@ -22,6 +22,9 @@ struct ServeConfig {
     std::filesystem::path key;          ///< `key`: PEM
     bool plain = false;                 ///< `plain`: HTTP without TLS, on loopback alone
     std::size_t workers = 4;            ///< `workers`: threads that answer
+    std::filesystem::path heads;        ///< `heads`: a file in a second place that keeps every signed head of
+                                        ///< the log; relative to the configuration's folder. None: kept by
+                                        ///< the looms alone
 };
 
 /// Reads a configuration. Errors name the member: unknown ones too, a certificate without a key, `plain` with

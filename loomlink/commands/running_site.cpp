@@ -1,6 +1,7 @@
 #include <weave/net/server.hpp>
 
 #include <chrono>
+#include <loomlink/commands/head_keeper.hpp>
 #include <loomlink/commands/running_site.hpp>
 #include <loomlink/service/handlers.hpp>
 #include <loomlink/service/service.hpp>
@@ -15,6 +16,7 @@ struct RunningSite::Parts {
     std::string name;
     std::unique_ptr<Workflow> workflow;
     std::optional<net::TlsFiles> tls;
+    std::unique_ptr<HeadKeeper> heads;  ///< where a second place is configured
     Watchers watchers;
     std::optional<net::Server> server;  ///< last, so that it ends first
 };
@@ -34,7 +36,7 @@ Status check_store(Workflow& workflow) {
     return name ? Status() : Status(name.error());
 }
 
-ServiceParts service_of(Workflow& workflow, const Watchers& watchers) {
+ServiceParts service_of(Workflow& workflow, const Watchers& watchers, const HeadKeeper* heads) {
     ServiceParts service;
     service.handlers = workflow_handlers(workflow, watchers);
     service.session = [&workflow](const std::string& token) { return workflow.accounts().who(token); };
@@ -43,6 +45,7 @@ ServiceParts service_of(Workflow& workflow, const Watchers& watchers) {
         static_cast<void>(workflow.refuse(caller, request, attempt, error));
     };
     service.health = {{"store", [&workflow] { return check_store(workflow); }}};
+    if (heads != nullptr) service.health.push_back({"heads", [heads] { return heads->status(); }});
     service.metrics = std::make_shared<net::Metrics>();
     service.version = WEAVE_VERSION;
     return service;
@@ -60,8 +63,13 @@ Result<std::unique_ptr<RunningSite>> RunningSite::start(const SiteFolder& folder
     WEAVE_TRY(const auto tls, tls_of(folder, config));
     WEAVE_TRY(auto workflow, Workflow::open(std::move(site.store), std::move(site.keys), settings));
     auto parts = std::make_unique<Parts>(
-        Parts{std::move(site.lock), config, std::move(site.name), std::move(workflow), tls, {}, {}});
-    const ServiceParts service = service_of(*parts->workflow, parts->watchers);
+        Parts{std::move(site.lock), config, std::move(site.name), std::move(workflow), tls, {}, {}, {}});
+    if (!config.heads.empty()) {
+        WEAVE_TRY(parts->heads, HeadKeeper::start(config.heads, [&flow = *parts->workflow] {
+                      return flow.log_head();
+                  }));
+    }
+    const ServiceParts service = service_of(*parts->workflow, parts->watchers, parts->heads.get());
     WEAVE_TRY(net::Router routes, service_routes(service));
     net::ServerOptions options;
     options.address = config.address;

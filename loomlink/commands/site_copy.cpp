@@ -8,6 +8,7 @@
 #include <loomlink/keys/server_key.hpp>
 #include <loomlink/store/backup.hpp>
 #include <loomlink/store/signatures.hpp>
+#include <loomlink/workflow/retelling.hpp>
 #include <sys/stat.h>
 #include <unistd.h>
 
@@ -112,11 +113,11 @@ Result<std::vector<AuditFinding>> verify_site(const SiteFolder& site,
     trust.retained = retained;
     WEAVE_TRY(const auto in_store, verify_store(site.store(), trust));
     findings.insert(findings.end(), in_store.begin(), in_store.end());
-    const auto signatures = verify_signatures(site.store());
-    if (signatures)
-        findings.insert(findings.end(), signatures->begin(), signatures->end());
-    else
-        findings.push_back({{}, "store", signatures.error().text()});
+    for (const auto& looked_at : {verify_signatures(site.store()), verify_tables(site.store())})
+        if (looked_at)
+            findings.insert(findings.end(), looked_at->begin(), looked_at->end());
+        else
+            findings.push_back({{}, "store", looked_at.error().text()});
     return findings;
 }
 
@@ -141,6 +142,11 @@ Status restore_site(const SiteFolder& backup, const SiteFolder& to) {
         return file_fault(to.path, "make the folder");
     WEAVE_CHECK_OK(check_site_folder(to));
     WEAVE_TRY(const FolderLock lock, FolderLock::take(to.path));
+    WEAVE_TRY(const auto findings, verify_site(backup, {}));
+    if (!findings.empty())
+        return Error{ErrorCode::refused,
+                     "is not as it was written: " + findings.front().text() + " (verify tells all)",
+                     backup.path.string()};
     WEAVE_CHECK_OK(restore_store(backup.store(), to.store()));
     return copy_keys(backup, to);
 }

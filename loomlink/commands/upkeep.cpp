@@ -1,10 +1,10 @@
 // verify, backup, restore: a site as files, on the machine that serves it.
 
-#include <weave/core/file.hpp>
 #include <weave/core/text.hpp>
 
 #include <loomlink/commands/command.hpp>
 #include <loomlink/commands/finding_words.hpp>
+#include <loomlink/commands/head_keeper.hpp>
 #include <loomlink/commands/site_copy.hpp>
 #include <memory>
 
@@ -15,11 +15,7 @@ namespace {
 Status verify(const std::string& folder, const std::string& retained_file, CommandOutcome& outcome) {
     std::optional<SignedTreeHead> retained;
     if (!retained_file.empty()) {
-        constexpr std::uint64_t most_head = 65536;
-        WEAVE_TRY(const std::string bytes, read_file(retained_file, most_head));
-        auto head = parse_signed_head(bytes);
-        if (!head) return std::move(head).error().in(retained_file);
-        retained = *std::move(head);
+        WEAVE_TRY(retained, load_retained_head(retained_file));
     }
     WEAVE_TRY(const auto findings, verify_site({folder}, retained));
     outcome.answer({{"clean", findings.empty()},
@@ -34,14 +30,15 @@ Status verify(const std::string& folder, const std::string& retained_file, Comma
 void add_verify(CLI::App& app, CommandOutcome& outcome) {
     CLI::App* const command = add_command(app, outcome, "verify",
                                           "Look at everything a site keeps once more: pages, objects, "
-                                          "records, signatures, keys; also while it is "
-                                          "served. Exit status 1 where something is not as it was written",
+                                          "records, signatures, keys, and whether every table says what the log tells; also "
+                                          "while it is served. Exit status 1 where something is not as it was written",
                                           "loomlink verify /srv/mill --retained head.json");
     const auto folder = std::make_shared<std::string>();
     const auto retained = std::make_shared<std::string>();
     add_text(command, "FOLDER", *folder, "the folder of the site")->required();
     add_text(command, "--retained", *retained,
-             "a head kept from earlier, as audit head -o wrote it: a log that was rewritten is found out")
+             "a head kept from earlier, as audit head -o wrote it or the server in a second place: a log that was "
+             "rewritten is found out")
         ->type_name("FILE");
     on_run(command, outcome, [folder, retained, &outcome] { return verify(*folder, *retained, outcome); });
 }

@@ -1,4 +1,5 @@
 #include <cstring>
+#include <loomlink/keys/hex.hpp>
 #include <loomlink/store/database.hpp>
 
 namespace weave::loomlink::sql {
@@ -7,6 +8,22 @@ std::string Row::bytes(int column) const {
     const auto* data = static_cast<const char*>(sqlite3_column_blob(m_statement, column));
     const int size = sqlite3_column_bytes(m_statement, column);
     return data == nullptr ? std::string() : std::string(data, static_cast<std::size_t>(size));
+}
+
+Json Row::json(int column) const {
+    switch (sqlite3_column_type(m_statement, column)) {
+        case SQLITE_INTEGER:
+            return integer(column);
+        case SQLITE_FLOAT:
+            return real(column);
+        case SQLITE_TEXT:
+            return bytes(column);
+        case SQLITE_BLOB:
+            return to_hex({static_cast<const unsigned char*>(sqlite3_column_blob(m_statement, column)),
+                           static_cast<std::size_t>(sqlite3_column_bytes(m_statement, column))});
+        default:
+            return nullptr;
+    }
 }
 
 Hash Row::hash(int column) const {

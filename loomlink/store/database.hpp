@@ -1,5 +1,6 @@
 #pragma once
 
+#include <weave/core/json.hpp>
 #include <weave/core/result.hpp>
 
 #include <cstdint>
@@ -29,6 +30,9 @@ class Row {
     [[nodiscard]] bool is_null(int column) const {
         return sqlite3_column_type(m_statement, column) == SQLITE_NULL;
     }
+    [[nodiscard]] int columns() const { return sqlite3_column_count(m_statement); }
+    /// A number, text, or null; of a BLOB its bytes in hexadecimal.
+    [[nodiscard]] Json json(int column) const;
     /// TEXT or BLOB as it is.
     [[nodiscard]] std::string bytes(int column) const;
     /// The 32 bytes of a hash; zeros where the column holds anything else, which verify() tells.

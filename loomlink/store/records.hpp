@@ -1,5 +1,8 @@
 #pragma once
 
+#include <weave/core/json.hpp>
+
+#include <compare>
 #include <cstdint>
 #include <loomlink/audit/hash.hpp>
 #include <optional>
@@ -217,6 +220,15 @@ struct Step {
     State state{};
     Seq event = 0;
 };
+
+/// One thing that the tables keep beside log and objects: a person, a state of a revision, a signature.
+struct KeptThing {
+    std::string place;   ///< its name, by what people call things: `state of revision 2 of shoe by record 17`
+    std::string values;  ///< all that is said of it, a JSON list
+    friend auto operator<=>(const KeptThing&, const KeptThing&) = default;
+};
+/// Text in `values` that is no UTF-8 is written with replacements, so that damage can be told.
+KeptThing kept_thing(std::string place, const Json& values);
 
 /// The words of the enumerations as the store and the service write them.
 const char* word(PersonRole role);

@@ -1,5 +1,4 @@
 #include <loomlink/keys/trust.hpp>
-#include <loomlink/store/database.hpp>
 #include <loomlink/store/signatures.hpp>
 #include <map>
 #include <utility>
@@ -9,12 +8,6 @@ namespace weave::loomlink {
 namespace {
 
 using KeysById = std::map<std::string, PublicKey>;
-
-Result<std::unique_ptr<sql::Connection>> look_into(const std::filesystem::path& path) {
-    WEAVE_TRY(auto connection, sql::Connection::open(path.string(), sql::Access::read));
-    WEAVE_CHECK_OK(connection->script("BEGIN"));  // one view for all steps, while others write
-    return connection;
-}
 
 Result<KeysById> keys_in(const Reader& reader) {
     KeysById known;
@@ -101,27 +94,30 @@ Status inspect_trust(const Reader& reader, std::vector<AuditFinding>& findings) 
 }  // namespace
 
 Result<StoreTrust> own_trust(const std::filesystem::path& store, const PublicKey& log) {
-    WEAVE_TRY(const auto connection, look_into(store));
-    const Reader reader(*connection);
-    WEAVE_TRY(KeysById people, keys_in(reader));
-    KeysById logs{{key_id(log), log}};
-    WEAVE_TRY(const auto papers, reader.trust_documents(1));
-    for (const SitePaper& paper : papers)
-        if (const auto trust = read_trust(paper.text))
-            for (const TrustedKey& key : trust->keys)
-                if (key.has(Role::log)) logs[key.id()] = key.public_key;
+    KeysById people, logs{{key_id(log), log}};
+    const Status asked = look_into(store, [&](const Reader& reader) -> Status {
+        WEAVE_TRY(people, keys_in(reader));
+        WEAVE_TRY(const auto papers, reader.trust_documents(1));
+        for (const SitePaper& paper : papers)
+            if (const auto trust = read_trust(paper.text))
+                for (const TrustedKey& key : trust->keys)
+                    if (key.has(Role::log)) logs[key.id()] = key.public_key;
+        return {};
+    });
+    if (!asked) return asked.error();
     return StoreTrust{
         check_by(std::move(logs), Purpose::tree_head), check_by(std::move(people), Purpose::statement), {}};
 }
 
 Result<std::vector<AuditFinding>> verify_signatures(const std::filesystem::path& store) {
-    WEAVE_TRY(const auto connection, look_into(store));
-    const Reader reader(*connection);
-    WEAVE_TRY(const KeysById keys, keys_in(reader));
     std::vector<AuditFinding> findings;
-    WEAVE_CHECK_OK(inspect_manifests(reader, keys, findings));
-    WEAVE_CHECK_OK(inspect_evidence(reader, keys, findings));
-    WEAVE_CHECK_OK(inspect_trust(reader, findings));
+    const Status asked = look_into(store, [&](const Reader& reader) -> Status {
+        WEAVE_TRY(const KeysById keys, keys_in(reader));
+        WEAVE_CHECK_OK(inspect_manifests(reader, keys, findings));
+        WEAVE_CHECK_OK(inspect_evidence(reader, keys, findings));
+        return inspect_trust(reader, findings);
+    });
+    if (!asked) return asked.error();
     return findings;
 }
 

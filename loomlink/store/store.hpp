@@ -74,6 +74,9 @@ class Store {
     std::unique_ptr<Core> m_core;
 };
 
+/// Asks the file of a store on one unchanging view; changes nothing, also while it is in use.
+Status look_into(const std::filesystem::path& path, const std::function<Status(const Reader&)>& ask);
+
 /// Puts a backup into place, whole or not at all, after verifying it. Refused: a backup with findings, and a
 /// target that a program has open.
 Status restore_store(const std::filesystem::path& backup, const std::filesystem::path& to);
@@ -86,7 +89,8 @@ struct StoreTrust {
 };
 
 /// Everything that a store holds, looked at once more: pages and links by SQLite, every object's hash, every
-/// record, its leaf and chain, the tree, the heads, every revision's hash, and that rows and records agree.
+/// record, its leaf and chain, the tree, the heads, every revision's hash. Whether the tables say what the log tells
+/// is for those who know what each record means (workflow/retelling.hpp).
 /// Empty: all well. An error only where the store cannot be read at all.
 Result<std::vector<AuditFinding>> verify_store(const std::filesystem::path& path,
                                                const StoreTrust& trust = {});

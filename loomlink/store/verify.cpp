@@ -149,6 +149,12 @@ Status inspect_version(sql::Connection& connection) {
 
 }  // namespace
 
+Status look_into(const std::filesystem::path& path, const std::function<Status(const Reader&)>& ask) {
+    WEAVE_TRY(auto connection, sql::Connection::open(path.string(), sql::Access::read));
+    WEAVE_CHECK_OK(connection->script("BEGIN"));  // one view for all questions, while others write
+    return ask(Reader(*connection));
+}
+
 Result<std::vector<AuditFinding>> verify_store(const std::filesystem::path& path, const StoreTrust& trust) {
     WEAVE_TRY(auto connection, sql::Connection::open(path.string(), sql::Access::read));
     WEAVE_CHECK_OK(connection->script("BEGIN"));  // one view for all steps, while others write

@@ -2,6 +2,7 @@
 
 #include <algorithm>
 #include <loomlink/keys/codes.hpp>
+#include <loomlink/keys/hex.hpp>
 #include <loomlink/keys/sealed_key.hpp>
 #include <loomlink/workflow/accounts.hpp>
 #include <loomlink/workflow/names.hpp>
@@ -115,7 +116,10 @@ Result<Json> Accounts::first_invitation() {
     const std::string code = make_code();
     WEAVE_TRY(const Hash hash, hash_of_code(code));
     const std::string expires = utc_text(m_desk->now() + m_desk->settings().invitation);
-    const Deed deed{"person.invited", {}, {}, {{"roles", Json::array({"admin"})}}};
+    const Deed deed{"person.invited",
+                    {},
+                    {},
+                    {{"roles", Json::array({"admin"})}, {"code_sha256", hash_hex(hash)}, {"expires", expires}}};
     const Status stored = m_desk->store().write([&](Writer& writer) -> Status {
         WEAVE_TRY(const auto people, writer.people());
         if (!people.empty()) return deny(Denial::conflict, "this site has people already");
@@ -130,11 +134,12 @@ Result<Json> Accounts::invite(const Caller& caller, const Ask& ask, const std::v
     const std::string code = make_code();
     WEAVE_TRY(const Hash hash, hash_of_code(code));
     const std::string expires = utc_text(m_desk->now() + m_desk->settings().invitation);
-    Deed deed{"person.invited", {}, {}, {{"roles", roles}}};
+    Deed deed{
+        "person.invited", {}, {}, {{"roles", roles}, {"code_sha256", hash_hex(hash)}, {"expires", expires}}};
     deed.told_once = true;
     return m_desk->attempt(caller, ask, deed, [&]() -> Result<Json> {
         WEAVE_TRY(const auto wanted, roles_from(roles));
-        deed.data = {{"roles", role_list(wanted)}};
+        deed.data["roles"] = role_list(wanted);
         return m_desk->commit(
             caller, ask, deed,
             [](const Reader&, const Caller& now) { return need_role(now, PersonRole::administrator); },
@@ -183,7 +188,12 @@ Result<Json> Accounts::add_invited(const std::string& code, const Person& wish, 
     const Deed deed{"person.joined",
                     wish.login,
                     {},
-                    {{"full_name", wish.full_name}, {"roles", role_list(person.roles)}, {"key", key.id()}}};
+                    {{"full_name", wish.full_name},
+                     {"roles", role_list(person.roles)},
+                     {"key", key.id()},
+                     {"public_key", to_hex(key.public_key)},
+                     {"password_sha256", hash_hex(sha256(person.password))},
+                     {"code_sha256", hash_hex(hash)}}};
     const Status stored = m_desk->store().write([&](Writer& writer) -> Status {
         WEAVE_CHECK_OK(usable(writer));
         WEAVE_TRY(person.event, writer.append(m_desk->statement_of(wish.login, make_token(), deed)));
@@ -204,7 +214,7 @@ Result<Json> Accounts::add_invited(const std::string& code, const Person& wish, 
 
 Result<Json> Accounts::change_password(const Caller& caller, const Ask& ask, const std::string& old_password,
                                        const std::string& new_password) {
-    const Deed deed{"person.password_changed", caller.login, {}, Json::object()};
+    Deed deed{"person.password_changed", caller.login, {}, Json::object()};
     return m_desk->attempt(caller, ask, deed, [&]() -> Result<Json> {
         WEAVE_CHECK_OK(check_password(new_password, caller.login, caller.full_name));
         const std::string name = "sign " + caller.login;
@@ -221,9 +231,10 @@ Result<Json> Accounts::change_password(const Caller& caller, const Ask& ask, con
 }
 
 /// Puts the key that was sealed anew in the place of `key`, and ends all sessions.
-Result<Json> Accounts::reseal(const Caller& caller, const Ask& ask, const Deed& deed, const PersonKey& key,
+Result<Json> Accounts::reseal(const Caller& caller, const Ask& ask, Deed& deed, const PersonKey& key,
                               const SealedKey& anew, const std::string& new_password) {
     const std::string hashed = m_desk->hasher().hash(new_password);
+    deed.data["password_sha256"] = hash_hex(sha256(hashed));
     return m_desk->commit(
         caller, ask, deed,
         [&](const Reader& reader, const Caller&) -> Status {
@@ -305,7 +316,7 @@ Result<Json> Accounts::reset(const Caller& caller, const Ask& ask, const std::st
     const std::string code = make_code();
     WEAVE_TRY(const Hash hash, hash_of_code(code));
     const std::string expires = utc_text(m_desk->now() + m_desk->settings().invitation);
-    Deed deed{"person.reset", name, {}, Json::object()};
+    Deed deed{"person.reset", name, {}, {{"code_sha256", hash_hex(hash)}, {"expires", expires}}};
     deed.told_once = true;
     return m_desk->take(
         caller, ask, deed,

@@ -55,7 +55,7 @@ class Accounts {
 
   private:
     Result<Json> open_session(const Person& person);
-    Result<Json> reseal(const Caller& caller, const Ask& ask, const Deed& deed, const PersonKey& key,
+    Result<Json> reseal(const Caller& caller, const Ask& ask, Deed& deed, const PersonKey& key,
                         const SealedKey& anew, const std::string& new_password);
     Result<Json> add_invited(const std::string& code, const Person& wish, const std::string& password);
 

@@ -73,16 +73,21 @@ Result<Json> releases_json(const Reader& reader, const std::vector<Revision>& re
     return list;
 }
 
-/// The parents of what is saved: the branch's head first, then the others that are named.
+/// The parents of what is saved: the branch's head first, then the others that are named, each once.
+std::vector<std::int64_t> parent_numbers(const SaveWish& wish) {
+    std::vector<std::int64_t> numbers;
+    if (wish.expected) numbers.push_back(*wish.expected);
+    for (const std::int64_t number : wish.also)
+        if (std::find(numbers.begin(), numbers.end(), number) == numbers.end()) numbers.push_back(number);
+    return numbers;
+}
+
 Result<std::vector<Id>> parents_of(const Reader& reader, Id design, const SaveWish& wish) {
-    std::vector<std::int64_t> numbers = wish.also;
-    if (wish.expected) numbers.insert(numbers.begin(), *wish.expected);
     std::vector<Id> parents;
-    for (const std::int64_t number : numbers) {
+    for (const std::int64_t number : parent_numbers(wish)) {
         WEAVE_TRY(const auto parent, reader.revision(design, number));
         if (!parent) return deny(Denial::absent, "the design has no revision " + std::to_string(number));
-        if (std::find(parents.begin(), parents.end(), parent->id) == parents.end())
-            parents.push_back(parent->id);
+        parents.push_back(parent->id);
     }
     return parents;
 }
@@ -179,12 +184,17 @@ Result<Json> DesignDesk::save(const Caller& caller, const Ask& ask, const SaveWi
         }));
         WEAVE_TRY(const RevisionClothPtr cloth, weave_document(wish.document));
         Revision made = revision_of(*cloth, wish);
-        made.at = m_desk->now_text();
         made.author = caller.id;
         deed.data["design_sha256"] = hash_hex(made.design_sha256);
+        deed.data["scene_sha256"] = hash_hex(made.scene_sha256);
+        deed.data["card_sha256"] = hash_hex(made.card_sha256);
+        deed.data["picks"] = made.picks;
+        deed.data["ends"] = made.ends;
+        deed.data["parents"] = parent_numbers(wish);
         return m_desk->commit(
             caller, ask, deed, check, [&](Writer& writer, const TakenStep& step) -> Result<Json> {
                 made.event = step.event;
+                made.at = step.at;
                 WEAVE_TRY(const Revision stored, store_revision(writer, caller, made, wish));
                 m_shelf->keep(document, cloth);
                 return Json{{"number", stored.number}, {"sha256", hash_hex(stored.hash)}};

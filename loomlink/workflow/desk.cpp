@@ -106,6 +106,7 @@ Result<Json> Desk::commit(const Caller& caller, const Ask& ask, const Deed& deed
     const Statement statement = statement_of(caller.login, ask.request, deed);
     std::optional<RecordSignature> signature;
     TakenStep step;
+    step.at = statement.at;
     if (deed.is_signed) {
         auto messages = deed.also;
         messages.emplace_back(Purpose::statement, statement_bytes(statement));

@@ -46,6 +46,7 @@ struct ServerKeys {
 /// A step that is being stored.
 struct TakenStep {
     Seq event = 0;
+    std::string at;               ///< the moment that the record tells
     std::vector<Signature> also;  ///< of Deed::also
 };
 

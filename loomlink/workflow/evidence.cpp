@@ -125,7 +125,7 @@ Result<Json> EvidenceDesk::invite_signer(const Caller& caller, const Ask& ask, c
     const std::string code = make_code();
     WEAVE_TRY(const std::string hashed, code_hash(code));
     const std::string expires = utc_text(m_desk->now() + m_desk->settings().invitation);
-    Deed deed{"signer.invited", name, {}, Json::object()};
+    Deed deed{"signer.invited", name, {}, {{"code_sha256", hashed}, {"expires", expires}}};
     deed.told_once = true;
     return m_desk->take(
         caller, ask, deed,
@@ -146,7 +146,10 @@ Result<Json> EvidenceDesk::enrol(const std::string& code, const std::string& pub
     WEAVE_TRY(const PublicKey key, parse_public_key(public_key));
     WEAVE_TRY(const std::string hashed, code_hash(code));
     const Hash hash = *parse_hash(hashed);
-    Deed deed{"signer.enrolled", {}, {}, {{"key", key_id(key)}}};
+    Deed deed{"signer.enrolled",
+              {},
+              {},
+              {{"key", key_id(key)}, {"public_key", to_hex(key)}, {"code_sha256", hashed}}};
     auto answer = m_desk->store().write([&](Writer& writer) -> Result<Json> {
         WEAVE_TRY(const auto found, writer.invitation(hash));
         if (!found || found->purpose != "signer" || found->used || found->expires <= m_desk->now_text())
@@ -217,7 +220,9 @@ Result<std::string> check_signer(const Reader& reader, const std::string& site, 
     return signer_name(reader, *key);
 }
 
-Evidence evidence_row(const SimulationStatement& statement, const Signature& signature, Seq event) {
+}  // namespace
+
+Evidence evidence_row(const SimulationStatement& statement, const std::string& signer, Seq event) {
     Evidence row;
     row.design_sha256 = statement.design_sha256;
     row.scene_sha256 = statement.scene_sha256;
@@ -229,12 +234,10 @@ Evidence evidence_row(const SimulationStatement& statement, const Signature& sig
     row.residual = statement.residual;
     row.converged = statement.converged;
     row.report = statement.report_sha256;
-    row.signer = signature.key;
+    row.signer = signer;
     row.event = event;
     return row;
 }
-
-}  // namespace
 
 Result<Json> EvidenceDesk::add(const std::string& design, std::int64_t number, const std::string& request,
                                const Json& body, const Signature& signature, std::string_view report) {
@@ -262,7 +265,7 @@ Result<Json> EvidenceDesk::add(const std::string& design, std::int64_t number, c
         }
         if (!report.empty()) WEAVE_CHECK_OK(writer.put_object(report));
         WEAVE_TRY(const Seq event, writer.append(m_desk->statement_of(signer, request, deed)));
-        WEAVE_TRY(const Id id, writer.add_evidence(evidence_row(statement, signature, event)));
+        WEAVE_TRY(const Id id, writer.add_evidence(evidence_row(statement, signature.key, event)));
         return Json{{"evidence", id}};
     });
     if (!answer) return m_desk->refuse_stranger("nobody", deed, answer.error());

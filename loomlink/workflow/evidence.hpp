@@ -34,6 +34,9 @@ Json statement_body(const SimulationStatement& statement);
 /// Reads what statement_body() makes, and nothing else.
 Result<SimulationStatement> read_simulation(const Json& body);
 
+/// The row that the store keeps of a statement, signed by the machine whose key `signer` names.
+Evidence evidence_row(const SimulationStatement& statement, const std::string& signer, Seq event);
+
 /// The share of a card that regions cover together, wherever they overlap.
 double covered_share(const std::vector<SimulatedRegion>& regions, std::size_t picks, std::size_t ends);
 

@@ -139,7 +139,7 @@ Result<FoundRevision> revision_of(const Reader& reader, const Release& release) 
 
 Result<Json> LoomDesk::add(const Caller& caller, const Ask& ask, const std::string& name,
                            const std::string& text) {
-    Deed deed{"loom.added", name, {}, Json::object()};
+    Deed deed{"loom.added", name, {}, {{"document_sha256", hash_hex(sha256(text))}}};
     return m_desk->attempt(caller, ask, deed, [&]() -> Result<Json> {
         WEAVE_TRY(const LoomProfile profile, read_bounded(text));
         deed.data["profile_sha256"] = profile.sha256;
@@ -162,7 +162,10 @@ Result<Json> LoomDesk::add(const Caller& caller, const Ask& ask, const std::stri
 
 Result<Json> LoomDesk::set_profile(const Caller& caller, const Ask& ask, const std::string& loom,
                                    const std::string& text) {
-    Deed deed{"loom.profile_set", loom, "a new version of the loom's profile is in force", Json::object()};
+    Deed deed{"loom.profile_set",
+              loom,
+              "a new version of the loom's profile is in force",
+              {{"document_sha256", hash_hex(sha256(text))}}};
     return m_desk->attempt(caller, ask, deed, [&]() -> Result<Json> {
         WEAVE_TRY(const LoomProfile profile, read_bounded(text));
         deed.data["profile_sha256"] = profile.sha256;

@@ -1,5 +1,6 @@
 #include <algorithm>
 #include <loomlink/workflow/accounts.hpp>
+#include <loomlink/workflow/looms.hpp>
 #include <loomlink/workflow/missing.hpp>
 #include <loomlink/workflow/names.hpp>
 #include <loomlink/workflow/policy.hpp>
@@ -85,14 +86,25 @@ Status put_in_force(Writer& writer, Id id, Seq event) {
     return {};
 }
 
-Result<Json> signed_answer(Writer& writer, const std::string& loom, Id id, Seq event) {
+/// What the log says where a signature was the last one that was needed: its own record, since a release
+/// comes to its next state by a record after the one that made it.
+Deed in_force(const std::string& design, const std::string& reason, const std::string& loom,
+              std::int64_t number) {
+    return {"release.in_force", design, reason, {{"loom", loom}, {"release", number}}};
+}
+
+/// What follows from a signature: with enough of them the release is in force, by this statement.
+Result<Json> signed_answer(Writer& writer, Id id, const Statement& in_force) {
     WEAVE_TRY(auto release, writer.release(id));
     WEAVE_TRY(const SignedManifest manifest, signed_manifest(writer, *release));
     if (release->state == ReleaseStage::prepared && manifest.people >= manifest.needed) {
+        WEAVE_TRY(const Seq event, writer.append(in_force));
         WEAVE_CHECK_OK(put_in_force(writer, id, event));
         WEAVE_TRY(release, writer.release(id));
     }
-    return Json{{"loom", loom}, {"number", release->number}, {"state", release_word(release->state)}};
+    return Json{{"loom", in_force.data.at("loom")},
+                {"number", release->number},
+                {"state", release_word(release->state)}};
 }
 
 /// What a release is made from, as the store has it now.
@@ -131,6 +143,13 @@ Status check_evidence(const Reader& reader, const ReleaseParts& parts, const Val
     std::string all;
     for (const std::string& text : missing) all += (all.empty() ? "" : "; ") + text;
     return invalid("it cannot go on the loom: " + all);
+}
+
+/// The SHA-256 of each file by its name.
+Json files_json(const ReleasePackage& package) {
+    Json files = Json::object();
+    for (const PackageFile& file : package.files) files[file.path] = hash_hex(sha256(file.bytes));
+    return files;
 }
 
 Status keep_files(Writer& writer, const ReleasePackage& package, Release& release) {
@@ -185,12 +204,16 @@ Result<Json> ReleaseDesk::release(const Caller& caller, const Ask& ask, const Re
                   manifest_of(terms, parts.found.revision, parts.profile, package));
         const Json body = manifest_body(manifest);
         deed.data["release"] = parts.number;
+        deed.data["profile_version"] = parts.profile.version;
+        deed.data["feeders"] = wish.feeders;
+        deed.data["files"] = files_json(package);
         deed.data["sha256"] = hash_hex(parts.found.revision.hash);
         deed.data["manifest_body_sha256"] = body_sha256({body, {}});
         deed.also = {{Purpose::release_manifest, canonical_json(body)}};
         return store_release(caller, ask, deed, wish, {parts, validation, package, canonical_json(body)});
     });
 }
+
 /// Takes the first signature over the manifest, and keeps the release.
 Result<Json> ReleaseDesk::store_release(const Caller& caller, const Ask& ask, const Deed& deed,
                                         const ReleaseWish& wish, const ProvenRelease& proven) {
@@ -216,14 +239,8 @@ Result<Json> ReleaseDesk::store_release(const Caller& caller, const Ask& ask, co
             WEAVE_CHECK_OK(log_validation(writer, *m_desk, ask.request, parts.found, proven.validation));
             const Signature& signature = step.also.front();
             WEAVE_CHECK_OK(writer.sign_release(stored.id, {signature.key, signature.value, step.event}));
-            // A release comes to its next state by a record after the one that made it.
-            const Deed signed_deed{"release.signed",
-                                   wish.design,
-                                   wish.reason,
-                                   {{"loom", wish.loom}, {"release", stored.number}, {"key", signature.key}}};
-            WEAVE_TRY(const Seq event,
-                      writer.append(m_desk->statement_of(caller.login, ask.request, signed_deed)));
-            return signed_answer(writer, wish.loom, stored.id, event);
+            const Deed next = in_force(wish.design, wish.reason, wish.loom, stored.number);
+            return signed_answer(writer, stored.id, m_desk->statement_of(caller.login, ask.request, next));
         });
 }
 
@@ -239,11 +256,14 @@ Result<Json> ReleaseDesk::sign(const Caller& caller, const Ask& ask, const std::
     };
     return m_desk->attempt(caller, ask, deed, [&]() -> Result<Json> {
         Id id = 0;
+        std::string design;
         const auto unsigned_body = [&](const Reader& reader) -> Result<std::string> {
             WEAVE_TRY(const Caller now, fresh_caller(reader, caller));
             WEAVE_CHECK_OK(check(reader, now));
             WEAVE_TRY(const FoundRelease found, find_release(reader, now, loom, number));
             id = found.release.id;
+            WEAVE_TRY(const FoundRevision signed_revision, revision_of(reader, found.release));
+            design = signed_revision.design.name;
             WEAVE_TRY(const auto text, reader.object(found.release.manifest));
             return text.value_or("");
         };
@@ -254,7 +274,8 @@ Result<Json> ReleaseDesk::sign(const Caller& caller, const Ask& ask, const std::
             caller, ask, deed, check, [&](Writer& writer, const TakenStep& step) -> Result<Json> {
                 const Signature& signature = step.also.front();
                 WEAVE_CHECK_OK(writer.sign_release(id, {signature.key, signature.value, step.event}));
-                return signed_answer(writer, loom, id, step.event);
+                const Deed next = in_force(design, reason, loom, number);
+                return signed_answer(writer, id, m_desk->statement_of(caller.login, ask.request, next));
             });
     });
 }

@@ -59,6 +59,11 @@ Result<Json> Accounts::log_in(const std::string& name, const std::string& passwo
             WEAVE_TRY(auto now, writer.person(person->id));
             if (!now || now->password != *stored) return {};  // changed meanwhile
             now->password = anew;
+            const Deed deed{"person.password_rehashed",
+                            now->login,
+                            {},
+                            {{"password_sha256", hash_hex(sha256(anew))}}};
+            WEAVE_CHECK_OK(writer.append(m_desk->statement_of("loomlink", make_token(), deed)));
             return writer.update_person(*now);
         });
         WEAVE_CHECK_OK(stored_anew);

@@ -40,6 +40,8 @@ class Workflow {
     Error refuse(const Caller& caller, const std::string& request, const Deed& attempt, Error error) {
         return m_desk.refuse(caller, request, attempt, std::move(error));
     }
+    /// The newest signed head of the log.
+    Result<SignedTreeHead> log_head() { return current_head(m_desk); }
     [[nodiscard]] Store& store() { return m_desk.store(); }
 
   private:

@@ -116,20 +116,25 @@ struct CommandMill {
     Json introduction;
     std::uint16_t port = 0;
     bool plain = false;
+    std::filesystem::path heads;  ///< a second place for the heads of the log; none: empty
 
     explicit CommandMill(bool without_tls = false) : plain(without_tls) {
         put_private("password", std::string(password) + "\n");
         start();
     }
 
-    void start() {
+    [[nodiscard]] Result<std::unique_ptr<RunningSite>> try_start() const {
         ServeConfig config;
         config.port = port;
         config.plain = plain;
         config.hosts = {"127.0.0.1", "localhost"};
+        config.heads = heads;
         DeskSettings settings;
         settings.key_cost = settings.login_cost = test_cost();
-        auto started = RunningSite::start({site_folder}, config, settings);
+        return RunningSite::start({site_folder}, config, settings);
+    }
+    void start() {
+        auto started = try_start();
         if (!started) FAIL(started.error().text());
         site = *std::move(started);
         port = site->port();

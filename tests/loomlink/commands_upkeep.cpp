@@ -1,9 +1,12 @@
 #include "commands_case.hpp"
+#include "store_case.hpp"
 
 #include <algorithm>
+#include <loomlink/commands/head_keeper.hpp>
 #include <loomlink/keys/hex.hpp>
 #include <loomlink/keys/key.hpp>
 #include <support/random.hpp>
+#include <utility>
 
 using namespace weave;
 using namespace weave::loomlink;
@@ -29,6 +32,8 @@ TEST_CASE("the log as a bundle is verified offline; one flipped bit is found and
           "[commands]") {
     CommandMill mill;
     mill.set_up();
+    mill.save("twill-2-2");
+    mill.approve("1");
     mill.done("emil", {"audit", "head", "-o", mill.at("head.json")});
     mill.done("emil", {"audit", "bundle", "-o", mill.at("log.json")});
     mill.done("otto", {"trust", "show", "-o", mill.at("trust.json")});
@@ -46,7 +51,13 @@ TEST_CASE("the log as a bundle is verified offline; one flipped bit is found and
     INFO(by_key.err);
     CHECK(by_key.code == 0);
     CHECK(by_key.json().at("retained") == true);
-    CHECK(verify({"--trust", mill.at("trust.json")}).code == 0);
+    CHECK(by_key.json().at("signatures_by_listed_keys") == 0);
+    const Json by_trust = verify({"--trust", mill.at("trust.json")}).json();
+    CHECK(by_trust.at("clean") == true);
+    CHECK(by_trust.at("signatures_by_listed_keys") > 0);
+    CHECK(by_trust.at("signatures_by_listed_keys").get<int>() +
+              by_trust.at("signatures_by_keys_of_the_log").get<int>() ==
+          by_key.json().at("signatures_by_keys_of_the_log"));
     CHECK(verify({"--key", std::string(64, '0')}).code == 3);
     CHECK(verify({"--key", to_hex(KeyPair::generate().public_key())}).code == 1);
     // The terminal has seen a newer log than this copy.
@@ -106,10 +117,61 @@ TEST_CASE("a site is verified and backed up while it is served, and a backup bec
     mill.start();
     CHECK(mill.done("emil", {"design", "show", "cloth", "1"}).at("state") == "released");
 
+    tamper_with(mill.at("backup") / "loomlink.db",
+                "INSERT INTO person_role SELECT id, 'engineer' FROM person WHERE login = 'dora'");
+    const Ended forged = verify(mill.at("backup"));
+    CHECK(forged.code == 1);
+    CHECK(forged.json().at("findings").at(0).at("place") == "person dora");
+    const Ended refused = mill.run({"restore", mill.at("backup"), mill.at("forged")});
+    CHECK(refused.code == 4);
+    CHECK_THAT(refused.err, Catch::Contains("person dora"));
+    CHECK_FALSE(fs::exists(mill.at("forged") / "loomlink.db"));
+    tamper_with(mill.at("backup") / "loomlink.db",
+                "DELETE FROM person_role WHERE role = 'engineer' AND person = (SELECT id FROM person WHERE "
+                "login = 'dora')");
+
     flip(mill.at("backup") / "stamp.key", 30);
     const Ended damaged = verify(mill.at("backup"));
     CHECK(damaged.code == 1);
     CHECK(damaged.json().at("findings").at(0).at("place") == "stamp.key");
+}
+
+TEST_CASE("heads kept in a second place find out who rewrites the log, and a lost disk there is told",
+          "[commands]") {
+    CommandMill mill;
+    mill.stop();
+    mill.heads = mill.at("heads.jsonl");
+    mill.start();
+    mill.set_up();
+    mill.stop();  // the newest is kept at the end at the latest
+    const SignedTreeHead first = load_retained_head(mill.heads).value();
+    REQUIRE(mill.run({"backup", mill.site_folder, mill.at("backup")}).code == 0);
+    mill.start();
+    mill.save("twill-2-2");
+    mill.stop();
+    CHECK(load_retained_head(mill.heads)->head.size > first.head.size);
+    const auto verify = [&] {
+        return mill.run({"verify", mill.site_folder, "--retained", mill.heads, "--json"}).code;
+    };
+    CHECK(verify() == 0);
+    const std::string kept = read_file(mill.heads).value();
+    REQUIRE(write_file(mill.heads, kept + "{\"head\":"));  // a line that was cut off
+    CHECK(verify() == 0);
+    REQUIRE(write_file(mill.heads, kept));
+
+    const auto second_place = std::exchange(mill.heads, "");
+    REQUIRE(mill.run({"restore", mill.at("backup"), mill.site_folder}).code == 0);
+    mill.start();  // another history, signed by the same key
+    for (const char* sample : {"satin-5", "rib", "basket"}) mill.save(sample);
+    mill.stop();
+    CHECK(mill.run({"verify", mill.site_folder, "--json"}).code == 0);  // by itself it is a good log
+    mill.heads = second_place;
+    CHECK(verify() == 1);
+
+    mill.heads = mill.at("nowhere") / "heads.jsonl";
+    const auto refused = mill.try_start();
+    REQUIRE_FALSE(refused);
+    CHECK(refused.error().where == mill.heads.string());
 }
 
 TEST_CASE("looms refuse a site that was put back to an older time, until it has other keys", "[commands]") {

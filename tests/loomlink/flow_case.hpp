@@ -11,6 +11,7 @@
 #include <catch2/catch.hpp>
 
 #include <loomlink/keys/hex.hpp>
+#include <loomlink/workflow/retelling.hpp>
 #include <loomlink/workflow/workflow.hpp>
 #include <map>
 #include <memory>
@@ -45,6 +46,7 @@ struct FlowSite {
     std::map<std::string, Caller> people;
     net::ThrottleRate refusals = DeskSettings().refusals;  ///< that are logged; read by open()
     int requests = 0;
+    bool is_tampered = false;  ///< the test changed the file behind the back of the workflow
 
     FlowSite() {
         static_cast<void>(Store::create(path, "mill").value());
@@ -59,6 +61,17 @@ struct FlowSite {
                                                                            {"enno", {"engineer"}}})
             enter(name, got(flow->accounts().invite(people.at("ada"), ask(), roles)).at("code"));
     }
+
+    /// Whatever a test did by the workflow, the tables say in the end what the log tells.
+    ~FlowSite() {
+        flow.reset();
+        if (is_tampered) return;
+        const auto findings = verify_tables(path);
+        CHECK(findings);
+        if (findings) CHECK(all_text(*findings) == "");
+    }
+    FlowSite(const FlowSite&) = delete;
+    FlowSite& operator=(const FlowSite&) = delete;
 
     /// Opens the store that lies at `path` now, and leaves the one from before.
     void open() {

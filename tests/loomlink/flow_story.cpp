@@ -2,6 +2,8 @@
 
 #include "flow_case.hpp"
 
+#include <loomlink/audit/told_keys.hpp>
+
 namespace weave::loomlink::testing {
 
 using Kinds = std::vector<std::string>;
@@ -72,6 +74,13 @@ TEST_CASE("from a saved design to a released file, its successor, a new profile 
          {},
          {}});
     CHECK(report.clean());
+    const auto told = told_keys(got(flow.audit().bundle(people.at("enno"))));
+    CHECK(told.size() == people.size());
+    for (const auto& [id, key] : told) {
+        CHECK(key_id(key.key) == id);
+        CHECK(got(flow.store().read([&](const Reader& reader) { return reader.key(id); }))->person ==
+              people.at(key.holder).id);
+    }
     const auto findings = verify_store(site.path);
     REQUIRE(findings);
     CHECK(all_text(*findings).empty());

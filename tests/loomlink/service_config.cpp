@@ -33,6 +33,7 @@ TEST_CASE("a configuration that is wrong is refused at its place") {
              {R"({"hosts":["x",1]})", "hosts[1]"},
              {R"({"workers":0})", "workers"},
              {R"({"plain":1})", "plain"},
+             {R"({"heads":[]})", "heads"},
              {R"({"site":""})", "site"},
              {R"({"site":"a\nb"})", "site"},
              {R"({"certificate":"x.pem"})", "key"},
@@ -50,11 +51,12 @@ TEST_CASE("a configuration that is wrong is refused at its place") {
 TEST_CASE("paths in a configuration count from its folder, and its errors name it") {
     const weave::testing::TemporaryFolder folder;
     const auto file = folder.path / "loomlink.json";
-    REQUIRE(write_file(file, R"({"certificate":"tls/x.pem","key":"/etc/x.key"})"));
+    REQUIRE(write_file(file, R"({"certificate":"tls/x.pem","key":"/etc/x.key","heads":"heads.jsonl"})"));
     const auto config = load_config(file);
     REQUIRE(config);
     CHECK(config->certificate == folder.path / "tls/x.pem");
     CHECK(config->key == "/etc/x.key");
+    CHECK(config->heads == folder.path / "heads.jsonl");
     REQUIRE(write_file(file, R"({"port":"x"})"));
     const auto wrong = load_config(file);
     REQUIRE_FALSE(wrong);

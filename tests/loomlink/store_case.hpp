@@ -2,6 +2,7 @@
 
 #include "audit_case.hpp"
 
+#include <algorithm>
 #include <atomic>
 #include <filesystem>
 #include <loomlink/store/store.hpp>
@@ -60,6 +61,12 @@ inline std::string all_text(const std::vector<AuditFinding>& findings) {
     std::string text;
     for (const AuditFinding& finding : findings) text += finding.text() + "\n";
     return text;
+}
+
+inline bool has_words(const std::vector<AuditFinding>& findings, const std::string& words) {
+    return std::any_of(findings.begin(), findings.end(), [&](const AuditFinding& finding) {
+        return finding.text().find(words) != std::string::npos;
+    });
 }
 
 inline std::string text_of(const Status& status) {

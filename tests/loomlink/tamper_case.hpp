@@ -33,12 +33,6 @@ inline SignedTreeHead sign_log(Store& store) {
         .value();
 }
 
-inline bool has_words(const std::vector<AuditFinding>& findings, const std::string& words) {
-    return std::any_of(findings.begin(), findings.end(), [&](const AuditFinding& finding) {
-        return finding.text().find(words) != std::string::npos;
-    });
-}
-
 /// A closed store of 40 records, each with an object, and its last head. A copy was kept every five records,
 /// each with the head of its time.
 struct Original {
