@@ -213,6 +213,7 @@ Result<Json> ReleaseDesk::release(const Caller& caller, const Ask& ask, const Re
         return store_release(caller, ask, deed, wish, {parts, validation, package, canonical_json(body)});
     });
 }
+
 /// Takes the first signature over the manifest, and keeps the release.
 Result<Json> ReleaseDesk::store_release(const Caller& caller, const Ask& ask, const Deed& deed,
                                         const ReleaseWish& wish, const ProvenRelease& proven) {
