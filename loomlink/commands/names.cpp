@@ -1,7 +1,7 @@
 #include <weave/core/text.hpp>
 
 #include <loomlink/commands/names.hpp>
-#include <loomlink/workflow/desk.hpp>
+#include <loomlink/workflow/names.hpp>
 
 namespace weave::loomlink {
 
