@@ -14,6 +14,13 @@ constexpr std::size_t shown_of_hash = 16;
 /// Those that a person looks for come first, whatever a record has besides.
 const std::vector<std::string> first_members{"revision", "loom", "release", "file", "roles"};
 
+/// Those that only programs compare: they tell a person nothing, and stand in the JSON.
+const std::vector<std::string> left_out{"code_sha256", "password_sha256", "public_key"};
+
+bool is_in(const std::vector<std::string>& names, const std::string& name) {
+    return std::find(names.begin(), names.end(), name) != names.end();
+}
+
 bool is_plain(char c) {
     return (c >= 'a' && c <= 'z') || (c >= 'A' && c <= 'Z') || (c >= '0' && c <= '9') || c == '-' ||
            c == '_' || c == '.' || c == ':';
@@ -55,8 +62,7 @@ std::string data_shown(const Json& record) {
     for (const std::string& name : first_members)
         if (data.contains(name)) add_member(words, name, data.at(name));
     for (const auto& [name, value] : data.items())
-        if (std::find(first_members.begin(), first_members.end(), name) == first_members.end())
-            add_member(words, name, value);
+        if (!is_in(first_members, name) && !is_in(left_out, name)) add_member(words, name, value);
     return words;
 }
 

@@ -5,6 +5,7 @@
 
 #include <algorithm>
 #include <loomlink/audit/bundle.hpp>
+#include <loomlink/audit/told_keys.hpp>
 #include <loomlink/audit/tree.hpp>
 
 using namespace weave;
@@ -91,6 +92,8 @@ extern "C" int LLVMFuzzerTestOneInput(const std::uint8_t* data, std::size_t size
     const BundleReport report = verify_bundle(text, log_trust());
     for (const AuditFinding& finding : report.findings)
         must(!finding.place.empty() && !finding.cause.empty(), "a finding says where and what");
+    for (const auto& [id, told] : told_keys(text))
+        must(key_id(told.key) == id, "a key has the id that it was told with");
     try_records(text);
     try_splice(text);
     return 0;

@@ -31,7 +31,7 @@ TEST_CASE("a call that makes no sense ends with 2 and says what is missing", "[c
         {{"audit", "verify", "x", "--key", "a", "--trust", "b"}, "one of --key, --trust and --state"},
         {{"verify-files", "x"}, "one of --state, --loom and --trust"},
         {{"log", "--from", "-1"}, "--from"},
-        {{"design", "make", "a/b"}, "'a/b' is no name: it must be 1 to 64 letters"},
+        {{"design", "make", "a/b"}, "'a/b' is no name: it must be 1 to 64 of the letters a to z"},
         {{"design", "show", ".."}, "'..' is no name"},
         {{"submit", "", "1", "--reason", "x"}, "'' is no name"},
         {{"submit", "cloth", "1", "--reason", "x", "--loom", "a/b"}, "'a/b' is no name"},

@@ -118,8 +118,9 @@ TEST_CASE("the log in words tells a line a record: of what, why, and signed with
     says("revision.saved", {"cloth", "branch main", "message \"A twill-2-2\""});
     says("revision.approved", {"revision 1", "because \"It is so\"", "signed by \"The abel\", key " + key});
     says("release.made", {"revision 1, loom seven, release 1", "signed by \"The abel\", key " + key});
-    says("release.signed", {"loom seven, release 1", "key " + key});
+    says("release.in_force", {"loom seven, release 1", "because"});
     says("release.pulled", {"otto", "loom seven, release 1", "file "});
+    CHECK(told.out.find("password") == std::string::npos);
     CHECK(told.out.find(id) == std::string::npos);  // in full only in the JSON
 }
 

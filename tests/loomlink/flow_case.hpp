@@ -136,6 +136,24 @@ struct FlowSite {
         return got(flow->designs().revision(people.at("enno"), "shoe", number)).at("state");
     }
 
+    /// A simulation of the whole of a revision of shoe that counts.
+    SimulationStatement simulation_of(std::int64_t number) {
+        const Json revision = got(flow->designs().revision(people.at("enno"), "shoe", number));
+        SimulationStatement found;
+        found.site = "mill";
+        found.at = "2026-11-26T08:00:00.000Z";
+        found.design_sha256 = *parse_hash(revision.at("design_sha256").get<std::string>());
+        found.scene_sha256 = *parse_hash(revision.at("scene_sha256").get<std::string>());
+        found.report_sha256 = sha256("report");
+        found.picks = 4;
+        found.ends = 8;
+        found.fidelity = "standard";
+        found.solver = "weave 0.1.0";
+        found.residual = 1e-4;
+        found.converged = found.order_kept = true;
+        return found;
+    }
+
     /// All rows of all tables but the log's, as text.
     [[nodiscard]] std::string dump() const {
         sqlite3* handle = nullptr;

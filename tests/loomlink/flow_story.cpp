@@ -185,19 +185,7 @@ TEST_CASE("evidence counts for the very design and scene, from a signer that is 
     };
     CHECK(denied(approve(1)) == Denial::conflict);
 
-    const Json revision = got(flow.designs().revision(site.people.at("enno"), "shoe", 1));
-    SimulationStatement found;
-    found.site = "mill";
-    found.at = "2026-11-26T08:00:00.000Z";
-    found.design_sha256 = *parse_hash(revision.at("design_sha256").get<std::string>());
-    found.scene_sha256 = *parse_hash(revision.at("scene_sha256").get<std::string>());
-    found.report_sha256 = sha256("report");
-    found.picks = 4;
-    found.ends = 8;
-    found.fidelity = "standard";
-    found.solver = "weave 0.1.0";
-    found.residual = 1e-4;
-    found.converged = found.order_kept = true;
+    SimulationStatement found = site.simulation_of(1);
     const auto hand_in = [&](const KeyPair& key, std::int64_t number) {
         const Json body = statement_body(found);
         return flow.evidence().add("shoe", number, "evidence-1", body,

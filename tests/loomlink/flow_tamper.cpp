@@ -15,20 +15,8 @@ void add_evidence(FlowSite& site) {
     const KeyPair machine = KeyPair::generate();
     const Json code = got(flow.evidence().invite_signer(site.people.at("ada"), site.ask(), "gpu-1"));
     got(flow.evidence().enrol(code.at("code"), to_hex(machine.public_key()), "10.0.0.3"));
-    const Json revision = got(flow.designs().revision(site.people.at("enno"), "shoe", 1));
-    SimulationStatement found;
-    found.site = "mill";
-    found.at = "2026-11-26T08:00:00.000Z";
-    found.design_sha256 = *parse_hash(revision.at("design_sha256").get<std::string>());
-    found.scene_sha256 = *parse_hash(revision.at("scene_sha256").get<std::string>());
-    found.report_sha256 = sha256("report");
-    found.picks = 4;
-    found.ends = 8;
+    SimulationStatement found = site.simulation_of(1);
     found.regions = {{0, 2, 0, 8}};
-    found.fidelity = "standard";
-    found.solver = "weave 0.1.0";
-    found.residual = 1e-4;
-    found.converged = found.order_kept = true;
     const Json body = statement_body(found);
     got(flow.evidence().add("shoe", 1, "evidence-1", body,
                             machine.sign(Purpose::evidence, canonical_json(body)), "report"));
