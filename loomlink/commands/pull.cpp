@@ -69,8 +69,8 @@ void add_pull_command(CLI::App& app, CommandOutcome& outcome) {
     const auto command =
         add_client_command(app, outcome, "pull",
                            "At the loom: fetch what is released for it, hold every byte to what people "
-                           "signed, and remove what was recalled (exit 1: bytes that are not what was "
-                           "signed, or recalled files that could not be removed; 4: recalled, expired or "
+                           "signed, and remove what was recalled or superseded (exit 1: bytes that are not "
+                           "what was signed, or such files that could not be removed; 4: recalled, expired or "
                            "replayed)",
                            "loomlink pull 'EP 1' --to /loom --watch --password-file operator.password");
     const auto words = std::make_shared<PullWords>();

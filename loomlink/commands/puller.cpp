@@ -1,13 +1,17 @@
+#include <weave/core/descriptor.hpp>
 #include <weave/core/file.hpp>
 #include <weave/core/sha256.hpp>
 #include <weave/core/text.hpp>
 #include <weave/net/target.hpp>
 
 #include <algorithm>
+#include <cerrno>
+#include <fcntl.h>
 #include <loomlink/audit/tree.hpp>
 #include <loomlink/commands/puller.hpp>
 #include <loomlink/commands/trust_papers.hpp>
 #include <loomlink/workflow/desk.hpp>
+#include <sys/file.h>
 #include <utility>
 
 namespace weave::loomlink {
@@ -22,22 +26,43 @@ class Pull {
     Pull(ApiClient& client, const PullWish& wish) : m_client(&client), m_wish(&wish) {}
 
     Result<PullReport> run() {
+        WEAVE_TRY(const Descriptor turn, take_turn());
         WEAVE_TRY(TerminalState state, known_state());
         WEAVE_TRY(CheckedIndex checked, fetch_index(std::move(state)));
         WEAVE_CHECK_OK(save_state(m_wish->state_file, checked.state));
-        RecallReport recall = remove_recalled(checked.state, m_wish->to);
+        RecallReport recall = remove_ended(checked.state, m_wish->to, ReleaseState::withdrawn);
         checked.state = std::move(recall.state);
         WEAVE_CHECK_OK(save_state(m_wish->state_file, checked.state));
-        PullReport report{{}, std::move(recall.removed), std::move(recall.kept), checked.index.expires};
+        PullReport report{{}, std::move(recall.removed), {}, std::move(recall.kept), checked.index.expires};
         for (const std::uint64_t number : wanted(checked.index)) {
             WEAVE_TRY(HeldRelease held, hold(checked, number));
             report.releases.push_back(std::move(held));
         }
+        WEAVE_CHECK_OK(remove_superseded(checked.state, report));
         return report;
     }
 
   private:
     static Instant now() { return system_clock()(); }
+
+    /// The right to change state and folder, while it is held.
+    [[nodiscard]] Result<Descriptor> take_turn() const {
+        WEAVE_CHECK_OK(make_folders_for(m_wish->state_file));
+        const fs::path file = m_wish->state_file.string() + ".lock";
+        Descriptor turn(::open(file.c_str(), O_RDWR | O_CREAT | O_CLOEXEC | O_NOFOLLOW, 0600));
+        if (turn.number() < 0) return file_fault(file, "open");
+        while (::flock(turn.number(), LOCK_EX) != 0)
+            if (errno != EINTR) return file_fault(file, "lock");
+        return turn;
+    }
+
+    /// Last, once what is in force lies there: a loom that loses its server in between still has something.
+    Status remove_superseded(const TerminalState& state, PullReport& report) {
+        RecallReport gone = remove_ended(state, m_wish->to, ReleaseState::superseded);
+        report.superseded = std::move(gone.removed);
+        report.kept.insert(report.kept.end(), gone.kept.begin(), gone.kept.end());
+        return save_state(m_wish->state_file, gone.state);
+    }
 
     [[nodiscard]] std::string path(std::initializer_list<std::string> below) const {
         return api_path({"looms", m_wish->loom}) + api_path(below);
@@ -170,7 +195,7 @@ class Pull {
 bool PullReport::has_news() const {
     const bool came =
         std::any_of(releases.begin(), releases.end(), [](const auto& one) { return one.is_new; });
-    return came || !removed.empty();
+    return came || !removed.empty() || !superseded.empty();
 }
 
 Json to_json(const PullReport& report, const std::string& loom) {
@@ -182,6 +207,7 @@ Json to_json(const PullReport& report, const std::string& loom) {
     return {{"loom", loom},
             {"releases", std::move(releases)},
             {"removed", report.removed},
+            {"superseded", report.superseded},
             {"kept", std::move(kept)},
             {"index_expires", utc_text(report.expires)}};
 }
@@ -193,9 +219,11 @@ std::string in_words(const PullReport& report, const std::string& loom) {
                  on_one_line(held.folder.string()) + (held.is_new ? "\n" : " (as before)\n");
     if (report.releases.empty()) words += on_one_line(loom) + ": no release is in force\n";
     for (const std::string& file : report.removed) words += "recalled, removed: " + on_one_line(file) + "\n";
+    for (const std::string& file : report.superseded)
+        words += "superseded, removed: " + on_one_line(file) + "\n";
     for (const FileFinding& finding : report.kept)
         words +=
-            "RECALLED, still there: " + on_one_line(finding.path) + " " + on_one_line(finding.message) + "\n";
+            "MUST NOT BE WOVEN, still there: " + on_one_line(finding.path) + " " + on_one_line(finding.message) + "\n";
     return words;
 }
 

@@ -29,8 +29,9 @@ struct HeldRelease {
 /// What one pull did.
 struct PullReport {
     std::vector<HeldRelease> releases;
-    std::vector<std::string> removed;  ///< files of recalled releases
-    std::vector<FileFinding> kept;     ///< of them, those that were left; a person has to look
+    std::vector<std::string> removed;     ///< files of recalled releases
+    std::vector<std::string> superseded;  ///< files of superseded ones, that were removed as well
+    std::vector<FileFinding> kept;        ///< of all those that were left; a person has to look
     Instant expires;                   ///< until when the index holds
 
     /// Whether anything is other than before.
@@ -44,8 +45,9 @@ std::string in_words(const PullReport& report, const std::string& loom);
 /// $XDG_STATE_HOME, or below `.local/state` at home.
 Result<std::filesystem::path> usual_state_file(const std::string& loom);
 
-/// Pulls once: newer trust documents, the index, then what was recalled goes and what is wanted comes, each
-/// held to what the terminal trusts and remembers (loomlink/terminal). A release appears whole or not at all.
+/// Pulls once: newer trust documents, the index, then what was recalled goes, what is wanted comes, and what was
+/// superseded goes, each held to what the terminal trusts and remembers (loomlink/terminal). A release appears
+/// whole or not at all. Pulls with one state wait for one another.
 /// Errors as of adopt_trust(), check_index(), check_release() and place_release(); usage where the terminal
 /// trusts nobody yet and no fingerprint is given.
 Result<PullReport> pull(ApiClient& client, const PullWish& wish);

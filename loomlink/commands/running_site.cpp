@@ -1,8 +1,10 @@
+#include <weave/net/certificate.hpp>
 #include <weave/net/server.hpp>
 
 #include <chrono>
 #include <loomlink/commands/head_keeper.hpp>
 #include <loomlink/commands/running_site.hpp>
+#include <loomlink/keys/private_file.hpp>
 #include <loomlink/service/handlers.hpp>
 #include <loomlink/service/service.hpp>
 #include <optional>
@@ -26,6 +28,10 @@ namespace {
 
 constexpr std::chrono::seconds patience{10};
 
+bool is_loopback(const std::string& address) {
+    return address == "::1" || address.starts_with("127.");
+}
+
 std::string origin_of(const ServeConfig& config, std::uint16_t port) {
     std::string host = config.plain ? config.address : client_hosts(config).front();
     if (host.find(':') != std::string::npos) host = "[" + host + "]";
@@ -45,7 +51,8 @@ ServiceParts service_of(Workflow& workflow, const Watchers& watchers, const Head
                                   const Error& error) {
         static_cast<void>(workflow.refuse(caller, request, attempt, error));
     };
-    service.health = {{"store", [&workflow] { return check_store(workflow); }}};
+    service.health = {{"store", [&workflow] { return check_store(workflow); }},
+                      {"writes", [&workflow] { return workflow.store().last_write(); }}};
     if (heads != nullptr) service.health.push_back({"heads", [heads] { return heads->status(); }});
     service.metrics = std::make_shared<net::Metrics>();
     service.version = WEAVE_VERSION;
@@ -53,6 +60,23 @@ ServiceParts service_of(Workflow& workflow, const Watchers& watchers, const Head
 }
 
 }  // namespace
+
+Status check_places(const ServeConfig& config) {
+    if (config.plain && !is_loopback(config.address))
+        return bad_input("serves this machine alone: 127.0.0.1 or ::1", "address");
+    if (!config.certificate.empty()) {
+        if (const auto read = net::read_certificate(config.certificate); !read)
+            return Error(read.error()).under("certificate");
+        if (const Status closed = check_private_file(config.key); !closed)
+            return Error(closed.error()).under("key");
+    }
+    std::error_code code;
+    const auto folder = config.heads.has_parent_path() ? config.heads.parent_path() : ".";
+    if (!config.heads.empty() &&
+        (!std::filesystem::is_directory(folder, code) || std::filesystem::is_directory(config.heads, code)))
+        return bad_input("must be a file in a folder that is there", "heads");
+    return {};
+}
 
 RunningSite::RunningSite(std::unique_ptr<Parts> parts) : m_parts(std::move(parts)) {}
 

@@ -11,6 +11,10 @@
 
 namespace weave::loomlink {
 
+/// Whether what the configuration names is there: certificate and key, a folder for the heads; and that plain
+/// HTTP keeps to this machine. Errors name the member.
+Status check_places(const ServeConfig& config);
+
 /// A site with its service. Ends with the object.
 class RunningSite {
   public:

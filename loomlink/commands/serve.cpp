@@ -77,6 +77,7 @@ std::string words_of(const Json& started) {
 Status serve(const ServeOptions& options, CommandOutcome& outcome) {
     WEAVE_TRY(const ServeConfig config, whole_config(options));
     if (options.check_only) {
+        WEAVE_CHECK_OK(check_places(config));
         outcome.answer({{"valid", true}}, "The configuration is valid.\n");
         return {};
     }

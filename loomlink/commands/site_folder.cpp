@@ -4,6 +4,7 @@
 #include <loomlink/commands/site_folder.hpp>
 #include <loomlink/keys/private_file.hpp>
 #include <loomlink/keys/server_key.hpp>
+#include <loomlink/workflow/retelling.hpp>
 #include <sys/file.h>
 #include <sys/stat.h>
 #include <unistd.h>
@@ -48,10 +49,21 @@ Result<OpenSite> make_site(FolderLock lock, const SiteFolder& folder, const std:
     return OpenSite{std::move(lock), std::move(store), {std::move(log), std::move(stamp)}, name, true};
 }
 
+/// Nothing is served that somebody changed past the program: a recall that was undone would go to a loom.
+Status check_tables(const SiteFolder& folder) {
+    WEAVE_TRY(const auto findings, verify_tables(folder.store()));
+    if (findings.empty()) return {};
+    return Error{ErrorCode::refused,
+                 "was changed by something else than loomlink: " + findings.front().text() +
+                     "; `loomlink verify` tells all, a backup can be restored",
+                 folder.store().string()};
+}
+
 Result<OpenSite> open_old_site(FolderLock lock, const SiteFolder& folder) {
     WEAVE_TRY(KeyPair log, load_server_key(folder.log_key(), ServerKeyRole::log));
     WEAVE_TRY(KeyPair stamp, load_server_key(folder.stamp_key(), ServerKeyRole::stamp));
     WEAVE_TRY(Store store, Store::open(folder.store()));
+    WEAVE_CHECK_OK(check_tables(folder));
     WEAVE_TRY(std::string name, store.read([](const Reader& reader) { return reader.site(); }));
     return OpenSite{
         std::move(lock), std::move(store), {std::move(log), std::move(stamp)}, std::move(name), false};

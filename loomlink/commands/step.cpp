@@ -35,7 +35,10 @@ SignedStep add_signed_step(CLI::App& app, CommandOutcome& outcome, const std::st
 
 /// What a person is told of a step that was done: the revision's new state, if nothing else matters.
 std::string state_told(const Json& answer, const StepWords&) {
-    return told(answer, "state");
+    const std::string state = told(answer, "state");
+    if (!answer.contains("approvals_needed")) return state;
+    return "approved by " + told(answer, "approvals") + " of " + told(answer, "approvals_needed") +
+           " people; still " + state;
 }
 
 void on_signed_step(const SignedStep& step, CommandOutcome& outcome, const std::string& below,
@@ -70,7 +73,7 @@ void add_submit(CLI::App& app, CommandOutcome& outcome) {
 void add_waive(CLI::App& app, CommandOutcome& outcome) {
     const auto step =
         add_signed_step(app, outcome, "waive", "Let the findings of one rule for one loom pass",
-                        "loomlink waive shoe 3 --rule floats.warp --loom 'EP 1' --reason 'Wanted'");
+                        "loomlink waive shoe 3 --rule float.back --loom 'EP 1' --reason 'Wanted'");
     add_text(step.client.command, "--rule", step.words->rule, "the rule, as check names it")->required();
     add_loom_name(step.client.command, "--loom", step.words->loom, "the loom")->required();
     const auto body_of = [](const StepWords& words) {

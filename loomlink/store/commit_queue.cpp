@@ -45,6 +45,11 @@ Status CommitQueue::commit(const std::function<Status(Writer&)>& change) {
     return std::move(job.outcome);
 }
 
+Status CommitQueue::last_write() const {
+    const std::lock_guard lock(m_mutex);
+    return m_last_write;
+}
+
 void CommitQueue::work() {
     std::unique_lock lock(m_mutex);
     while (true) {
@@ -64,6 +69,10 @@ void CommitQueue::work() {
 void CommitQueue::commit_all(const std::deque<Job*>& jobs) {
     Status status = m_connection ? Status() : reopen();
     if (status) status = run_all(jobs);
+    {
+        const std::lock_guard lock(m_mutex);
+        m_last_write = status;
+    }
     if (status) return;
     // Nothing of the batch was stored, so nobody of it may believe so. Whose change was refused anyway keeps
     // the reason.

@@ -27,6 +27,9 @@ class CommitQueue {
     /// Answers once the change is on the disk, or is not stored at all.
     Status commit(const std::function<Status(Writer&)>& change);
 
+    /// How the disk took the last commit.
+    [[nodiscard]] Status last_write() const;
+
   private:
     struct Job {
         const std::function<Status(Writer&)>* change;
@@ -42,11 +45,12 @@ class CommitQueue {
 
     std::string m_path;
     std::unique_ptr<sql::Connection> m_connection;
-    std::mutex m_mutex;
+    mutable std::mutex m_mutex;
     std::condition_variable m_wake;  ///< the writer: there is work, or an end
     std::condition_variable m_done;  ///< those who wait for an answer
     std::deque<Job*> m_waiting;
     bool m_ending = false;
+    Status m_last_write;
     std::thread m_thread;
 };
 

@@ -16,8 +16,7 @@ namespace {
 /// Each question tells the place first, then the values. The retelling of the log (workflow/retell*) makes the
 /// same of the records.
 constexpr const char* questions[]{
-    "SELECT 'key ' || k.id, p.login, k.purpose, k.public_key, k.created, k.revoked "
-    "FROM person_key k LEFT JOIN person p ON p.id = k.person",
+    "SELECT 'session ' || lower(hex(s.token)), p.login FROM session s JOIN person p ON p.id = s.person",
     "SELECT 'invitation of record ' || event, purpose, name, roles, expires, code, used FROM invitation",
     "SELECT 'policy ' || version, text, event FROM policy",
     "SELECT 'design ' || name, event FROM design",
@@ -78,6 +77,17 @@ KeptThing person_thing(const Person& person) {
         {person.full_name, person.active, hash_hex(sha256(person.password)), roles, person.event});
 }
 
+Json or_null(const std::optional<Seq>& seq) {
+    return seq ? Json(*seq) : Json(nullptr);
+}
+
+KeptThing key_thing(const PersonKey& key, const std::string& holder) {
+    return kept_thing("key " + key.id, {holder.empty() ? Json(nullptr) : Json(holder), key.purpose,
+                                        hash_hex(key.public_key),
+                                        key.sealed ? Json(hash_hex(sha256(*key.sealed))) : Json(nullptr),
+                                        key.created, or_null(key.revoked)});
+}
+
 }  // namespace
 
 KeptThing kept_thing(std::string place, const Json& values) {
@@ -93,7 +103,13 @@ Reader::List<KeptThing> Reader::kept() const {
             things.push_back(kept_thing(row.bytes(0), values));
         }));
     WEAVE_TRY(const auto everybody, people());
-    for (const Person& person : everybody) things.push_back(person_thing(person));
+    for (const Person& person : everybody) {
+        things.push_back(person_thing(person));
+        WEAVE_TRY(const auto own, keys(person.id));
+        for (const PersonKey& key : own) things.push_back(key_thing(key, person.login));
+    }
+    WEAVE_TRY(const auto machines, keys(std::nullopt));
+    for (const PersonKey& key : machines) things.push_back(key_thing(key, ""));
     WEAVE_TRY(const auto papers, trust_documents(1));
     for (const SitePaper& paper : papers)
         things.push_back(

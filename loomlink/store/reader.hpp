@@ -105,9 +105,9 @@ class Reader {
     [[nodiscard]] List<FaultReport> faults(Id release) const;
     [[nodiscard]] List<Loaded> loaded(Id release) const;
 
-    /// All that the tables keep beside log and objects, sorted; roles by their words. Not in it: sessions and
-    /// answers to requests, which are of today; sealed keys, which their own seal protects; what hashes and
-    /// constraints hold (objects, parents of revisions). Of a password's hash only its SHA-256 is told.
+    /// All that the tables keep beside log and objects, sorted; roles by their words. Not in it:
+    /// answers to requests, which are of today, and what hashes and constraints hold (objects, parents of
+    /// revisions). Of passwords' hashes and sealed keys only the SHA-256 is told.
     [[nodiscard]] List<KeptThing> kept() const;
 
     explicit Reader(sql::Connection& connection) : m_connection(&connection) {}

@@ -48,6 +48,8 @@ class Store::Core {
 
     Status commit(const std::function<Status(Writer&)>& change) { return m_queue.commit(change); }
 
+    [[nodiscard]] Status last_write() const { return m_queue.last_write(); }
+
     Status view(const std::function<Status(const Reader&)>& ask) {
         WEAVE_TRY(auto connection, take_reader());
         Status status;
@@ -124,6 +126,10 @@ Status Store::commit(const std::function<Status(Writer&)>& change) {
 
 Status Store::view(const std::function<Status(const Reader&)>& ask) const {
     return m_core->view(ask);
+}
+
+Status Store::last_write() const {
+    return m_core->last_write();
 }
 
 Status Store::backup(const fs::path& to) const {

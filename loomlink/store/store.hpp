@@ -49,6 +49,9 @@ class Store {
             ask, [this](const std::function<Status(const Reader&)>& run) { return view(run); });
     }
 
+    /// How the disk took the last write: an error of the system while it is full or fails.
+    [[nodiscard]] Status last_write() const;
+
     /// A copy of the store as it is now, while it is in use. Refused where the file exists.
     Status backup(const std::filesystem::path& to) const;
 

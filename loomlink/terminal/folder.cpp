@@ -118,7 +118,12 @@ Status put_into_place(const fs::path& made, const fs::path& folder) {
     return {};
 }
 
-void remove_release(const PlacedRelease& placed, const fs::path& releases, RecallReport& report) {
+const char* word_of(ReleaseState end) {
+    return end == ReleaseState::withdrawn ? "withdrawn" : "superseded";
+}
+
+void remove_release(const PlacedRelease& placed, const fs::path& releases, const std::string& how,
+                    RecallReport& report) {
     PlacedRelease rest{placed.number, placed.folder, {}};
     const fs::path folder = releases / placed.folder;
     std::error_code code;
@@ -141,7 +146,7 @@ void remove_release(const PlacedRelease& placed, const fs::path& releases, Recal
         }
         const std::string why = finding ? finding->message : "cannot be removed: " + code.message();
         report.kept.push_back({finding ? finding->trouble : FileTrouble::unreadable, name,
-                               "belongs to the withdrawn release " + std::to_string(placed.number) +
+                               "belongs to the " + how + " release " + std::to_string(placed.number) +
                                    " but was left: it " + why});
         rest.files.push_back(file);
     }
@@ -153,7 +158,7 @@ void remove_release(const PlacedRelease& placed, const fs::path& releases, Recal
         if (!told)
             report.kept.push_back(
                 {FileTrouble::too_many, placed.folder + "/" + shown(name),
-                 "lies in the folder of a withdrawn release but was not put there by this terminal"});
+                 "lies in the folder of a " + how + " release but was not put there by this terminal"});
     }
     if (!rest.files.empty()) report.state.placed.push_back(std::move(rest));
 }
@@ -216,16 +221,16 @@ Status check_recall(const TerminalState& state, const ReleaseManifest& manifest)
     return {};
 }
 
-RecallReport remove_recalled(const TerminalState& state, const fs::path& releases) {
+RecallReport remove_ended(const TerminalState& state, const fs::path& releases, ReleaseState end) {
     RecallReport report{{}, {}, state};
     report.state.placed.clear();
     for (const PlacedRelease& placed : state.placed) {
-        const bool withdrawn =
+        const bool has_ended =
             std::any_of(state.releases.begin(), state.releases.end(), [&](const SeenRelease& seen) {
-                return seen.number == placed.number && seen.state == ReleaseState::withdrawn;
+                return seen.number == placed.number && seen.state == end;
             });
-        if (withdrawn)
-            remove_release(placed, releases, report);
+        if (has_ended)
+            remove_release(placed, releases, word_of(end), report);
         else
             report.state.placed.push_back(placed);
     }

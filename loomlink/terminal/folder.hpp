@@ -52,9 +52,10 @@ struct RecallReport {
     TerminalState state;               ///< without what is gone; to be saved
 };
 
-/// Removes the files of releases that were withdrawn: those that this terminal wrote itself and that nobody
-/// has changed since. A changed file stays and is told, as is whatever else lies in the folder; an empty
-/// folder goes.
-RecallReport remove_recalled(const TerminalState& state, const std::filesystem::path& releases);
+/// Removes the files of releases that came to `end`, withdrawn or superseded: those that this terminal wrote
+/// itself and that nobody has changed since. A changed file stays and is told, as is whatever else lies in the
+/// folder; an empty folder goes.
+RecallReport remove_ended(const TerminalState& state, const std::filesystem::path& releases,
+                          ReleaseState end);
 
 }  // namespace weave::loomlink

@@ -173,6 +173,10 @@ Result<Json> Accounts::add_invited(const std::string& code, const Person& wish, 
         WEAVE_TRY(const auto found, reader.invitation(hash));
         if (!found || found->purpose != "person" || found->used || found->expires <= m_desk->now_text())
             return deny(Denial::rights, "this code is not, or no longer, good");
+        WEAVE_TRY(const EventRecord invited, reader.record(found->event));
+        WEAVE_TRY(const auto everybody, reader.people());
+        if (invited.statement.actor == server_actor && !everybody.empty())
+            return deny(Denial::rights, "this code was for the first administrator, who has joined");
         if (found->name && *found->name != wish.login)
             return deny(Denial::rights, "this code is for the name '" + *found->name + "'");
         WEAVE_TRY(const auto same, reader.person(wish.login));
@@ -191,6 +195,7 @@ Result<Json> Accounts::add_invited(const std::string& code, const Person& wish, 
                      {"roles", role_list(person.roles)},
                      {"key", key.id()},
                      {"public_key", to_hex(key.public_key)},
+                     {"sealed_sha256", hash_hex(sha256(write_sealed_key(key)))},
                      {"password_sha256", hash_hex(sha256(person.password))},
                      {"code_sha256", hash_hex(hash)}}};
     const Status stored = m_desk->store().write([&](Writer& writer) -> Status {
@@ -234,6 +239,8 @@ Result<Json> Accounts::reseal(const Caller& caller, const Ask& ask, Deed deed, c
                               const SealedKey& anew, const std::string& new_password) {
     const std::string hashed = m_desk->hasher().hash(new_password);
     deed.data["password_sha256"] = hash_hex(sha256(hashed));
+    deed.data["key"] = key.id;
+    deed.data["sealed_sha256"] = hash_hex(sha256(write_sealed_key(anew)));
     return m_desk->commit(
         caller, ask, deed,
         [&](const Reader& reader, const Caller&) -> Status {

@@ -13,6 +13,14 @@ namespace {
 
 constexpr std::int64_t most_listed_picks = 1000;
 
+/// Why signatures are too few: those that are there may count no more, or more are asked for than before.
+std::string manifest_lacks(const Release& release, const SignedManifest& manifest) {
+    if (manifest.counting < release.signatures.size())
+        return "a key that signed it counts no more: it has to be signed again";
+    return "of " + std::to_string(manifest.needed) + " people who must sign it now " +
+           std::to_string(manifest.people) + " did: it has to be signed by more";
+}
+
 /// Refused unless the files may be woven now.
 Status check_pullable(const Reader& reader, const FoundRelease& found) {
     const Release& release = found.release;
@@ -26,7 +34,7 @@ Status check_pullable(const Reader& reader, const FoundRelease& found) {
         return deny(Denial::conflict, "the loom has another profile now: it has to be released again");
     WEAVE_TRY(const SignedManifest manifest, signed_manifest(reader, release));
     if (manifest.people < manifest.needed)
-        return deny(Denial::conflict, "the keys that signed it count no more: it has to be signed again");
+        return deny(Denial::conflict, manifest_lacks(release, manifest));
     return {};
 }
 
@@ -143,6 +151,7 @@ Result<SignedManifest> signed_manifest(const Reader& reader, const Release& rele
         if (key == nullptr || !key->has(Role::release)) continue;
         people.insert(key->person);
         document.signatures.push_back({one.key, one.value});
+        ++manifest.counting;
     }
     manifest.people = people.size();
     manifest.bytes = write_signed(document);

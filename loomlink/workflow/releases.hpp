@@ -69,6 +69,7 @@ class ReleaseDesk {
 struct SignedManifest {
     std::string bytes;
     std::size_t people = 0, needed = 0;  ///< who signed with a key that counts, and how many must
+    std::size_t counting = 0;            ///< signatures of keys that count
 };
 Result<SignedManifest> signed_manifest(const Reader& reader, const Release& release);
 

@@ -28,7 +28,7 @@ Result<Json> Accounts::open_session(const Person& person) {
     WEAVE_TRY(const Hash key, token_key(token));
     const std::string expires = utc_text(m_desk->now() + m_desk->settings().session);
     return m_desk->store().write([&](Writer& writer) -> Result<Json> {
-        const Deed deed{"person.signed_in", person.login, {}, Json::object()};
+        const Deed deed{"person.signed_in", person.login, {}, {{"session_sha256", hash_hex(key)}}};
         WEAVE_CHECK_OK(writer.append(m_desk->statement_of(person.login, make_token(), deed)));
         WEAVE_CHECK_OK(writer.drop_expired_sessions(m_desk->now_text()));
         WEAVE_CHECK_OK(writer.add_session({key, person.id, expires, csrf}));
@@ -74,7 +74,8 @@ Result<Json> Accounts::log_in(const std::string& name, const std::string& passwo
 Result<Json> Accounts::log_out(const std::string& token) {
     WEAVE_TRY(const SignedIn signed_in, who(token));
     WEAVE_TRY(const Hash key, token_key(token));
-    const Deed deed{"person.signed_out", signed_in.caller.login, {}, Json::object()};
+    const Deed deed{
+        "person.signed_out", signed_in.caller.login, {}, {{"session_sha256", hash_hex(key)}}};
     return m_desk->store().write([&](Writer& writer) -> Result<Json> {
         WEAVE_CHECK_OK(writer.append(m_desk->statement_of(signed_in.caller.login, make_token(), deed)));
         WEAVE_CHECK_OK(writer.end_session(key));

@@ -217,7 +217,10 @@ Result<Json> Steps::approve(const Caller& caller, const Ask& ask, const StepWish
                     writer.add_decision({here.revision.id, caller.id, DecisionKind::approve, step.event}));
                 WEAVE_TRY(const SitePolicy policy, policy_in_force(writer));
                 WEAVE_TRY(const std::size_t approvals, approvals_of(writer, here.revision.id));
-                if (approvals < policy.approvals) return state_answer(RevisionState::submitted);
+                if (approvals < policy.approvals)
+                    return Json{{"state", word(RevisionState::submitted)},
+                                {"approvals", approvals},
+                                {"approvals_needed", policy.approvals}};
                 WEAVE_CHECK_OK(writer.set_state(here.revision.id, RevisionState::approved, step.event));
                 return state_answer(RevisionState::approved);
             });

@@ -44,6 +44,8 @@ class ToldPeople {
     void signer_invited(const Telling& told);
     void signer_enrolled(const Telling& told);
     void signer_revoked(const Telling& told);
+    void signed_in(const Telling& told);
+    void signed_out(const Telling& told);
     void policy_set(const Telling& told);
     void trust_published(const Telling& told);
 
@@ -63,6 +65,7 @@ class ToldPeople {
         std::string holder;  ///< a person, or a machine
         bool is_person = true;
         std::string public_key;
+        std::optional<std::string> sealed_sha256;
         Seq created = 0;
         std::optional<Seq> revoked;
     };
@@ -74,11 +77,13 @@ class ToldPeople {
     };
     void add_key(const Telling& told, const std::string& holder, bool is_person);
     void use_code(const Telling& told);
+    void end_sessions(const std::string& login);
     void revoke_keys(const std::string& holder, bool is_person, Seq seq);
 
     std::map<std::string, ToldPerson> m_people;
     std::map<std::string, ToldKey> m_keys;
     std::map<Seq, ToldInvitation> m_invitations;
+    std::map<std::string, std::string> m_sessions;  ///< person by the hash of the token
     std::vector<KeptThing> m_papers;
     std::int64_t m_policies = 0;
     std::size_t m_approvals = 1;

@@ -53,6 +53,7 @@ void ToldPeople::joined(const Telling& told) {
     person.active = true;
     person.event = told.seq();
     add_key(told, told.subject(), true);
+    m_keys.at(told.text("key")).sealed_sha256 = told.text("sealed_sha256");
     use_code(told);
 }
 
@@ -60,6 +61,8 @@ void ToldPeople::password_changed(const Telling& told) {
     ToldPerson& person = m_people.at(told.subject());
     person.password_sha256 = told.text("password_sha256");
     person.event = told.seq();
+    m_keys.at(told.text("key")).sealed_sha256 = told.text("sealed_sha256");
+    end_sessions(told.subject());
 }
 
 void ToldPeople::password_rehashed(const Telling& told) {
@@ -71,6 +74,7 @@ void ToldPeople::reset(const Telling& told) {
     person.password_sha256 = hash_hex(sha256(""));
     person.event = told.seq();
     revoke_keys(told.subject(), true, told.seq());
+    end_sessions(told.subject());
     m_invitations[told.seq()] = {"person",
                                  told.subject(),
                                  api_roles(person.roles),
@@ -89,6 +93,19 @@ void ToldPeople::set_active(const Telling& told, bool active) {
     ToldPerson& person = m_people.at(told.subject());
     person.active = active;
     person.event = told.seq();
+    if (!active) end_sessions(told.subject());
+}
+
+void ToldPeople::signed_in(const Telling& told) {
+    m_sessions[told.text("session_sha256")] = told.subject();
+}
+
+void ToldPeople::signed_out(const Telling& told) {
+    m_sessions.erase(told.text("session_sha256"));
+}
+
+void ToldPeople::end_sessions(const std::string& login) {
+    std::erase_if(m_sessions, [&](const auto& session) { return session.second == login; });
 }
 
 void ToldPeople::signer_invited(const Telling& told) {
@@ -118,7 +135,7 @@ void ToldPeople::trust_published(const Telling& told) {
 }
 
 void ToldPeople::add_key(const Telling& told, const std::string& holder, bool is_person) {
-    m_keys[told.text("key")] = {holder, is_person, told.text("public_key"), told.seq(), {}};
+    m_keys[told.text("key")] = {holder, is_person, told.text("public_key"), {}, told.seq(), {}};
 }
 
 void ToldPeople::use_code(const Telling& told) {
@@ -146,8 +163,9 @@ void ToldPeople::add_to(std::vector<KeptThing>& things) const {
     for (const auto& [id, key] : m_keys)
         things.push_back(kept_thing(
             "key " + id, {key.is_person ? Json(key.holder) : Json(nullptr),
-                          key.is_person ? "release" : "evidence", key.public_key, key.created,
-                          or_null(key.revoked)}));
+                          key.is_person ? "release" : "evidence", key.public_key,
+                          or_null(key.sealed_sha256), key.created, or_null(key.revoked)}));
+    for (const auto& [token, login] : m_sessions) things.push_back(kept_thing("session " + token, Json::array({login})));
     for (const auto& [seq, one] : m_invitations)
         things.push_back(kept_thing("invitation of record " + std::to_string(seq),
                                     {one.purpose, or_null(one.name), one.roles, one.expires, one.code,

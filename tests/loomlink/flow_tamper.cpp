@@ -85,6 +85,12 @@ constexpr Tampering tamperings[]{
      ": is [\"abe\",\"release\",\"0000"},
     {"UPDATE person_key SET person = (SELECT id FROM person WHERE login = 'abe') WHERE purpose = 'evidence'",
      ": is [\"abe\",\"evidence\""},
+    {"UPDATE person_key SET sealed = NULL WHERE sealed IS NOT NULL", ",null,"},
+    {"UPDATE person_key SET sealed = x'00' WHERE sealed IS NOT NULL", ": is [\"abe\",\"release\","},
+    {"UPDATE session SET person = (SELECT id FROM person WHERE login = 'ada')", ": is [\"ada\"], but the log"},
+    {"INSERT INTO session SELECT randomblob(32), id, '2099-01-01T00:00:00.000Z', 'x' FROM person WHERE login = "
+     "'ada'",
+     "no record of the log tells of it: [\"ada\"]"},
     {"UPDATE invitation SET roles = 'admin' WHERE used IS NULL AND roles = 'operator'",
      ": is [\"person\",null,\"admin\""},
     {"UPDATE invitation SET used = NULL", "invitation of record"},

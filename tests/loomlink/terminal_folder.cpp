@@ -171,24 +171,24 @@ TEST_CASE("what this terminal saw of a release is held against its folder") {
 
 TEST_CASE("what is not recalled stays") {
     Placed placed;
-    CHECK(remove_recalled(placed.state, placed.releases).removed.empty());
+    CHECK(remove_ended(placed.state, placed.releases, ReleaseState::withdrawn).removed.empty());
     CHECK(fs::exists(placed.folder / "shoe.jc5"));
     placed.recall(1);  // which this terminal never pulled
-    CHECK(remove_recalled(placed.state, placed.releases).removed.empty());
+    CHECK(remove_ended(placed.state, placed.releases, ReleaseState::withdrawn).removed.empty());
     CHECK(placed.findings().empty());
 }
 
 TEST_CASE("a recalled release goes with its folder") {
     Placed placed;
     placed.recall(2);
-    const RecallReport report = remove_recalled(placed.state, placed.releases);
+    const RecallReport report = remove_ended(placed.state, placed.releases, ReleaseState::withdrawn);
     CHECK(report.removed.size() == 3);
     CHECK(report.removed.front() == placed.release.folder + "/shoe.jc5");
     CHECK(report.kept.empty());
     CHECK(report.state.placed.empty());
     CHECK_FALSE(fs::exists(placed.folder));
-    CHECK(remove_recalled(report.state, placed.releases).removed.empty());
-    CHECK(remove_recalled(placed.state, placed.releases).kept.empty());  // had the state not been saved
+    CHECK(remove_ended(report.state, placed.releases, ReleaseState::withdrawn).removed.empty());
+    CHECK(remove_ended(placed.state, placed.releases, ReleaseState::withdrawn).kept.empty());  // had the state not been saved
 }
 
 TEST_CASE("what was changed, or is not of this terminal, stays and is told") {
@@ -196,7 +196,7 @@ TEST_CASE("what was changed, or is not of this terminal, stays and is told") {
     placed.recall(2);
     REQUIRE(write_file(placed.folder / "shoe.jc5", "changed by hand"));
     REQUIRE(write_file(placed.folder / "notes.txt", "mine"));
-    const RecallReport report = remove_recalled(placed.state, placed.releases);
+    const RecallReport report = remove_ended(placed.state, placed.releases, ReleaseState::withdrawn);
     CHECK(report.removed.size() == 2);
     REQUIRE(report.kept.size() == 2);
     CHECK(report.kept[0].path == placed.release.folder + "/shoe.jc5");
@@ -206,7 +206,7 @@ TEST_CASE("what was changed, or is not of this terminal, stays and is told") {
     CHECK(read_file(placed.folder / "notes.txt").value() == "mine");
     REQUIRE(report.state.placed.size() == 1);
     CHECK(report.state.placed[0].files.size() == 1);  // told again until a person has looked
-    CHECK(remove_recalled(report.state, placed.releases).kept.size() == 2);
+    CHECK(remove_ended(report.state, placed.releases, ReleaseState::withdrawn).kept.size() == 2);
 }
 
 TEST_CASE("nothing behind a link is removed") {
@@ -214,7 +214,7 @@ TEST_CASE("nothing behind a link is removed") {
     placed.recall(2);
     fs::rename(placed.folder, placed.home.path / "elsewhere");
     fs::create_symlink(placed.home.path / "elsewhere", placed.folder);
-    const RecallReport report = remove_recalled(placed.state, placed.releases);
+    const RecallReport report = remove_ended(placed.state, placed.releases, ReleaseState::withdrawn);
     CHECK(report.removed.empty());
     REQUIRE(report.kept.size() == 1);
     CHECK_THAT(report.kept[0].message, Catch::Contains("is a link now"));

@@ -122,7 +122,7 @@ void check_name(const Subject& subject, CheckReport& report) {
     if (characters(title) > most) {
         rule.find({}, "the title '" + title + "' has " + counted(characters(title), "character") +
                           ", but the file has room for " + std::to_string(most) +
-                          ": give the file a shorter name on release");
+                          ": the loom shows no more of it");
     }
     const bool plain = std::all_of(title.begin(), title.end(), [](char c) { return c >= 0x20 && c < 0x7f; });
     if (!plain)
