@@ -63,14 +63,15 @@ struct SaveWords {
     std::vector<std::int64_t> also;
 };
 
-/// Where a branch stands now; nothing where there is none of the name.
+/// Where a branch stands now, or main, where a new one starts; nothing in a design without revisions.
 Result<std::optional<std::int64_t>> head_of(ApiClient& client, const SaveWords& words) {
     WEAVE_TRY(const Json design, client.get(api_path({"designs", words.design})));
-    for (const Json& branch : entries(design, "branches"))
-        if (branch.is_object() && branch.value("name", Json()) == words.branch) {
-            WEAVE_TRY(const std::int64_t head, number_member(branch, "head"));
-            return std::optional(head);
-        }
+    for (const std::string& name : {words.branch, std::string("main")})
+        for (const Json& branch : entries(design, "branches"))
+            if (branch.is_object() && branch.value("name", Json()) == name) {
+                WEAVE_TRY(const std::int64_t head, number_member(branch, "head"));
+                return std::optional(head);
+            }
     return std::optional<std::int64_t>();
 }
 
@@ -103,7 +104,7 @@ void add_save(CLI::App& app, CommandOutcome& outcome) {
     add_text(command.command, "FILE", words->file, "the .weave file")->required();
     add_name(command.command, "DESIGN", words->design, "the design")->required();
     add_text(command.command, "-m,--message", words->message, "what changed")->required();
-    add_text(command.command, "--branch", words->branch, "the branch that it goes on; main if not given");
+    add_text(command.command, "--branch", words->branch, "the branch that it goes on, main if not given; a new one starts from --expected, or from main");
     add_number(command.command, "--expected", words->expected,
                "the revision that it was made from: refused where the branch has moved on since. If not "
                "given, the branch as the server has it now");

@@ -46,10 +46,14 @@ class LoomWatch {
         if (!m_trouble.empty()) m_outcome->note("the server answers again");
         m_trouble.clear();
         const std::size_t kept = report->kept.size();
-        if (report->has_news() || !m_pulled_once || kept != m_kept)
+        std::string refused;
+        for (const RefusedRelease& one : report->refused)
+            refused += std::to_string(one.number) + ": " + one.error.text() + "\n";
+        if (report->has_news() || !m_pulled_once || kept != m_kept || refused != m_refused)
             m_outcome->answer(to_json(*report, m_wish->loom), in_words(*report, m_wish->loom));
         m_pulled_once = true;
         m_kept = kept;
+        m_refused = refused;
         m_expires = report->expires;
         return {};
     }
@@ -83,6 +87,7 @@ class LoomWatch {
     bool m_pulled_once = false;
     int m_failures = 0;  ///< connections in a row that failed or brought trouble
     std::size_t m_kept = 0;
+    std::string m_refused;  ///< what could not be had the last time
     std::string m_trouble;  ///< the last one that was told; empty: all is well
     std::optional<Instant> m_expires;
 };

@@ -59,6 +59,7 @@ Status run_pull(ApiClient& client, const ClientWish& client_wish, const PullWord
                           outcome);
     WEAVE_TRY(const PullReport report, pull_signed_in(client, wish, again));
     outcome.answer(to_json(report, wish.loom), in_words(report, wish.loom));
+    if (!report.refused.empty()) outcome.fail(report.refused.front().error);
     if (!report.kept.empty()) outcome.found_something();
     return {};
 }

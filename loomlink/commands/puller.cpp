@@ -1,4 +1,5 @@
 #include <weave/core/descriptor.hpp>
+#include <weave/core/exit_code.hpp>
 #include <weave/core/file.hpp>
 #include <weave/core/sha256.hpp>
 #include <weave/core/text.hpp>
@@ -33,10 +34,13 @@ class Pull {
         RecallReport recall = remove_ended(checked.state, m_wish->to, ReleaseState::withdrawn);
         checked.state = std::move(recall.state);
         WEAVE_CHECK_OK(save_state(m_wish->state_file, checked.state));
-        PullReport report{{}, std::move(recall.removed), {}, std::move(recall.kept), checked.index.expires};
+        PullReport report{{}, std::move(recall.removed), {}, std::move(recall.kept), {}, checked.index.expires};
         for (const std::uint64_t number : wanted(checked.index)) {
-            WEAVE_TRY(HeldRelease held, hold(checked, number));
-            report.releases.push_back(std::move(held));
+            auto held = hold(checked, number);
+            if (held)
+                report.releases.push_back(*std::move(held));
+            else
+                report.refused.push_back({number, std::move(held).error()});
         }
         WEAVE_CHECK_OK(remove_superseded(checked.state, report));
         return report;
@@ -199,17 +203,22 @@ bool PullReport::has_news() const {
 }
 
 Json to_json(const PullReport& report, const std::string& loom) {
-    Json releases = Json::array(), kept = Json::array();
+    Json releases = Json::array(), kept = Json::array(), refused = Json::array();
+    for (const RefusedRelease& one : report.refused)
+        refused.push_back({{"number", one.number}, {"error", error_json(one.error)}});
     for (const HeldRelease& held : report.releases)
         releases.push_back({{"number", held.number}, {"folder", held.folder.string()}, {"new", held.is_new}});
     for (const FileFinding& finding : report.kept)
         kept.push_back({{"file", finding.path}, {"message", finding.message}});
-    return {{"loom", loom},
-            {"releases", std::move(releases)},
-            {"removed", report.removed},
-            {"superseded", report.superseded},
-            {"kept", std::move(kept)},
-            {"index_expires", utc_text(report.expires)}};
+    Json json{{"loom", loom},
+              {"releases", std::move(releases)},
+              {"removed", report.removed},
+              {"superseded", report.superseded},
+              {"kept", std::move(kept)},
+              {"refused", std::move(refused)},
+              {"index_expires", utc_text(report.expires)}};
+    if (!report.refused.empty()) json["error"] = error_json(report.refused.front().error);
+    return json;
 }
 
 std::string in_words(const PullReport& report, const std::string& loom) {
@@ -217,7 +226,10 @@ std::string in_words(const PullReport& report, const std::string& loom) {
     for (const HeldRelease& held : report.releases)
         words += on_one_line(loom) + ", release " + std::to_string(held.number) + ": " +
                  on_one_line(held.folder.string()) + (held.is_new ? "\n" : " (as before)\n");
-    if (report.releases.empty()) words += on_one_line(loom) + ": no release is in force\n";
+    for (const RefusedRelease& one : report.refused)
+        words += on_one_line(loom) + ", release " + std::to_string(one.number) + ": NOT fetched: " +
+                 on_one_line(one.error.text()) + "\n";
+    if (report.releases.empty() && report.refused.empty()) words += on_one_line(loom) + ": no release is in force\n";
     for (const std::string& file : report.removed) words += "recalled, removed: " + on_one_line(file) + "\n";
     for (const std::string& file : report.superseded)
         words += "superseded, removed: " + on_one_line(file) + "\n";

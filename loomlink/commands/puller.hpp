@@ -26,12 +26,19 @@ struct HeldRelease {
     bool is_new = false;  ///< came with this pull
 };
 
-/// What one pull did.
+/// A release in force that could not be had.
+struct RefusedRelease {
+    std::uint64_t number = 0;
+    Error error;
+};
+
+/// What one pull did. What could not be had keeps nothing else from being done.
 struct PullReport {
     std::vector<HeldRelease> releases;
     std::vector<std::string> removed;     ///< files of recalled releases
     std::vector<std::string> superseded;  ///< files of superseded ones, that were removed as well
     std::vector<FileFinding> kept;        ///< of all those that were left; a person has to look
+    std::vector<RefusedRelease> refused;
     Instant expires;                   ///< until when the index holds
 
     /// Whether anything is other than before.
@@ -48,8 +55,8 @@ Result<std::filesystem::path> usual_state_file(const std::string& loom);
 /// Pulls once: newer trust documents, the index, then what was recalled goes, what is wanted comes, and what was
 /// superseded goes, each held to what the terminal trusts and remembers (loomlink/terminal). A release appears
 /// whole or not at all. Pulls with one state wait for one another.
-/// Errors as of adopt_trust(), check_index(), check_release() and place_release(); usage where the terminal
-/// trusts nobody yet and no fingerprint is given.
+/// Errors as of adopt_trust() and check_index(), usage where the terminal trusts nobody yet and no fingerprint is
+/// given; those of single releases, as of check_release() and place_release(), stand in the report.
 Result<PullReport> pull(ApiClient& client, const PullWish& wish);
 
 }  // namespace weave::loomlink

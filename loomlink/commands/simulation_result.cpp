@@ -29,10 +29,15 @@ void read_coverage(JsonReader coverage, SimulationStatement& statement) {
     JsonReader of = coverage.object("of");
     statement.picks = static_cast<std::size_t>(of.integer("picks", 1, most_lines));
     statement.ends = static_cast<std::size_t>(of.integer("ends", 1, most_lines));
-    if (coverage.boolean("whole") || coverage.failed()) return;
+    const bool is_whole = coverage.boolean("whole");
+    const bool has_spans = !is_whole || coverage.has("picks") || coverage.has("ends");
+    if (coverage.failed() || !has_spans) return;
     const auto [first_pick, picks] = span_of(coverage, "picks", statement.picks);
     const auto [first_end, ends] = span_of(coverage, "ends", statement.ends);
-    statement.regions.push_back({first_pick, picks, first_end, ends});
+    if (!is_whole)
+        statement.regions.push_back({first_pick, picks, first_end, ends});
+    else if (!coverage.failed() && (picks != statement.picks || ends != statement.ends))
+        coverage.fail("is said to be whole, but names a part", "whole");
 }
 
 /// What the result owes to beside design and scene: those of its members that say how it was computed.

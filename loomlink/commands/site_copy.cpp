@@ -1,6 +1,7 @@
 #include <weave/core/descriptor.hpp>
 #include <weave/core/file.hpp>
 
+#include <csignal>
 #include <fcntl.h>
 #include <loomlink/commands/site_copy.hpp>
 #include <loomlink/keys/private_file.hpp>
@@ -87,6 +88,28 @@ class NewFolder {
     fs::path m_path;
 };
 
+/// Signals that end the program wait while this lives, so that no half copy of the server's keys stays behind.
+class SignalsHeld {
+  public:
+    SignalsHeld() {
+        sigemptyset(&m_ending);
+        for (const int signal : {SIGINT, SIGTERM, SIGHUP}) sigaddset(&m_ending, signal);
+        pthread_sigmask(SIG_BLOCK, &m_ending, &m_before);
+    }
+    ~SignalsHeld() { pthread_sigmask(SIG_SETMASK, &m_before, nullptr); }
+    SignalsHeld(const SignalsHeld&) = delete;
+    SignalsHeld& operator=(const SignalsHeld&) = delete;
+    [[nodiscard]] bool one_waits() const {
+        sigset_t waiting;
+        sigpending(&waiting);
+        return sigismember(&waiting, SIGINT) == 1 || sigismember(&waiting, SIGTERM) == 1 ||
+               sigismember(&waiting, SIGHUP) == 1;
+    }
+
+  private:
+    sigset_t m_ending{}, m_before{};
+};
+
 /// The folder as a name to put another one beside.
 fs::path without_slash(const fs::path& folder) {
     return folder.has_filename() ? folder : folder.parent_path();
@@ -127,11 +150,13 @@ Status back_up_site(const SiteFolder& site, const fs::path& to) {
     std::error_code code;
     if (fs::exists(fs::symlink_status(target, code)))
         return Error{ErrorCode::refused, "exists already", target.string()};
+    const SignalsHeld held;
     const NewFolder made(target.string() + ".part-" + std::to_string(::getpid()));
     WEAVE_CHECK_OK(made.make());
     const SiteFolder copy{made.path()};
     WEAVE_CHECK_OK(copy_database(site.store().string(), copy.store()));
     WEAVE_CHECK_OK(copy_keys(site, copy));
+    if (held.one_waits()) return system_fault("was asked to end; nothing was made", target.string());
     return made.put(target);
 }
 

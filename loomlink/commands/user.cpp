@@ -2,6 +2,7 @@
 
 #include <weave/core/text.hpp>
 
+#include <loomlink/commands/bootstrap.hpp>
 #include <loomlink/commands/client_command.hpp>
 #include <loomlink/commands/names.hpp>
 #include <loomlink/commands/sign_in.hpp>
@@ -154,6 +155,7 @@ void add_user_commands(CLI::App& app, CommandOutcome& outcome) {
         tell_code(client, answer, outcome);
         return {};
     });
+    add_user_bootstrap(user, outcome);
     add_join(user, outcome);
     add_named_steps(user, outcome);
     const auto password = add_client_command(

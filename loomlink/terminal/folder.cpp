@@ -172,8 +172,11 @@ Result<fs::path> place_release(TerminalState& state, const CheckedRelease& relea
     fs::path folder = releases / release.folder;
     std::error_code code;
     if (fs::exists(fs::symlink_status(folder, code))) {
-        WEAVE_CHECK_OK(check_placed(state.trust, release, folder));
-        return folder;
+        Status as_signed = check_placed(state.trust, release, folder);
+        if (as_signed) return folder;
+        Error trouble = std::move(as_signed).error();
+        trouble.message += "; move that folder away and pull again";
+        return trouble;
     }
     const fs::path incoming = incoming_folder(releases, release.folder);
     fs::remove_all(incoming, code);  // what an earlier try left when the power failed
@@ -216,7 +219,7 @@ Status check_recall(const TerminalState& state, const ReleaseManifest& manifest)
                            (!seen.body_sha256.empty() && seen.body_sha256 != body_sha256(manifest.document));
         if (other) return no("is another one than this terminal has seen under this number");
         if (seen.state == ReleaseState::withdrawn) return no("was withdrawn: it must not be woven");
-        if (seen.state == ReleaseState::superseded) return no("was superseded by a newer one");
+        if (seen.state == ReleaseState::superseded) return no("was superseded: by a newer release, or by another profile of the loom");
     }
     return {};
 }

@@ -2,6 +2,7 @@
 
 #include <algorithm>
 #include <loomlink/keys/codes.hpp>
+#include <loomlink/keys/file_name.hpp>
 #include <loomlink/keys/hex.hpp>
 #include <loomlink/keys/sealed_key.hpp>
 #include <loomlink/workflow/accounts.hpp>
@@ -113,16 +114,27 @@ Result<Json> person_json(const Reader& reader, const Person& person) {
 }
 
 Result<Json> Accounts::first_invitation() {
+    const auto known =
+        m_desk->store().read([](const Reader& reader) { return reader.people(); });
+    if (!known) return known.error();
+    if (!known->empty()) return deny(Denial::conflict, "this site has people already");
+    return invite_admin(Json::object());
+}
+
+Result<Json> Accounts::recovery_invitation() {
+    return invite_admin({{"recovery", true}});
+}
+
+/// An invitation that the server makes by itself. Without `recovery` it ends when the first person joins.
+Result<Json> Accounts::invite_admin(Json data) {
     const std::string code = make_code();
     WEAVE_TRY(const Hash hash, hash_of_code(code));
     const std::string expires = utc_text(m_desk->now() + m_desk->settings().invitation);
-    const Deed deed{"person.invited",
-                    {},
-                    {},
-                    {{"roles", Json::array({"admin"})}, {"code_sha256", hash_hex(hash)}, {"expires", expires}}};
+    data["roles"] = Json::array({"admin"});
+    data["code_sha256"] = hash_hex(hash);
+    data["expires"] = expires;
+    const Deed deed{"person.invited", {}, {}, data};
     const Status stored = m_desk->store().write([&](Writer& writer) -> Status {
-        WEAVE_TRY(const auto people, writer.people());
-        if (!people.empty()) return deny(Denial::conflict, "this site has people already");
         WEAVE_TRY(const Seq event, writer.append(m_desk->statement_of(server_actor, make_token(), deed)));
         return writer.add_invitation({hash, "person", {}, "admin", expires, event, {}});
     });
@@ -175,12 +187,16 @@ Result<Json> Accounts::add_invited(const std::string& code, const Person& wish, 
             return deny(Denial::rights, "this code is not, or no longer, good");
         WEAVE_TRY(const EventRecord invited, reader.record(found->event));
         WEAVE_TRY(const auto everybody, reader.people());
-        if (invited.statement.actor == server_actor && !everybody.empty())
+        if (invited.statement.actor == server_actor && !invited.statement.data.contains("recovery") &&
+            !everybody.empty())
             return deny(Denial::rights, "this code was for the first administrator, who has joined");
         if (found->name && *found->name != wish.login)
             return deny(Denial::rights, "this code is for the name '" + *found->name + "'");
         WEAVE_TRY(const auto same, reader.person(wish.login));
         if (same && !found->name) return deny(Denial::conflict, "the name is taken");
+        for (const Person& other : everybody)
+            if (other.login != wish.login && folded_name(other.full_name) == folded_name(wish.full_name))
+                return deny(Denial::conflict, "somebody of this full name is here already: add what tells you apart");
         return *found;
     };
     WEAVE_TRY(const Invitation asked, m_desk->store().read(usable));

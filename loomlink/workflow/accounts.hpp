@@ -21,6 +21,9 @@ class Accounts {
 
     /// The invitation of the first administrator, of a site that has nobody yet. Refused later.
     Result<Json> first_invitation();
+    /// The same for one more administrator, whoever has joined: for who has the site's own folder in hand, when
+    /// no administrator can sign in any more.
+    Result<Json> recovery_invitation();
     /// `code`, `expires`. The code is told once.
     Result<Json> invite(const Caller& caller, const Ask& ask, const std::vector<std::string>& roles);
     /// Makes an account with a sealed key of its own, or a new key for one that was reset; answers as log_in.
@@ -54,6 +57,7 @@ class Accounts {
     Result<Json> set_policy(const Caller& caller, const Ask& ask, const Json& policy);
 
   private:
+    Result<Json> invite_admin(Json data);
     Result<Json> open_session(const Person& person);
     Result<Json> reseal(const Caller& caller, const Ask& ask, Deed deed, const PersonKey& key,
                         const SealedKey& anew, const std::string& new_password);

@@ -99,8 +99,7 @@ Status check_head(const Reader& reader, Id design, const SaveWish& wish, const H
     const auto branch = std::find_if(branches.begin(), branches.end(),
                                      [&](const Branch& one) { return one.name == wish.branch; });
     if (branch == branches.end()) {
-        if (!wish.expected) return check_free(branches, wish.branch, "branch");
-        return deny(Denial::conflict, "there is no branch of this name");
+        return check_free(branches, wish.branch, "branch");  // a new one starts where `expected` says
     }
     WEAVE_TRY(const auto head, reader.revision(branch->head));
     if (!head || wish.expected != head->number)
@@ -147,7 +146,10 @@ Result<Revision> store_revision(Writer& writer, const Caller& caller, Revision m
     made.design = design.id;
     WEAVE_TRY(made.parents, parents_of(writer, design.id, wish));
     WEAVE_TRY(made.document, writer.put_object(wish.document));
-    const std::optional<Id> expected = wish.expected ? std::optional(made.parents.front()) : std::nullopt;
+    WEAVE_TRY(const auto branches, writer.branches(design.id));
+    const auto branch = std::find_if(branches.begin(), branches.end(),
+                                     [&](const Branch& one) { return one.name == wish.branch; });
+    const std::optional<Id> expected = branch == branches.end() ? std::nullopt : std::optional(branch->head);
     WEAVE_TRY(Revision stored, writer.add_revision(made));
     WEAVE_CHECK_OK(writer.move_branch({design.id, wish.branch, stored.id, made.event}, expected));
     return stored;

@@ -1,3 +1,5 @@
+#include <weave/core/text.hpp>
+
 #include <algorithm>
 #include <loomlink/workflow/accounts.hpp>
 #include <loomlink/workflow/looms.hpp>
@@ -34,9 +36,11 @@ Result<Release> own_release(const Reader& reader, const Caller& caller, const st
                             std::int64_t number) {
     WEAVE_CHECK_OK(find_own_loom(reader, caller, loom));
     WEAVE_TRY(FoundRelease found, find_release(reader, caller, loom, number));
-    if (found.release.state == ReleaseStage::released) return std::move(found.release);
-    return deny(Denial::conflict, std::string("the release is ") + release_word(found.release.state) +
-                                      ": it must not be woven");
+    WEAVE_TRY(const std::string now, state_now(reader, found.release));
+    if (now == release_word(ReleaseStage::released)) return std::move(found.release);
+    return deny(Denial::conflict,
+                (now == "awaiting" ? "the release waits for signatures" : "the release is " + now) +
+                    ": it must not be woven");
 }
 
 Status check_place(const Reader& reader, const Release& release, std::optional<std::int64_t> pick,
@@ -76,9 +80,11 @@ Result<Json> loom_entry(const Reader& reader, const Loom& loom) {
         WEAVE_TRY(const FoundRevision found, revision_of(reader, *loaded));
         text = found.design.name + ", release " + std::to_string(loaded->number);
     }
-    const auto released = std::count_if(releases.begin(), releases.end(), [](const Release& one) {
-        return one.state == ReleaseStage::released;
-    });
+    std::int64_t released = 0;
+    for (const Release& release : releases) {
+        WEAVE_TRY(const std::string now, state_now(reader, release));
+        if (now == release_word(ReleaseStage::released)) ++released;
+    }
     return Json{{"name", loom.name},
                 {"profile_name", profile.profile.name},
                 {"released", released},
@@ -92,10 +98,11 @@ Result<Json> releases_of_loom(const Reader& reader, const Loom& loom) {
         WEAVE_TRY(const FoundRevision found, revision_of(reader, release));
         WEAVE_TRY(const LastStep step, last_step(reader, release));
         WEAVE_TRY(const auto bookmark, reader.bookmark(release.id));
+        WEAVE_TRY(const std::string now, state_now(reader, release));
         list.push_back({{"number", release.number},
                         {"design", found.design.name},
                         {"revision", found.revision.number},
-                        {"state", release_word(release.state)},
+                        {"state", now},
                         {"at", step.at},
                         {"since", step.at},
                         {"by", step.by},
@@ -172,8 +179,10 @@ Result<Json> LoomDesk::set_profile(const Caller& caller, const Ask& ask, const s
             caller, ask, deed,
             [&](const Reader& reader, const Caller& now) -> Status {
                 WEAVE_CHECK_OK(need_role(now, PersonRole::administrator));
-                const auto found = find_loom(reader, now, loom);
-                return found ? Status() : Status(found.error());
+                WEAVE_TRY(const Loom found, find_loom(reader, now, loom));
+                WEAVE_TRY(const ProfileInForce until_now, profile_in_force(reader, found.id));
+                if (until_now.profile.sha256 != profile.sha256) return {};
+                return deny(Denial::conflict, "this is the profile that is in force: its releases would end for nothing");
             },
             [&](Writer& writer, const TakenStep& step) -> Result<Json> {
                 WEAVE_TRY(const Loom found, find_loom(writer, caller, loom));
@@ -192,9 +201,9 @@ Result<Json> LoomDesk::set_operators(const Caller& caller, const Ask& ask, const
         std::vector<Person> list;
         for (const std::string& name : names) {
             WEAVE_TRY(const auto person, reader.person(name));
-            if (!person) return bad_input("names somebody who is not there", "operators");
+            if (!person) return bad_input("names " + on_one_line(name) + ", who is not there", "operators");
             if (!caller_of(*person).is(PersonRole::operator_))
-                return bad_input("names somebody who is no operator", "operators");
+                return bad_input("names " + on_one_line(name) + ", who is no operator", "operators");
             list.push_back(*person);
         }
         return list;

@@ -49,6 +49,14 @@ bool has_unseen(std::string_view text) {
     return false;
 }
 
+/// A blank that looks like the usual one and is another: no-break, of other widths, of other scripts.
+bool has_odd_blank(std::string_view text) {
+    constexpr std::string_view blanks[]{"\u00a0", "\u1680", "\u2000", "\u2001", "\u2002", "\u2003", "\u2004", "\u2005",
+                                        "\u2006", "\u2007", "\u2008", "\u2009", "\u200a", "\u202f", "\u205f", "\u3000"};
+    return std::any_of(std::begin(blanks), std::end(blanks),
+                       [&](std::string_view blank) { return text.find(blank) != std::string_view::npos; });
+}
+
 bool is_plain(char c) {
     return (c >= 'a' && c <= 'z') || (c >= 'A' && c <= 'Z') || (c >= '0' && c <= '9') || c == '-' ||
            c == '_' || c == '.';
@@ -85,6 +93,8 @@ Status check_line(const std::string& text, const std::string& member, std::size_
                          member);
     if (has_unseen(text)) return bad_input("has characters that nobody sees", member);
     if (text.find_first_not_of(' ') == std::string::npos && least > 0) return bad_input("is missing", member);
+    if (text.starts_with(' ') || text.ends_with(' ') || text.find("  ") != std::string::npos || has_odd_blank(text))
+        return bad_input("has blanks in front, behind, twice, or that are none of a keyboard's", member);
     return {};
 }
 

@@ -72,11 +72,11 @@ Result<Json> may_of(const Reader& reader, const Caller& caller, const FoundRelea
     const bool is_operator =
         caller.is(PersonRole::operator_) &&
         std::any_of(own.begin(), own.end(), [&](const Loom& loom) { return loom.id == found.loom.id; });
+    WEAVE_TRY(const SignedManifest manifest, signed_manifest(reader, found.release));
     if (is_operator && state == ReleaseStage::released) {
-        may.push_back("loaded");
+        if (manifest.people >= manifest.needed) may.push_back("loaded");
         may.push_back("fault");
     }
-    WEAVE_TRY(const SignedManifest manifest, signed_manifest(reader, found.release));
     WEAVE_TRY(const auto key, signing_key(reader, caller.id).operator bool()
                                   ? Result<std::string>(signing_key(reader, caller.id)->id)
                                   : Result<std::string>(std::string()));
@@ -96,13 +96,14 @@ Result<Json> release_json(const Reader& reader, const Caller& caller, const Foun
     WEAVE_TRY(const SignedManifest manifest, signed_manifest(reader, release));
     WEAVE_TRY(const LastStep step, last_step(reader, release));
     WEAVE_TRY(const auto bookmark, reader.bookmark(release.id));
+    WEAVE_TRY(const std::string now, state_now(reader, release));
     Json json{
         {"loom", found.loom.name},
         {"number", release.number},
         {"design", body.at("design")},
         {"revision", body.at("revision").at("number")},
         {"revision_sha256", body.at("revision").at("sha256")},
-        {"state", release_word(release.state)},
+        {"state", now},
         {"reason", step.reason},
         {"since", step.at},
         {"picks", body.at("picks")},
@@ -125,6 +126,14 @@ Result<Json> release_json(const Reader& reader, const Caller& caller, const Foun
 
 const char* release_word(ReleaseStage state) {
     return state == ReleaseStage::prepared ? "awaiting" : word(state);
+}
+
+Result<std::string> state_now(const Reader& reader, const Release& release) {
+    if (release.state == ReleaseStage::released) {
+        WEAVE_TRY(const SignedManifest manifest, signed_manifest(reader, release));
+        if (manifest.people < manifest.needed) return std::string(release_word(ReleaseStage::prepared));
+    }
+    return std::string(release_word(release.state));
 }
 
 Result<LastStep> last_step(const Reader& reader, const Release& release) {

@@ -76,6 +76,10 @@ Result<SignedManifest> signed_manifest(const Reader& reader, const Release& rele
 /// `released`, `awaiting`, `superseded` or `withdrawn`.
 const char* release_word(ReleaseStage state);
 
+/// The word for what a release is now: `awaiting` as well where it is in force but too few of the keys that
+/// signed it count, since a key was revoked or more people must sign than then. Nobody can pull it then.
+Result<std::string> state_now(const Reader& reader, const Release& release);
+
 /// Why a release came to its last state, and when.
 struct LastStep {
     std::string reason, at, by;

@@ -6,7 +6,7 @@ namespace weave::loomlink {
 namespace {
 
 Error nobody() {
-    return deny(Denial::who, "sign in first");
+    return deny(Denial::who, "the session has ended: sign in again");
 }
 
 Result<Hash> token_key(const std::string& token) {

@@ -35,11 +35,13 @@ Status add_revisions(const Reader& reader, RevisionState state, const char* what
     return {};
 }
 
-Status add_releases(const Reader& reader, const Loom& loom, ReleaseStage stage, const char* what,
+/// Releases of a loom that are in this state now (state_now()).
+Status add_releases(const Reader& reader, const Loom& loom, const std::string& state, const char* what,
                     const std::function<Result<bool>(const Release&)>& concerns, Json& items) {
     WEAVE_TRY(const auto releases, reader.releases(loom.id));
     for (const Release& release : releases) {
-        if (release.state != stage) continue;
+        WEAVE_TRY(const std::string now, state_now(reader, release));
+        if (now != state) continue;
         WEAVE_TRY(const bool waits, concerns(release));
         if (!waits) continue;
         WEAVE_TRY(const FoundRevision found, revision_of(reader, release));
@@ -48,7 +50,7 @@ Status add_releases(const Reader& reader, const Loom& loom, ReleaseStage stage, 
                          {"revision", found.revision.number},
                          {"loom", loom.name},
                          {"release", release.number},
-                         {"state", release_word(stage)},
+                         {"state", state},
                          {"what", what},
                          {"since", step.at}});
     }
@@ -111,13 +113,14 @@ Status add_for_approver(const Reader& reader, const Caller& caller, Json& items)
         WEAVE_TRY(const auto keys, reader.keys(caller.id));
         return std::none_of(release.signatures.begin(), release.signatures.end(),
                             [&](const ReleaseSignature& one) {
-                                return std::any_of(keys.begin(), keys.end(),
-                                                   [&](const PersonKey& key) { return key.id == one.key; });
+                                return std::any_of(keys.begin(), keys.end(), [&](const PersonKey& key) {
+                                    return key.id == one.key && !key.revoked;
+                                });
                             });
     };
     WEAVE_TRY(const auto looms, reader.looms());
     for (const Loom& loom : looms)
-        WEAVE_CHECK_OK(add_releases(reader, loom, ReleaseStage::prepared, "waits for your signature",
+        WEAVE_CHECK_OK(add_releases(reader, loom, "awaiting", "waits for your signature",
                                     unsigned_by_me, items));
     return {};
 }
@@ -129,7 +132,7 @@ Status add_for_operator(const Reader& reader, const Caller& caller, Json& items)
     };
     WEAVE_TRY(const auto looms, reader.looms_of(caller.id));
     for (const Loom& loom : looms)
-        WEAVE_CHECK_OK(add_releases(reader, loom, ReleaseStage::released, "released, not loaded yet",
+        WEAVE_CHECK_OK(add_releases(reader, loom, "released", "released, not loaded yet",
                                     not_loaded, items));
     return {};
 }

@@ -179,6 +179,13 @@ TEST_CASE("a part of a cloth that was simulated becomes one region; what is no r
         broken[member] = 7;
         CHECK_FALSE(statement_of_result(broken.dump()));
     }
+    for (const Json& span : {Json::array({1, 1}), Json::array({3, 1}), Json::array({1.5, 2}), Json("x")}) {
+        Json false_whole = part;
+        false_whole["coverage"]["whole"] = true;
+        false_whole["coverage"]["picks"] = span;
+        INFO(span.dump());
+        CHECK_FALSE(statement_of_result(false_whole.dump()));
+    }
     Json outside = part;
     outside["coverage"]["picks"] = {11, 101};
     CHECK_FALSE(statement_of_result(outside.dump()));

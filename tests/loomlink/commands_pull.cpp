@@ -122,6 +122,50 @@ TEST_CASE("a loom pulls what was released, finds what was altered, and gives up 
     CHECK(mill.run(mill.pull_words({"--release", "1"})).code == 4);
 }
 
+TEST_CASE("what could not be had hides no recall and keeps nothing else from coming", "[commands]") {
+    CommandMill mill;
+    mill.set_up();
+    mill.save("twill-2-2");
+    mill.approve("1");
+    mill.release("1");
+    REQUIRE(mill.run(mill.pull_words({"--trust", mill.trust_fingerprint()})).code == 0);
+    const fs::path first = release_folders(mill.at("loom")).at(0);
+    REQUIRE(write_file(first / "notes.txt", "mine"));
+    mill.save("plain");
+    mill.approve("2");
+    mill.release("2", {"--supersedes", "1"});
+    mill.done("mary", {"policy", "--release-signatures", "2"});
+    mill.done("mary", {"trust", "publish"}, true);
+    const Ended pulled = mill.run(mill.pull_words());
+    const Json told = pulled.json();
+    INFO(pulled.out << pulled.err);
+    CHECK(told.at("refused").at(0).at("number") == 2);
+    CHECK_THAT(pulled.err, Catch::Contains("people who must sign"));
+    CHECK(told.at("superseded").size() > 0);
+    CHECK(told.at("kept").at(0).at("file").get<std::string>().ends_with("notes.txt"));
+    CHECK(pulled.code == 1);
+    CHECK(fs::exists(first / "notes.txt"));
+}
+
+TEST_CASE("what was superseded leaves the loom once its successor lies there; two pulls take turns",
+          "[commands]") {
+    CommandMill mill;
+    mill.set_up();
+    mill.save("twill-2-2");
+    mill.approve("1");
+    mill.release("1");
+    REQUIRE(mill.run(mill.pull_words({"--trust", mill.trust_fingerprint()})).code == 0);
+    mill.save("plain");
+    mill.approve("2");
+    mill.release("2", {"--supersedes", "1"});
+    Running one(mill.pull_words(), mill.folder.path), other(mill.pull_words(), mill.folder.path);
+    CHECK(one.wait().code == 0);
+    CHECK(other.wait().code == 0);
+    const auto folders = release_folders(mill.at("loom"));
+    REQUIRE(folders.size() == 1);
+    CHECK_THAT(folders[0].filename().string(), Catch::StartsWith("release-2"));
+}
+
 TEST_CASE("a recalled file that somebody changed stays, is told, and the pull ends with 1", "[commands]") {
     CommandMill mill;
     mill.set_up();

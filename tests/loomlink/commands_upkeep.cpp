@@ -174,6 +174,53 @@ TEST_CASE("heads kept in a second place find out who rewrites the log, and a los
     CHECK(refused.error().where == mill.heads.string());
 }
 
+TEST_CASE("who has the folder of a site brings an administrator back, while it is not served", "[commands]") {
+    CommandMill mill;
+    mill.set_up();
+    const std::vector<std::string> words{"user", "bootstrap", mill.site_folder, "--json"};
+    CHECK(mill.run(words).code == 4);  // it is being served
+    mill.stop();
+    CHECK(mill.run({"user", "bootstrap", mill.at("nothing")}).code == 3);
+    CHECK_FALSE(fs::exists(mill.at("nothing")));
+    const std::string code = mill.run(words).json().at("code").get<std::string>();
+    mill.start();
+    mill.join(mill.url() + "/join#" + code, "bea");
+    CHECK(mill.done("bea", {"user", "list"}).at("people").size() == 6);
+    mill.stop();
+    CHECK(mill.run({"verify", mill.site_folder}).code == 0);
+}
+
+TEST_CASE("a configuration whose places are not there is found before the site is served", "[commands]") {
+    CommandMill mill;
+    const auto file = mill.at("loomlink.json");
+    for (const auto& [text, where] : std::vector<std::pair<std::string, std::string>>{
+             {R"({"plain":true,"address":"0.0.0.0"})", "address"},
+             {R"({"certificate":"no.pem","key":"no.key"})", "certificate"},
+             {R"({"heads":"nowhere/heads.jsonl"})", "heads"},
+             {R"({"heads":"."})", "heads"}}) {
+        INFO(text);
+        REQUIRE(write_file(file, text));
+        const Ended ended = mill.run({"serve", mill.at("new"), "--config", file, "--check-config"});
+        CHECK(ended.code == 3);
+        CHECK_THAT(ended.err, Catch::Contains(where));
+    }
+    REQUIRE(write_file(file, R"({"heads":"heads.jsonl"})"));
+    CHECK(mill.run({"serve", mill.at("new"), "--config", file, "--check-config"}).code == 0);
+    CHECK_FALSE(fs::exists(mill.at("new")));
+}
+
+TEST_CASE("a site that was changed past the program is not served", "[commands]") {
+    CommandMill mill;
+    mill.set_up();
+    mill.stop();
+    tamper_with(mill.site_folder / "loomlink.db",
+                "INSERT INTO person_role SELECT id, 'engineer' FROM person WHERE login = 'dora'");
+    const auto refused = mill.try_start();
+    REQUIRE_FALSE(refused);
+    CHECK(refused.error().code == ErrorCode::refused);
+    CHECK_THAT(refused.error().message, Catch::Contains("person dora") && Catch::Contains("loomlink verify"));
+}
+
 TEST_CASE("looms refuse a site that was put back to an older time, until it has other keys", "[commands]") {
     CommandMill mill;
     mill.set_up();

@@ -232,10 +232,72 @@ TEST_CASE("two people sign where the policy asks for two; a revoked key has to b
     site.enter("eve", code.at("code"));
     got(flow.trust().publish(site.people.at("ada"), site.ask("ada"), false));
     CHECK(denied(flow.releases().manifest(site.people.at("otto"), "EP 1", 1)) == Denial::conflict);
+    // Everybody sees that it waits, whose turn it is, and nobody can say that it is loaded.
+    CHECK(got(flow.looms().read(site.people.at("otto"), "EP 1")).at("releases")[0].at("state") == "awaiting");
+    CHECK(got(flow.releases().read(site.people.at("otto"), "EP 1", 1)).at("state") == "awaiting");
+    const auto waits = [&](const std::string& who) {
+        return got(flow.waiting(site.people.at(who))).at("items").dump().find("waits for your signature") !=
+               std::string::npos;
+    };
+    CHECK(waits("eve"));
+    CHECK_FALSE(waits("abe"));
+    CHECK(got(flow.waiting(site.people.at("otto"))).at("items").empty());
+    CHECK(denied(flow.looms().confirm_loaded(site.people.at("otto"), site.ask(), "EP 1", 1)) ==
+          Denial::conflict);
     got(flow.releases().sign(site.people.at("eve"), site.ask("eve"), "EP 1", 1, "again"));
+    CHECK(got(flow.releases().read(site.people.at("otto"), "EP 1", 1)).at("state") == "released");
     const std::string manifest = got(flow.releases().manifest(site.people.at("otto"), "EP 1", 1));
     const std::string newest = got(flow.trust().documents(2)).at("documents")[0];
     CHECK(open_manifest(manifest, got(read_trust(newest))));
+}
+
+TEST_CASE("the codes for the first administrator end with that one; who has the folder can make another") {
+    Folder folder;
+    const auto path = folder / "store.db";
+    DeskSettings settings;
+    settings.key_cost = settings.login_cost = test_cost();
+    static_cast<void>(Store::create(path, "mill").value());
+    const auto flow = got(Workflow::open(Store::open(path).value(), {KeyPair::generate(), KeyPair::generate()},
+                                         settings));
+    const Json first = got(flow->accounts().first_invitation());
+    const Json second = got(flow->accounts().first_invitation());
+    const auto join = [&](const Json& code, const std::string& name, const std::string& full_name) {
+        return flow->accounts().join(code.at("code"), name, full_name, FlowSite::password(name), "10.0.0.1");
+    };
+    got(join(second, "ada", "Ada Ames"));
+    CHECK(denied(join(first, "mallory", "Mallory")) == Denial::rights);
+    CHECK(denied(flow->accounts().first_invitation()) == Denial::conflict);
+    const Json recovery = got(flow->accounts().recovery_invitation());
+    CHECK(denied(join(recovery, "bea", "ada AMES")) == Denial::conflict);  // people would take her for Ada
+    for (const char* name : {" Bea", "Bea ", "Bea  B", "Bea\u00a0B"}) CHECK_FALSE(join(recovery, "bea", name));
+    got(join(recovery, "bea", "Bea Ball"));
+    CHECK(all_text(verify_tables(path).value()) == "");
+}
+
+TEST_CASE("the profile that is in force already ends no release") {
+    FlowSite site;
+    Workflow& flow = *site.flow;
+    site.set_policy();
+    site.set_up_loom();
+    got(flow.designs().add(site.people.at("dora"), site.ask(), "shoe"));
+    site.save("dora", {});
+    site.approve(1);
+    got(flow.releases().release(site.people.at("abe"), site.ask("abe"), {"shoe", 1, "EP 1", {1}, {}, "go"}));
+    CHECK(denied(flow.looms().set_profile(site.people.at("ada"), site.ask(), "EP 1",
+                                          FlowSite::profile("ep-2688"))) == Denial::conflict);
+    got(flow.releases().manifest(site.people.at("otto"), "EP 1", 1));
+}
+
+TEST_CASE("a new branch starts where it is said to") {
+    FlowSite site;
+    Workflow& flow = *site.flow;
+    got(flow.designs().add(site.people.at("dora"), site.ask(), "shoe"));
+    site.save("dora", {});
+    got(flow.designs().save(site.people.at("dora"), site.ask(),
+                            {"shoe", "trial", "bolder", FlowSite::document("bolder"), 1, {}}));
+    CHECK(got(flow.designs().revision(site.people.at("enno"), "shoe", 2)).at("parents") == Json::array({1}));
+    CHECK(denied(flow.designs().save(site.people.at("dora"), site.ask(),
+                                     {"shoe", "other", "x", FlowSite::document("x"), 9, {}})) == Denial::absent);
 }
 
 TEST_CASE("a fault at the loom waits for who made the revision, as long as the release is woven") {

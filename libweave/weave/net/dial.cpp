@@ -107,7 +107,8 @@ asio::awaitable<Status> secure(Dialled& dialled, const ClientOptions& options) {
         const bool distrusted = options.tls->fingerprint.empty() && verdict != X509_V_OK;
         if (distrusted)
             co_return not_the_one(options, std::string("the server's certificate is not trusted: ") +
-                                               X509_verify_cert_error_string(verdict));
+                                               X509_verify_cert_error_string(verdict) +
+                                               "; if it is the right one, give its SHA-256 (--fingerprint)");
         co_return network_fault(options, error, dialled.deadline.passed());
     }
     if (options.tls->fingerprint.empty()) co_return Status();

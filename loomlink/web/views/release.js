@@ -54,7 +54,8 @@ function weaving(loom, source, content) {
     };
     const go = event => {
         event.preventDefault();
-        const wanted = Number(number.value.replace(/[\s.,'’]/g, ''));
+        const typed = number.value.trim(); // digits, in groups of three or in none: 1.5 is no pick 15
+        const wanted = /^(\d+|\d{1,3}([\s.,'’]\d{3})+)$/.test(typed) ? Number(typed.replace(/\D/g, '')) : NaN;
         if (Number.isInteger(wanted) && wanted >= 1 && wanted <= content.picks) show_pick(wanted);
         else trouble.textContent = `This release has the picks 1 to ${grouped(content.picks)}`;
     };
