@@ -23,8 +23,9 @@ const list = (title, items) => (items?.length ? h('section', { class: 'card' }, 
 function card(diff, path, query, from, to) {
     if (!diff.pixels.compared) return h('section', { class: 'card' }, h('h2', {}, 'Card image'), h('p', { class: 'empty' }, 'The cards are not compared: ' + diff.pixels.why_not));
     const picture = `/api/v1${path}.png${query}`;
-    return h('section', { class: 'card' }, h('h2', {}, 'Card image'),
-        h('img', { class: 'drawing', src: picture, alt: `The card images of revisions ${from} and ${to}, laid on each other` }),
+    const drawing = h('p', { class: 'hint', role: 'status' }, 'The picture is being drawn …');
+    return h('section', { class: 'card' }, h('h2', {}, 'Card image'), drawing,
+        h('img', { class: 'drawing', src: picture, alt: `The card images of revisions ${from} and ${to}, laid on each other`, onload: () => drawing.remove(), onerror: () => { drawing.textContent = 'The picture could not be drawn.'; } }),
         h('p', {}, h('a', { class: 'button', href: picture, download: `compared-${from}-${to}.png` }, 'Download the picture')));
 }
 
