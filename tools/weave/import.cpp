@@ -72,6 +72,10 @@ std::string in_words(OutputFormat format) {
     return "picture";
 }
 
+std::string with_article(OutputFormat format) {
+    return (format == OutputFormat::ep ? "an " : "a ") + in_words(format);
+}
+
 Error usage_fault(const std::string& message, const std::string& where) {
     return {ErrorCode::usage, message, where};
 }
@@ -87,7 +91,7 @@ Status check_kind(const ImportRequest& request, const LoomProfile& profile, cons
         return bad_input("is neither a JC5 nor an EP file, and the loom's profile does not say raw",
                          request.in);
     if (*kind == profile.output) return {};
-    return bad_input("is a " + in_words(*kind) + " file, but the profile " + request.loom +
+    return bad_input("is " + with_article(*kind) + " file, but the profile " + request.loom +
                          " describes a loom that takes " + in_words(profile.output) + " files",
                      request.in);
 }
@@ -116,7 +120,7 @@ Result<Imported> read_import(const ImportRequest& request) {
     }
     if (!wif && !is_bitmap(bytes)) {
         if (const auto kind = recognise_controller_file(bytes, extension)) {
-            return usage_fault("is a " + in_words(*kind) +
+            return usage_fault("is " + with_article(*kind) +
                                    " file, which is read as its loom's profile says: --loom LOOM.json",
                                request.in);
         }
