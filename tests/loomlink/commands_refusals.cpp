@@ -15,7 +15,8 @@ TEST_CASE("a call that makes no sense ends with 2 and says what is missing", "[c
         {{"weave"}, "there is no command 'weave'"},
         {{"--loud"}, "there is no option '--loud'"},
         {{"user"},
-         "name what to do; user has list, invite, join, roles, disable, enable, reset and password"},
+         "name what to do; user has list, invite, bootstrap, join, roles, disable, enable, reset "
+         "and password"},
         {{"user", "bake"}, "there is no command 'bake' of user; user has list, invite"},
         {{"login", "--name", "dora"}, "say which server"},
         {{"login", "https://127.0.0.1:1"}, "say who you are"},
