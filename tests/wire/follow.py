@@ -93,7 +93,7 @@ OTHERS = {"welcome", "unsupported", "accepted", "refused", "state", "jobs", "job
 
 
 class Follower:
-    """A client that attaches to session 7, of which it has nothing yet, and listens."""
+    """A client that attaches to session 7, of which it has nothing yet and nobody acknowledged anything, and listens."""
 
     def __init__(self):
         self.frames, self.events, self.layouts = [], [], {}

@@ -3,7 +3,7 @@
 #include <weave/wire/message.hpp>
 #include <weave/wire/message_form.hpp>
 
-#include <cmath>
+#include <limits>
 
 // Private. What each message and each of its parts is made of (message_form.hpp); PROTOCOL.md says the same in words.
 
