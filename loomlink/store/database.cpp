@@ -1,6 +1,8 @@
 #include <cstring>
+#include <filesystem>
 #include <loomlink/keys/hex.hpp>
 #include <loomlink/store/database.hpp>
+#include <unistd.h>
 
 namespace weave::loomlink::sql {
 
@@ -33,6 +35,17 @@ Hash Row::hash(int column) const {
         std::memcpy(hash.data(), data, hash.size());
     return hash;
 }
+
+namespace {
+
+/// SQLite writes beside a database in use even to read it; its own message does not say so.
+std::string why_not_opened(const std::string& path) {
+    const std::string folder = std::filesystem::path(path).parent_path().string();
+    if (::access(folder.empty() ? "." : folder.c_str(), W_OK) == 0) return "";
+    return ": its folder cannot be written, which even reading needs; copy it to another place first";
+}
+
+}  // namespace
 
 Result<std::unique_ptr<Connection>> Connection::open(const std::string& path, Access access) {
     const int flags =
@@ -103,7 +116,7 @@ Error Connection::trouble(int code) const {
         case SQLITE_NOTADB:
             return system_fault("is damaged, or is no store (" + message + ")", m_path);
         case SQLITE_CANTOPEN:
-            return system_fault("cannot be opened (" + message + ")", m_path);
+            return system_fault("cannot be opened (" + message + ")" + why_not_opened(m_path), m_path);
         case SQLITE_READONLY:
             return system_fault("may not be written", m_path);
         case SQLITE_TOOBIG:
