@@ -11,12 +11,11 @@ namespace weave::loomlink {
 
 namespace {
 
-/// Adds a line in one write, and answers once it is on the disk.
+/// Adds a line, and answers once it is on the disk.
 Status add_line(const std::filesystem::path& file, const std::string& line) {
     const Descriptor opened(::open(file.c_str(), O_WRONLY | O_APPEND | O_CREAT | O_CLOEXEC, 0644));
     if (opened.number() < 0) return file_fault(file, "open");
-    const ssize_t written = ::write(opened.number(), line.data(), line.size());
-    if (written != static_cast<ssize_t>(line.size())) return file_fault(file, "write");
+    WEAVE_CHECK_OK(write_all(opened, line, file));
     return ::fsync(opened.number()) == 0 ? Status() : Status(file_fault(file, "flush"));
 }
 

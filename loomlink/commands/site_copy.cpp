@@ -161,17 +161,16 @@ Status back_up_site(const SiteFolder& site, const fs::path& to) {
 }
 
 Status restore_site(const SiteFolder& backup, const SiteFolder& to) {
-    WEAVE_CHECK_OK(check_store_is_there(backup));
-    std::error_code code;
-    if (!fs::exists(to.path, code) && ::mkdir(to.path.c_str(), 0700) != 0)
-        return file_fault(to.path, "make the folder");
-    WEAVE_CHECK_OK(check_site_folder(to));
-    WEAVE_TRY(const FolderLock lock, FolderLock::take(to.path));
     WEAVE_TRY(const auto findings, verify_site(backup, {}));
     if (!findings.empty())
         return Error{ErrorCode::refused,
                      "is not as it was written: " + findings.front().text() + " (verify tells all)",
                      backup.path.string()};
+    std::error_code code;
+    if (!fs::exists(to.path, code) && ::mkdir(to.path.c_str(), 0700) != 0)
+        return file_fault(to.path, "make the folder");
+    WEAVE_CHECK_OK(check_site_folder(to));
+    WEAVE_TRY(const FolderLock lock, FolderLock::take(to.path));
     WEAVE_CHECK_OK(restore_store(backup.store(), to.store()));
     return copy_keys(backup, to);
 }

@@ -13,7 +13,7 @@ namespace {
 #define WEAVE_OF_RELEASE "'release ' || r.number || ' of ' || l.name"
 #define WEAVE_RELEASES "JOIN release r ON r.id = x.release JOIN loom l ON l.id = r.loom"
 
-/// Each question tells the place first, then the values. The retelling of the log (workflow/retell*) makes the
+/// Each question tells the place first, then the values. The retelling of the log (workflow/retelling.hpp) makes the
 /// same of the records.
 constexpr const char* questions[]{
     "SELECT 'session ' || lower(hex(s.token)), p.login FROM session s JOIN person p ON p.id = s.person",

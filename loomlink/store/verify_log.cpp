@@ -117,8 +117,9 @@ Status inspect_heads(Inspection& inspection, const std::string& site, const Leav
                                         [](const sql::Row& row) {
                                             return std::tuple(row.integer(0), row.bytes(1), row.integer(2));
                                         }));
-    WEAVE_TRY(const std::int64_t shown, inspection.connection.number(
-                                            "SELECT count(*) FROM event WHERE kind IN ('release.pulled', 'log.exported')"));
+    WEAVE_TRY(const std::int64_t shown,
+              inspection.connection.number(
+                  "SELECT count(*) FROM event WHERE kind IN ('release.pulled', 'log.exported')"));
     if (heads.empty() && shown > 0)
         inspection.find("heads", "are missing, though looms or engineers were given some");
     for (const auto& [id, bytes, last] : heads) {

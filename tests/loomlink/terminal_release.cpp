@@ -109,7 +109,7 @@ TEST_CASE("what is not released, superseded or withdrawn cannot be pulled") {
     pull.in_index = [](ReleaseIndex& index) { index.releases[1].state = ReleaseState::withdrawn; };
     check_forbidden(pull.pull(), "was withdrawn: it must not be woven");
     pull.in_index = [](ReleaseIndex& index) { index.releases[1].state = ReleaseState::superseded; };
-    check_forbidden(pull.pull(), "was superseded");
+    check_forbidden(pull.pull(), "was superseded by a newer one");
 }
 
 TEST_CASE("an index that ran out since it was checked releases nothing") {
