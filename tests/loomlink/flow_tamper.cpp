@@ -141,7 +141,7 @@ constexpr Tampering tamperings[]{
     {"UPDATE bookmark SET pick = 1", "place in release 1 of EP 1: is [1,\"otto\"]"},
     {"UPDATE fault_report SET text = 'nothing'", "fault of record"},
     {"DELETE FROM loaded", "loading of record"},
-    {"UPDATE trust_document SET object = (SELECT id FROM object LIMIT 1)", "trust document 1: is [null,"},
+    {"UPDATE trust_document SET object = (SELECT object FROM loom_profile)", "trust document 1: is [null,"},
 };
 
 }  // namespace
