@@ -89,7 +89,7 @@ def read_frame(data):
 
 
 EVENTS = {"layout", "phase", "applied", "flipped", "checkpointed", "recovered", "ended"}
-OTHERS = {"welcome", "unsupported", "accepted", "refused", "state", "jobs", "job", "job_ended", "gap"}
+OTHERS = {"welcome", "unsupported", "accepted", "refused", "state", "jobs", "sessions", "job", "job_ended", "gap"}
 
 
 class Follower:

@@ -38,8 +38,8 @@ T client(const std::string& type, std::size_t skip = 0) {
     return std::get<T>(read_client_message(example("client", type, skip)).value());
 }
 template <class T>
-T server(const std::string& type) {
-    return std::get<T>(read_server_message(example("server", type)).value());
+T server(const std::string& type, std::size_t skip = 0) {
+    return std::get<T>(read_server_message(example("server", type, skip)).value());
 }
 
 std::string client_refusal(const std::string& text) {
@@ -112,6 +112,7 @@ TEST_CASE("a client's messages mean what the protocol says") {
     CHECK(client<ListJobs>("list_jobs").request == "shoe-4711");
     CHECK(client<Cancel>("cancel").job == 12);
     CHECK(client<AcknowledgeJob>("acknowledge_job").job == 12);
+    CHECK(client<ListSessions>("list_sessions").request == "shoe-4711");
 }
 
 TEST_CASE("a change is one of four") {
@@ -138,8 +139,15 @@ TEST_CASE("a server's answers mean what the protocol says") {
         CHECK((job.job == 12 && job.phase == JobPhase::running && job.title == "shoe"));
         CHECK((job.step == 840 && job.residual == 0.02 && job.left_s == 95.5));
     }
+    const JobState waiting = server<JobList>("jobs").jobs.at(1);
+    CHECK((waiting.phase == JobPhase::waiting && waiting.place == 2U && waiting.wait_s == 240.0 && !waiting.left_s));
+    const SessionSummary session = server<SessionList>("sessions").sessions.at(0);
+    CHECK((session.session == 7 && session.title == "shoe" && session.phase == Phase::running && session.step == 1200));
+    CHECK((session.residual == 0.015625 && session.points == 97232 && session.attached == 1));
     CHECK(server<JobEnded>("job_ended").phase == JobPhase::done);
     CHECK(server<JobEnded>("job_ended").report.at("converged") == true);
+    CHECK_FALSE(server<JobEnded>("job_ended").evidence);
+    CHECK(server<JobEnded>("job_ended", 1).evidence->at("format") == "weave-signed-evidence");
     CHECK((server<Gap>("gap").first == 301 && server<Gap>("gap").last == 340));
 }
 
@@ -188,6 +196,12 @@ TEST_CASE("what is not in the protocol is refused, with its place") {
     CHECK_THAT(client_refusal(with(example("client", "frames"), "/most_per_second", 1e9)), Contains("most_per_second"));
     CHECK_THAT(server_refusal(with(example("server", "gap"), "/last", 300)), Contains("last: is before the first"));
     CHECK_THAT(server_refusal(with(example("server", "job_ended"), "/phase", "running")), Contains("phase: is no end"));
+    CHECK_THAT(server_refusal(with(example("server", "job_ended"), "/evidence", "signed")), Contains("evidence: must be an object"));
+    CHECK_THAT(server_refusal(with(example("server", "jobs"), "/jobs/1/place", 0)), Contains("jobs[1].place"));
+    CHECK_THAT(server_refusal(with(example("server", "sessions"), "/sessions/0/points", 0)), Contains("sessions[0].points"));
+    CHECK_THAT(server_refusal(with(example("server", "sessions"), "/sessions/0/phase", "done")), Contains("sessions[0].phase"));
+    CHECK_THAT(server_refusal(with(example("server", "sessions"), "/sessions", Json(std::vector<Json>(1001, Json(0))))),
+               Contains("sessions: has more than 1000 items"));
     CHECK_THAT(server_refusal(with(example("server", "ended"), "/report", 3)), Contains("report: must be an object"));
     CHECK_THAT(server_refusal(with(example("server", "layout"), "/yarns/1/colour", "red")), Contains("yarns[1].colour"));
     CHECK_THAT(server_refusal(with(example("server", "layout"), "/yarns/1/colour", "#D85030")), Contains("yarns[1].colour"));

@@ -7,9 +7,11 @@ namespace {
 
 /// `type` of each message, in the order of the variants.
 const form::Names client_types{"hello",      "create", "attach",      "run",    "pause",  "step",   "change", "read_state",
-                               "checkpoint", "close",  "acknowledge", "frames", "submit", "list_jobs", "cancel", "acknowledge_job"};
+                               "checkpoint", "close",  "acknowledge", "frames", "submit", "list_jobs", "cancel", "acknowledge_job",
+                               "list_sessions"};
 const form::Names server_types{"welcome", "unsupported", "accepted", "refused", "state",   "jobs",         "job",       "job_ended",
-                               "gap",     "layout",      "phase",    "applied", "flipped", "checkpointed", "recovered", "ended"};
+                               "gap",     "layout",      "phase",    "applied", "flipped", "checkpointed", "recovered", "ended",
+                               "sessions"};
 
 /// Reads the alternative of this number.
 template <class Message, std::size_t index = 0>

@@ -101,6 +101,7 @@ struct ReadState {
     std::string request;
     std::uint64_t session = 1;
 };
+/// Answered once the state is on disk.
 struct Checkpoint {
     std::string request;
     std::uint64_t session = 1;
@@ -137,9 +138,12 @@ struct Cancel {
 struct AcknowledgeJob {
     std::uint64_t job = 1;
 };
+struct ListSessions {
+    std::string request;
+};
 
 using ClientMessage = std::variant<Hello, Create, Attach, Run, Pause, Step, MakeChange, ReadState, Checkpoint, Close,
-                                   Acknowledge, WantFrames, Submit, ListJobs, Cancel, AcknowledgeJob>;
+                                   Acknowledge, WantFrames, Submit, ListJobs, Cancel, AcknowledgeJob, ListSessions>;
 
 // ---- From the server: answers ----
 
@@ -185,10 +189,27 @@ struct JobState {
     std::uint64_t step = 0;
     std::optional<double> residual;
     std::optional<double> left_s;  ///< estimated until its end
+    std::optional<std::uint64_t> place;  ///< of a waiting one in the queue; 1: the next to begin
+    std::optional<double> wait_s;        ///< of a waiting one: expected until it begins
 };
 struct JobList {
     std::string request;
     std::vector<JobState> jobs;
+};
+
+/// A session as a list has it.
+struct SessionSummary {
+    std::uint64_t session = 1;
+    std::string title;  ///< of the design
+    Phase phase = Phase::paused;  ///< of one that has ended: its last
+    std::uint64_t step = 0;
+    std::optional<double> residual;  ///< none: nothing was computed yet
+    std::uint64_t points = 1;        ///< control points of a frame
+    std::uint64_t attached = 0;      ///< connections now
+};
+struct SessionList {
+    std::string request;
+    std::vector<SessionSummary> sessions;
 };
 
 // ---- From the server: what is told unasked, and not kept ----
@@ -202,6 +223,7 @@ struct JobEnded {
     JobPhase phase = JobPhase::done;  ///< done, failed or cancelled
     std::optional<Error> error;       ///< of a failed one
     Json report = Json::object();     ///< as `weave simulate --json` has it; empty where there is none
+    std::optional<Json> evidence;     ///< of a done one, where the server has a key: the signed document that the server hands out
 };
 /// Frames that this connection will not bring.
 struct Gap {
@@ -247,10 +269,11 @@ struct Flipped {
     std::string reason;  ///< where it is not done
 };
 struct Checkpointed {
-    std::uint64_t session = 1, seq = 1, step = 0;
+    std::uint64_t session = 1, seq = 1, step = 0;  ///< step of the state that was written
     std::optional<std::string> request;  ///< none: made unasked
 };
-/// After a fault the session goes on from a checkpoint; changes since then are repeated at their steps.
+/// After a fault the session goes on from a checkpoint; changes since then are repeated at their steps, and events that
+/// were told already are not told again.
 struct Recovered {
     std::uint64_t session = 1, seq = 1, step = 0;
     std::uint64_t frame = 0;  ///< the last before the fault; the next has a higher number and an earlier step
@@ -267,7 +290,7 @@ struct Ended {
 };
 
 using ServerMessage = std::variant<Welcome, Unsupported, Accepted, Refused, State, JobList, JobProgress, JobEnded, Gap,
-                                   Layout, PhaseChanged, Applied, Flipped, Checkpointed, Recovered, Ended>;
+                                   Layout, PhaseChanged, Applied, Flipped, Checkpointed, Recovered, Ended, SessionList>;
 
 /// A message as its canonical JSON (RFC 8785). Its members must be such as are read again, numbers finite; text that
 /// is no UTF-8 appears with escapes.

@@ -22,11 +22,12 @@ inline const Names error_names{"usage", "bad input", "invalid", "refused", "syst
 
 // ---- Limits ----
 
-constexpr std::size_t most_versions = 64, most_jobs = 10'000, most_yarns = std::size_t{1} << 18;
+constexpr std::size_t most_versions = 64, most_jobs = 10'000, most_sessions = 1'000, most_yarns = std::size_t{1} << 18;
 constexpr std::size_t most_changes = 65'536;  ///< of pins, fields, held crossings or flips in one message
 constexpr std::size_t longest_name = 100, longest_title = 1000, longest_words = 65'536;
 constexpr std::uint64_t most_yarn = static_cast<std::uint64_t>(most_yarn_number);
 constexpr std::uint64_t most_row = most_yarn;
+constexpr std::uint64_t most_points = most_frame_bytes;
 constexpr double most_seconds_told = 1e9;
 constexpr Range amount_range{0, std::numeric_limits<double>::max()}, factor_range{1e-9, 1e9}, strain_range{1, 2};
 
@@ -261,7 +262,8 @@ void describe(Form& form, M& submit) {
     form.part("simulation", submit.simulation);
     form.parts("flips", submit.flips, most_changes);
 }
-template <class Form, Either<ListJobs> M>
+template <class Form, class M>
+    requires Either<M, ListJobs> || Either<M, ListSessions>
 void describe(Form& form, M& list) {
     form.request(list.request);
 }
@@ -320,11 +322,28 @@ void describe(Form& form, M& job) {
     form.count("step", job.step);
     maybe_number(form, "residual", job.residual, amount_range);
     maybe_number(form, "left_s", job.left_s, {0, most_seconds_told});
+    maybe_count(form, "place", job.place, 1);
+    maybe_number(form, "wait_s", job.wait_s, {0, most_seconds_told});
 }
 template <class Form, Either<JobList> M>
 void describe(Form& form, M& list) {
     form.request(list.request);
     form.parts("jobs", list.jobs, most_jobs);
+}
+template <class Form, Either<SessionSummary> M>
+void describe(Form& form, M& session) {
+    form.count("session", session.session, 1);
+    form.text("title", session.title, longest_title);
+    form.word("phase", session.phase, phase_names);
+    form.count("step", session.step);
+    maybe_number(form, "residual", session.residual, amount_range);
+    form.count("points", session.points, 1, most_points);
+    form.count("attached", session.attached);
+}
+template <class Form, Either<SessionList> M>
+void describe(Form& form, M& list) {
+    form.request(list.request);
+    form.parts("sessions", list.sessions, most_sessions);
 }
 template <class Form, Either<JobProgress> M>
 void describe(Form& form, M& progress) {
@@ -339,6 +358,7 @@ void describe(Form& form, M& ended) {
     }
     maybe_error(form, ended.error);
     form.object("report", ended.report);
+    form.maybe("evidence", ended.evidence, [](auto& inner, auto& evidence) { inner.object("evidence", evidence); });
 }
 template <class Form, Either<Gap> M>
 void describe(Form& form, M& gap) {
@@ -359,7 +379,7 @@ void describe(Form& form, M& yarn) {
     form.count("beam", yarn.beam, 0, most_yarn);
     form.number("radius_mm", yarn.radius_mm, {1e-9, 1e9});
     form.colour("colour", yarn.colour);
-    form.count("points", yarn.points, 1, most_frame_bytes);
+    form.count("points", yarn.points, 1, most_points);
     form.flag("periodic", yarn.is_periodic);
     form.row("turns", yarn.turns, "must be two whole numbers from 0 to 1000", Counts{0, 1000});
 }
