@@ -79,6 +79,10 @@ Result<std::optional<LinkMessage>> Link::receive() {
     return std::optional<LinkMessage>(std::move(message));
 }
 
+void Link::stop_receiving() {
+    ::shutdown(m_socket.number(), SHUT_RD);
+}
+
 void Link::cut() {
     ::shutdown(m_socket.number(), SHUT_RDWR);
 }

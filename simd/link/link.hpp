@@ -39,6 +39,8 @@ class Link {
     Result<std::optional<LinkMessage>> receive();
     /// Ends what send and receive wait for, from any thread.
     void cut();
+    /// Receives nothing any more; what is sent still arrives.
+    void stop_receiving();
 
   private:
     Status send(char kind, std::string_view bytes);

@@ -44,7 +44,9 @@ std::vector<std::vector<Vec3>> controls_of(const SimScene& scene) {
 
 PlanRun::PlanRun(Design design, Plan plan, const RunGoal& goal, std::size_t threads)
     : m_design(std::move(design)), m_plan(std::move(plan)), m_goal(goal), m_executor(std::make_unique<Executor>(threads)),
-      m_parameters(m_plan), m_scene(m_plan.scene) {}
+      m_parameters(m_plan), m_scene(m_plan.scene) {
+    m_last.ending = Ending::stopped;
+}
 
 void PlanRun::start_at(const StartState& start, bool since_plan) {
     m_scene = scene_at(m_plan, start);
@@ -191,6 +193,10 @@ std::optional<Ending> PlanRun::cut_short() const {
     if (m_cost.seconds >= m_goal.most_seconds) return Ending::time;
     if (m_cost.iterations >= m_goal.most_iterations) return Ending::iterations;
     return {};
+}
+
+void PlanRun::forget_stop() {
+    if (m_last.ending == Ending::stopped) m_last.ending = Ending::iterations;
 }
 
 std::vector<std::vector<Vec3>> PlanRun::control() const {

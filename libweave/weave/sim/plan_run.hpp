@@ -79,6 +79,9 @@ class PlanRun {
     /// What leaves no more to be done, if anything does: the last watch, or the time or the steps that are used up.
     [[nodiscard]] std::optional<Ending> cut_short() const;
 
+    /// The watch that ended the last leg did so to let something in, not to end the run.
+    void forget_stop();
+
     // ---- Flips ----
 
     /// Leads two yarns past one another; what follows relaxes the cloth again. Where that cannot be, it is listed with its

@@ -155,6 +155,7 @@ Status Run::unfold() {
 
 Status Run::change(const SystemScene& warp, const SystemScene& weft) {
     if (m_now->is_flipping()) m_now->end_flip();
+    m_now->forget_stop();
     const LedParameters& led = m_now->parameters();
     const LiveParameters warps = asked(warp, m_design.scene.warp, led.wanted(System::warp)),
                          wefts = asked(weft, m_design.scene.weft, led.wanted(System::weft));
@@ -175,6 +176,7 @@ Status Run::change(const SystemScene& warp, const SystemScene& weft) {
 
 /// What is under way comes to its end as it lies.
 void Run::settle() {
+    m_now->forget_stop();
     if (m_now->is_flipping()) m_now->end_flip();
     if (is_coarse()) refine();
 }
