@@ -96,7 +96,10 @@ Status Work::wait_for_admission() {
         m_inbox.wait({});
         if (m_inbox.finish() != Finish::no) return {};
     }
-    return limit_memory(*m_inbox.admitted());
+    const Json granted = *m_inbox.admitted();
+    m_order.number = granted.at("number");
+    m_folder = granted.at("folder").get<std::string>();
+    return {};
 }
 
 // ---- The work ----
