@@ -6,6 +6,7 @@
 #include "simulate_words.hpp"
 
 #include <weave/core/file.hpp>
+#include <weave/core/sha256.hpp>
 #include <weave/core/text.hpp>
 #include <weave/design/document.hpp>
 #include <weave/design/edit.hpp>
@@ -498,6 +499,7 @@ Status run_simulation(CommandOutcome& outcome, const Wish& wish) {
     WEAVE_CHECK_OK(write_file(wish.out, bytes));
     Json answer = yarns.report;
     answer["file"] = wish.out;
+    answer["yarns_sha256"] = sha256_hex(bytes);
     std::string words = on_one_line(wish.out) + ", " + ending_in_words(yarns.report);
     if (!wish.save_design.empty()) {
         const bool any = is_any_flip_done(yarns.report);
