@@ -12,13 +12,14 @@
 #include <poll.h>
 #include <string>
 #include <sys/socket.h>
+#include <sys/un.h>
 #include <unistd.h>
 
 namespace weave::net::testing {
 
 using namespace std::chrono_literals;
 
-/// A socket to a port of this machine, for bytes that no decent client sends.
+/// A socket to a port or a Unix socket of this machine, for bytes that no decent client sends.
 class RawSocket {
   public:
     explicit RawSocket(std::uint16_t port, int receive_buffer = 0)
@@ -29,6 +30,12 @@ class RawSocket {
         place.sin_family = AF_INET;
         place.sin_port = htons(port);
         place.sin_addr.s_addr = htonl(INADDR_LOOPBACK);
+        m_connected = ::connect(m_socket, reinterpret_cast<const sockaddr*>(&place), sizeof place) == 0;
+    }
+    explicit RawSocket(const std::filesystem::path& path) : m_socket(::socket(AF_UNIX, SOCK_STREAM, 0)) {
+        sockaddr_un place{};
+        place.sun_family = AF_UNIX;
+        path.native().copy(place.sun_path, sizeof place.sun_path - 1);
         m_connected = ::connect(m_socket, reinterpret_cast<const sockaddr*>(&place), sizeof place) == 0;
     }
     ~RawSocket() { ::close(m_socket); }
@@ -125,8 +132,9 @@ inline ClientOptions client_of(const Server& server) {
 }
 
 /// What a server sends to these bytes until it closes.
-inline std::string reply_to(std::uint16_t port, const std::string& bytes) {
-    RawSocket socket(port);
+template <class Place>
+std::string reply_to(const Place& place, const std::string& bytes) {
+    RawSocket socket(place);
     socket.send(bytes);
     return socket.read_all();
 }

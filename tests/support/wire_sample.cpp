@@ -93,7 +93,7 @@ void record(const std::string& path) {
     recording.say(PhaseChanged{session, 2, 0, Phase::running});
     for (std::uint64_t number = 1; number <= 40; ++number) {
         if (number == 20) recording.say(layout_of(2, 3, fine));
-        if (number == 25) recording.say(Applied{session, 4, 250, "somebody-else", Flip{3, 4, true}});
+        if (number == 25) recording.say(Applied{session, 4, 250, "somebody-else", Flip{3, 4, true}, {}});
         if (number == 28) recording.say(Flipped{session, 5, 280, "somebody-else", false, "ends „in the way“"});
         if (number % 4 != 3) recording.add('b', taken(encode_frame(frame_of(engine, number, number < 20 ? 1 : 2, number < 20 ? coarse : fine))));
     }

@@ -58,7 +58,7 @@ class HttpClient::Connected {
     [[nodiscard]] bool was_stale() const { return m_stale; }
 
     Result<Response> send(const std::string& head, const ClientRequest& request, const Sink* sink) {
-        Result<Response> outcome = system_fault("the request failed", host_field(m_options));
+        Result<Response> outcome = system_fault("the request failed", place_of(m_options));
         const auto run = [&]() -> asio::awaitable<void> { outcome = co_await talk(head, request, sink); };
         m_io.restart();
         asio::co_spawn(m_io, run, asio::detached);
@@ -136,7 +136,7 @@ class HttpClient::Connected {
                 continue;
             }
             if (got.size() > m_options.most_body_bytes - kept.size())
-                co_return bad_input("the answer is too long", host_field(m_options));
+                co_return bad_input("the answer is too long", place_of(m_options));
             kept += got;
         }
         response.body = make_bytes(std::move(kept));
@@ -147,7 +147,7 @@ class HttpClient::Connected {
         const bool nonsense = error.category() == http::make_error_code(http::error::bad_chunk).category() &&
                               error != http::error::end_of_stream && error != http::error::partial_message;
         if (nonsense && !m_line->deadline.passed())
-            return bad_input("the server's answer is no HTTP: " + error.message(), host_field(m_options));
+            return bad_input("the server's answer is no HTTP: " + error.message(), place_of(m_options));
         return network_fault(m_options, error, m_line->deadline.passed());
     }
 
@@ -186,9 +186,17 @@ Result<Response> HttpClient::transfer(const ClientRequest& request, const Sink* 
 }
 
 Result<ClientOptions> parse_origin(const std::string& origin) {
-    const auto wrong = [&] { return bad_input("is no http:// or https:// address", on_one_line(origin)); };
+    const auto wrong = [&] {
+        return bad_input("is no http:// or https:// address, nor unix:/ and a path", on_one_line(origin));
+    };
     ClientOptions options;
     std::string_view rest = origin;
+    if (rest.starts_with("unix:")) {
+        rest.remove_prefix(5);
+        if (!rest.starts_with('/') || rest.ends_with('/') || on_one_line(origin) != origin) return wrong();
+        options.unix_socket = rest;
+        return options;
+    }
     if (rest.starts_with("https://"))
         options.tls.emplace();
     else if (!rest.starts_with("http://"))

@@ -25,14 +25,16 @@ struct ClientOptions {
     std::string host = "127.0.0.1";  ///< name or address, without brackets
     std::uint16_t port = 0;
     std::optional<Trust> tls;                        ///< none: plain
+    std::filesystem::path unix_socket;               ///< where the service is, in place of host and port; plain
     std::chrono::milliseconds connect_time{10'000};  ///< to reach the server, TLS included
     std::chrono::milliseconds answer_time{60'000};   ///< from a request to the head of its answer
     std::chrono::milliseconds stall_time{30'000};    ///< without a byte of a body coming or going
     std::size_t most_body_bytes = 64u << 20;  ///< of an answer kept in memory, or of one WebSocket message
 };
 
-/// `https://host:port`, `http://host:port` or an IPv6 address in brackets, as a person writes it, taken
-/// apart; a slash may follow. Over TLS the system's authorities are trusted. Errors: bad_input.
+/// `https://host:port`, `http://host:port` (an IPv6 address in brackets; a slash may follow) or
+/// `unix:/path/of/socket`, as a person writes it, taken apart. Over TLS the system's authorities are trusted.
+/// Errors: bad_input.
 Result<ClientOptions> parse_origin(const std::string& origin);
 
 /// What a client asks.

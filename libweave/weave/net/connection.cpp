@@ -24,6 +24,7 @@ constexpr std::size_t small_body = 16384;  // copied behind its head, to leave i
 constexpr Milliseconds linger_time{2'000};
 constexpr std::size_t linger_bytes = 256 << 10;
 constexpr int retry_seconds = 2;
+constexpr std::string_view local_host = "localhost";  // a Unix socket has no name of its own
 
 /// Adds to a counter while it lives.
 class Share {
@@ -50,16 +51,6 @@ Response busy() {
     Response response = trouble(503, "the service is busy; try again in a moment", ErrorCode::system);
     response.headers.add("Retry-After", std::to_string(retry_seconds));
     return response;
-}
-
-/// The key under which connections are counted: the address, of IPv6 the network that one customer is given.
-std::string address_key(const asio::ip::address& address) {
-    if (!address.is_v6()) return address.to_string();
-    if (address.to_v6().is_v4_mapped())
-        return asio::ip::make_address_v4(asio::ip::v4_mapped, address.to_v6()).to_string();
-    auto bytes = address.to_v6().to_bytes();
-    std::fill(bytes.begin() + 8, bytes.end(), static_cast<unsigned char>(0));
-    return asio::ip::address_v6(bytes).to_string() + "/64";
 }
 
 bool has_token(std::string_view list, std::string_view token) {
@@ -136,13 +127,12 @@ void Service::count(const char* name, const char* help, const Labels& labels) co
     if (options.metrics) options.metrics->counter(name, help, labels).add();
 }
 
-Connection::Connection(std::shared_ptr<Service> service, Tcp::socket socket, const Tcp::endpoint& peer)
+Connection::Connection(std::shared_ptr<Service> service, Socket socket, Peer peer)
     : m_service(std::move(service)),
       m_stream(std::move(socket)),
       m_deadline(m_stream),
       m_buffer(m_service->options.limits.header_bytes),
-      m_peer(peer.address().to_string()),
-      m_address(address_key(peer.address())) {}
+      m_peer(std::move(peer)) {}
 
 void Connection::finish() {
     asio::post(m_stream.get_executor(), [self = shared_from_this()] {
@@ -176,7 +166,7 @@ asio::awaitable<void> Connection::run() {
 }
 
 asio::awaitable<bool> Connection::secure() {
-    if (!m_service->tls) co_return true;
+    if (!uses_tls()) co_return true;
     m_deadline.set(shared_from_this(), m_service->options.limits.header_time);
     auto& tls = m_stream.add_tls(*m_service->tls);
     const auto [error] = co_await tls.async_handshake(asio::ssl::stream_base::server, as_result);
@@ -269,8 +259,10 @@ std::optional<Response> Connection::understand(std::size_t head_size, Parser& pa
     incoming.version_1_0 = parser.get().version() == 10;
     Request& request = incoming.request;
     request.method = std::string(parser.get().method_string());
-    request.peer = m_peer;
-    request.secure = m_service->tls.has_value();
+    request.peer = m_peer.shown;
+    request.local = m_peer.local;
+    request.uid = m_peer.uid;
+    request.secure = uses_tls();
     for (const auto& field : parser.get())
         request.headers.add(std::string(field.name_string()), std::string(field.value()));
     const auto target = parser.get().target();
@@ -287,7 +279,8 @@ std::optional<Response> Connection::check(std::string_view target_text, Incoming
     incoming.wants_keep_alive =
         !incoming.version_1_0 && !has_token(request.headers.get("Connection"), "close");
     const auto& hosts = m_service->options.hosts;
-    if (!hosts.empty() && std::find(hosts.begin(), hosts.end(), *host) == hosts.end())
+    const bool named = hosts.empty() || std::find(hosts.begin(), hosts.end(), *host) != hosts.end();
+    if (!named && !(m_peer.local && *host == local_host))
         return trouble(421, "this service does not go by that name", ErrorCode::refused);
     auto target = parse_target(target_text);
     if (!target) return trouble(400, target.error().message);
@@ -421,7 +414,7 @@ asio::awaitable<bool> Connection::write(Response response, const Incoming& incom
     tell(incoming, response.status, begun);
     const bool keep_alive = incoming.keep_alive && !m_service->stopping;
     std::string head =
-        written_head(response, {m_service->tls.has_value(), keep_alive, http_date(std::time(nullptr))});
+        written_head(response, {uses_tls(), keep_alive, http_date(std::time(nullptr))});
     if (incoming.request.method == "HEAD") response.body = nullptr;
     if (response.body && response.body->size() <= small_body) {
         head += *response.body;

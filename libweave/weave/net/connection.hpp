@@ -1,6 +1,7 @@
 #pragma once
 
 #include <weave/net/heads.hpp>
+#include <weave/net/peer.hpp>
 #include <weave/net/server.hpp>
 #include <weave/net/stream.hpp>
 #include <weave/net/worker_pool.hpp>
@@ -57,10 +58,10 @@ struct Service {
 /// strand.
 class Connection : public std::enable_shared_from_this<Connection> {
   public:
-    Connection(std::shared_ptr<Service> service, Tcp::socket socket, const Tcp::endpoint& peer);
+    Connection(std::shared_ptr<Service> service, Socket socket, Peer peer);
 
     /// The key under which connections of one client are counted.
-    [[nodiscard]] const std::string& address() const { return m_address; }
+    [[nodiscard]] const std::string& address() const { return m_peer.key; }
     /// Serves the client until either side ends it.
     asio::awaitable<void> run();
     /// Ends the connection as soon as it has nothing to answer. From any thread.
@@ -105,6 +106,7 @@ class Connection : public std::enable_shared_from_this<Connection> {
     asio::awaitable<bool> open_websocket(const Parser& parser, const Incoming& incoming, Moment begun);
     asio::awaitable<bool> write(Response response, const Incoming& incoming, Moment begun);
     asio::awaitable<void> linger();
+    [[nodiscard]] bool uses_tls() const { return m_service->tls && !m_peer.local; }
     [[nodiscard]] Milliseconds transfer_time(std::uint64_t bytes) const;
     void tell(const Incoming& incoming, int status, Moment begun) const;
 
@@ -112,8 +114,7 @@ class Connection : public std::enable_shared_from_this<Connection> {
     Stream m_stream;
     Deadline m_deadline;
     beast::flat_buffer m_buffer;
-    std::string m_peer;
-    std::string m_address;
+    Peer m_peer;
     bool m_idle = false;  ///< waits for a request
     bool m_body_read = false;
     std::size_t m_requests = 0;

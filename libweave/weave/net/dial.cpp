@@ -1,17 +1,22 @@
 #include <weave/core/sha256.hpp>
 #include <weave/net/dial.hpp>
+#include <weave/net/unix_socket.hpp>
 
 #include <algorithm>
 #include <boost/asio/connect.hpp>
+#include <cerrno>
 #include <openssl/ssl.h>
 #include <openssl/x509v3.h>
+#include <sys/socket.h>
 
 namespace weave::net {
 
 namespace {
 
+constexpr Milliseconds full_queue_pause{10};
+
 Error not_the_one(const ClientOptions& options, const std::string& why) {
-    return {ErrorCode::refused, why, host_field(options)};
+    return {ErrorCode::refused, why, place_of(options)};
 }
 
 bool is_address(const std::string& host) {
@@ -84,7 +89,8 @@ asio::awaitable<Status> connect(Dialled& dialled, const ClientOptions& options) 
     for (const auto& place : found) {
         if (dialled.deadline.passed()) break;
         dialled.stream.close();
-        const auto [error] = co_await dialled.stream.socket().async_connect(place.endpoint(), as_result);
+        const auto [error] =
+            co_await dialled.stream.socket().async_connect(Endpoint(place.endpoint()), as_result);
         last = error;
         if (!error) break;
     }
@@ -93,6 +99,27 @@ asio::awaitable<Status> connect(Dialled& dialled, const ClientOptions& options) 
     error_code ignored;
     dialled.stream.socket().set_option(Tcp::no_delay(true), ignored);
     co_return Status();
+}
+
+/// Connects to a Unix socket. The system says EAGAIN where a TCP socket would wait, while the server's queue is
+/// full, and Asio takes a later look at such a socket for success: so it is asked here, again and again.
+asio::awaitable<Status> connect_local(Dialled& dialled, const ClientOptions& options) {
+    const auto address = unix_address(options.unix_socket);
+    if (!address) co_return address.error();
+    Socket& socket = dialled.stream.socket();
+    asio::steady_timer pause(dialled.stream.get_executor());
+    error_code error;
+    socket.open(asio::generic::stream_protocol(AF_UNIX, 0), error);
+    if (!error) socket.native_non_blocking(true, error);
+    while (!error && !dialled.deadline.passed()) {
+        const auto* const place = reinterpret_cast<const sockaddr*>(&*address);
+        if (::connect(socket.native_handle(), place, sizeof *address) == 0) co_return Status();
+        if (errno != EAGAIN && errno != EINTR) error.assign(errno, boost::system::system_category());
+        if (error) break;
+        pause.expires_after(full_queue_pause);
+        co_await pause.async_wait(as_result);
+    }
+    co_return network_fault(options, error, dialled.deadline.passed());
 }
 
 asio::awaitable<Status> secure(Dialled& dialled, const ClientOptions& options) {
@@ -117,7 +144,12 @@ asio::awaitable<Status> secure(Dialled& dialled, const ClientOptions& options) {
 
 }  // namespace
 
+std::string place_of(const ClientOptions& options) {
+    return options.unix_socket.empty() ? host_field(options) : "unix:" + options.unix_socket.string();
+}
+
 std::string host_field(const ClientOptions& options) {
+    if (!options.unix_socket.empty()) return "localhost";
     const bool bracketed = options.host.find(':') != std::string::npos;
     const std::string host = bracketed ? "[" + options.host + "]" : options.host;
     const std::uint16_t usual = options.tls ? 443 : 80;
@@ -126,14 +158,21 @@ std::string host_field(const ClientOptions& options) {
 
 Error network_fault(const ClientOptions& options, const error_code& error, bool late) {
     const std::string why = late ? "it did not answer in time" : error.message();
-    return system_fault("cannot talk to the server: " + why, host_field(options));
+    return system_fault("cannot talk to the server: " + why, place_of(options));
 }
 
 asio::awaitable<Result<std::shared_ptr<Dialled>>> dial(const ClientOptions& options) {
+    const bool local = !options.unix_socket.empty();
+    if (local && options.tls)
+        co_return Error{ErrorCode::usage, "TLS is not spoken over a Unix socket", place_of(options)};
     const asio::any_io_executor executor = co_await asio::this_coro::executor;
     auto dialled = std::make_shared<Dialled>(executor);
     dialled->deadline.set(dialled, options.connect_time);
-    Status connected = co_await connect(*dialled, options);
+    Status connected;
+    if (local)
+        connected = co_await connect_local(*dialled, options);
+    else
+        connected = co_await connect(*dialled, options);
     if (connected && options.tls) connected = co_await secure(*dialled, options);
     dialled->deadline.clear();
     if (!connected) co_return std::move(connected).error();

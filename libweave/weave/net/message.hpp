@@ -3,6 +3,7 @@
 #include <weave/core/json.hpp>
 #include <weave/core/result.hpp>
 
+#include <cstdint>
 #include <memory>
 #include <optional>
 #include <string>
@@ -60,8 +61,10 @@ struct Request {
     Parameters query;     ///< in the order of the target; names may repeat
     Headers headers;      ///< of the head alone: trailers are dropped
     std::string body;     ///< at most the route's limit
-    std::string peer;     ///< address of the other side, without port
+    std::string peer;     ///< address of the other side, without port; `local` over a Unix socket
     bool secure = false;  ///< came over TLS
+    bool local = false;   ///< came over the Unix socket
+    std::optional<std::uint32_t> uid;  ///< of the process that connected over it, where the system tells
 
     /// What stood for {name} in the route's pattern. The name must be one of the pattern.
     [[nodiscard]] const std::string& place(std::string_view name) const;

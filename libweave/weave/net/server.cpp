@@ -1,14 +1,18 @@
 #include <weave/core/log.hpp>
 #include <weave/net/connection.hpp>
 #include <weave/net/server.hpp>
+#include <weave/net/unix_socket.hpp>
 
+#include <boost/asio/basic_socket_acceptor.hpp>
 #include <boost/asio/co_spawn.hpp>
 #include <boost/asio/detached.hpp>
 #include <boost/asio/executor_work_guard.hpp>
 #include <boost/asio/io_context.hpp>
 #include <boost/asio/ip/v6_only.hpp>
 #include <boost/asio/strand.hpp>
+#include <fcntl.h>
 #include <openssl/ssl.h>
+#include <sys/socket.h>
 #include <sys/stat.h>
 #include <system_error>
 #include <thread>
@@ -48,14 +52,16 @@ Result<std::optional<asio::ssl::context>> tls_context(const ServerOptions& optio
     return context;
 }
 
-Result<Tcp::endpoint> endpoint_of(const ServerOptions& options) {
+/// Where to listen by TCP, if at all.
+Result<std::optional<Tcp::endpoint>> endpoint_of(const ServerOptions& options) {
+    if (options.address.empty() && !options.unix_socket.empty()) return std::optional<Tcp::endpoint>();
     error_code error;
     const asio::ip::address address = asio::ip::make_address(options.address, error);
     if (error) return Error{ErrorCode::usage, "is no address to listen on", options.address};
     if (!options.tls && !options.plain_beyond_loopback && !address.is_loopback())
         return Error{ErrorCode::usage, "plain HTTP is served on loopback alone; give a certificate",
                      options.address};
-    return Tcp::endpoint(address, options.port);
+    return std::optional(Tcp::endpoint(address, options.port));
 }
 
 Status check_limits(const ServerOptions& options) {
@@ -65,20 +71,61 @@ Status check_limits(const ServerOptions& options) {
     return sound ? Status() : Status(Error{ErrorCode::usage, "a server needs workers and sound limits", {}});
 }
 
+/// Keeps a socket from the programs that the service may start: one that held it would keep it open.
+void close_on_exec(int socket) {
+    const int flags = ::fcntl(socket, F_GETFD);
+    if (flags >= 0) ::fcntl(socket, F_SETFD, flags | FD_CLOEXEC);
+}
+
+/// Where clients come in.
+struct Door {
+    explicit Door(const asio::any_io_executor& executor) : acceptor(executor), pause(executor) {}
+
+    Status open_tcp(const Tcp::endpoint& endpoint) {
+        error_code error;
+        acceptor.open(endpoint.protocol(), error);
+        if (!error) close_on_exec(acceptor.native_handle());
+        if (!error) acceptor.set_option(asio::socket_base::reuse_address(true), error);
+        if (!error && endpoint.address().is_v6()) acceptor.set_option(asio::ip::v6_only(false), error);
+        if (!error) acceptor.bind(endpoint, error);
+        if (!error) acceptor.listen(asio::socket_base::max_listen_connections, error);
+        if (!error) return {};
+        return system_fault("cannot listen: " + error.message(),
+                            endpoint.address().to_string() + " port " + std::to_string(endpoint.port()));
+    }
+    Status open_unix(const std::filesystem::path& path) {
+        WEAVE_TRY(UnixListener opened, UnixListener::open(path));
+        file.emplace(std::move(opened));
+        error_code error;
+        acceptor.assign(asio::generic::stream_protocol(AF_UNIX, 0), file->take_socket(), error);
+        return error ? Status(system_fault("cannot listen: " + error.message(), path.string())) : Status();
+    }
+    void close() {
+        if (file) file->remove_file();
+        error_code ignored;
+        acceptor.close(ignored);
+        pause.cancel();
+    }
+
+    asio::basic_socket_acceptor<asio::generic::stream_protocol> acceptor;
+    asio::steady_timer pause;
+    std::optional<UnixListener> file;
+};
+
 }  // namespace
 
 /// A server that listens: its threads and what they share.
 class Server::Running {
   public:
     Running(Router router, ServerOptions options)
-        : m_service(std::make_shared<Service>(std::move(router), std::move(options))),
-          m_acceptor(asio::make_strand(m_io)) {}
+        : m_service(std::make_shared<Service>(std::move(router), std::move(options))) {}
 
-    Status start(std::optional<asio::ssl::context> tls, const Tcp::endpoint& endpoint) {
+    Status start(std::optional<asio::ssl::context> tls, const std::optional<Tcp::endpoint>& endpoint) {
         m_service->tls = std::move(tls);
         WEAVE_CHECK_OK(listen(endpoint));
-        asio::co_spawn(
-            m_acceptor.get_executor(), [this] { return accept(); }, asio::detached);
+        for (const auto& door : m_doors)
+            asio::co_spawn(
+                m_strand, [this, &door = *door] { return accept(door); }, asio::detached);
         for (std::size_t k = 0; k < m_service->options.io_threads; ++k)
             m_threads.emplace_back([this] { m_io.run(); });
         return {};
@@ -88,7 +135,9 @@ class Server::Running {
 
     void stop(Milliseconds patience) {
         if (m_service->stopping.exchange(true)) return;
-        asio::post(m_acceptor.get_executor(), [this] { close_acceptor(); });
+        asio::post(m_strand, [this] {
+            for (const auto& door : m_doors) door->close();
+        });
         m_service->for_each([](const std::shared_ptr<Connection>& connection) { connection->finish(); });
         if (!m_service->wait_until_empty(patience)) {
             m_service->pool.abandon();
@@ -102,37 +151,38 @@ class Server::Running {
     }
 
   private:
-    Status listen(const Tcp::endpoint& endpoint) {
-        error_code error;
-        m_acceptor.open(endpoint.protocol(), error);
-        if (!error) m_acceptor.set_option(asio::socket_base::reuse_address(true), error);
-        if (!error && endpoint.address().is_v6()) m_acceptor.set_option(asio::ip::v6_only(false), error);
-        if (!error) m_acceptor.bind(endpoint, error);
-        if (!error) m_acceptor.listen(asio::socket_base::max_listen_connections, error);
-        const Tcp::endpoint bound = error ? endpoint : m_acceptor.local_endpoint(error);
-        if (error)
-            return system_fault("cannot listen: " + error.message(),
-                                endpoint.address().to_string() + " port " + std::to_string(endpoint.port()));
-        m_port = bound.port();
-        return {};
+    Status listen(const std::optional<Tcp::endpoint>& endpoint) {
+        if (endpoint) {
+            Door& door = *m_doors.emplace_back(std::make_unique<Door>(m_strand));
+            WEAVE_CHECK_OK(door.open_tcp(*endpoint));
+            error_code error;
+            m_port = tcp_endpoint(door.acceptor.local_endpoint(error)).port();
+            if (error) return system_fault("cannot listen: " + error.message());
+        }
+        const std::filesystem::path& path = m_service->options.unix_socket;
+        if (path.empty()) return {};
+        return m_doors.emplace_back(std::make_unique<Door>(m_strand))->open_unix(path);
     }
 
-    asio::awaitable<void> accept() {
-        while (m_acceptor.is_open()) {
-            Tcp::endpoint peer;
-            auto [error, socket] = co_await m_acceptor.async_accept(asio::make_strand(m_io), peer, as_result);
+    asio::awaitable<void> accept(Door& door) {
+        while (door.acceptor.is_open()) {
+            Endpoint peer;
+            auto [error, socket] = co_await door.acceptor.async_accept(asio::make_strand(m_io), peer, as_result);
             if (!error) {
                 take(std::move(socket), peer);
-            } else if (m_acceptor.is_open()) {
-                m_pause.expires_after(breath);
-                co_await m_pause.async_wait(as_result);
+            } else if (door.acceptor.is_open()) {
+                door.pause.expires_after(breath);
+                co_await door.pause.async_wait(as_result);
             }
         }
     }
 
-    void take(Tcp::socket socket, const Tcp::endpoint& peer) {
+    void take(Socket socket, const Endpoint& endpoint) {
+        close_on_exec(socket.native_handle());
+        Peer peer = peer_of(endpoint, socket.native_handle());
         const asio::any_io_executor executor = socket.get_executor();
-        const auto connection = std::make_shared<Connection>(m_service, std::move(socket), peer);
+        const auto connection =
+            std::make_shared<Connection>(m_service, std::move(socket), std::move(peer));
         if (!m_service->enter(connection, connection->address())) {
             m_service->count("weave_http_refused_connections_total",
                              "Connections beyond a limit, closed at once");
@@ -146,17 +196,11 @@ class Server::Running {
             });
     }
 
-    void close_acceptor() {
-        error_code ignored;
-        m_acceptor.close(ignored);
-        m_pause.cancel();
-    }
-
     std::shared_ptr<Service> m_service;
     asio::io_context m_io;
     asio::executor_work_guard<asio::io_context::executor_type> m_work = asio::make_work_guard(m_io);
-    Tcp::acceptor m_acceptor;
-    asio::steady_timer m_pause{m_acceptor.get_executor()};
+    const asio::any_io_executor m_strand = asio::make_strand(m_io);  ///< of all doors
+    std::vector<std::unique_ptr<Door>> m_doors;
     std::uint16_t m_port = 0;
     std::vector<std::thread> m_threads;
 };
@@ -178,7 +222,7 @@ Server::~Server() {
 
 Result<Server> Server::start(Router router, ServerOptions options) {
     WEAVE_CHECK_OK(check_limits(options));
-    WEAVE_TRY(const Tcp::endpoint endpoint, endpoint_of(options));
+    WEAVE_TRY(const std::optional<Tcp::endpoint> endpoint, endpoint_of(options));
     WEAVE_TRY(auto tls, tls_context(options));
     try {
         auto running = std::make_unique<Running>(std::move(router), std::move(options));

@@ -6,6 +6,7 @@
 
 #include <chrono>
 #include <cstdint>
+#include <filesystem>
 #include <memory>
 #include <optional>
 #include <string>
@@ -16,7 +17,7 @@ namespace weave::net {
 /// What a server lets one client, and all of them, have of it.
 struct ServerLimits {
     std::size_t connections = 1024;
-    std::size_t connections_per_address = 256;  ///< of IPv6, per /64
+    std::size_t connections_per_address = 256;  ///< of IPv6, per /64; over the Unix socket, per uid
     std::size_t requests_per_connection = 10000;
     std::size_t header_bytes = 16384;            ///< request line and header fields together
     std::size_t body_bytes_in_all = 256u << 20;  ///< of all requests being received or answered
@@ -35,11 +36,13 @@ struct ServerLimits {
 
 /// How a server is set up.
 struct ServerOptions {
-    std::string address = "127.0.0.1";   ///< IPv4 or IPv6 to listen on
+    std::string address = "127.0.0.1";   ///< IPv4 or IPv6 to listen on; empty: no TCP
     std::uint16_t port = 0;              ///< 0: any free one
-    std::optional<TlsFiles> tls;         ///< none: plain HTTP
+    std::filesystem::path unix_socket;   ///< to listen on as well, for its owner alone (0600); empty: none
+    std::optional<TlsFiles> tls;         ///< none: plain HTTP; over the Unix socket it is plain always
     bool plain_beyond_loopback = false;  ///< without it plain HTTP is served on loopback alone
-    std::vector<std::string> hosts;      ///< that a Host field may name, without port; empty: any
+    std::vector<std::string> hosts;      ///< that a Host field may name, without port; empty: any. Over the
+                                         ///< Unix socket `localhost` as well
     std::vector<std::string>
         origins;                 ///< `https://host:port` of pages that may open WebSockets, beside our own
     std::size_t workers = 4;     ///< threads that run handlers
@@ -52,8 +55,10 @@ struct ServerOptions {
 /// written without one, so a slow client holds no worker. TLS is 1.2 or newer.
 class Server {
   public:
-    /// Listens and serves from now on. Errors: usage for an address that is none, or plain HTTP beyond
-    /// loopback; bad_input for certificate or key; system where the port cannot be had.
+    /// Listens and serves from now on. The Unix socket of a dead server is replaced. Errors: usage for an
+    /// address or path that is none, or plain HTTP beyond loopback; bad_input for certificate or key; refused
+    /// where another server listens on the Unix socket, or something else lies in its place; system where the
+    /// port cannot be had.
     static Result<Server> start(Router router, ServerOptions options);
 
     Server(Server&&) noexcept;
@@ -61,11 +66,12 @@ class Server {
     /// Stops at once.
     ~Server();
 
+    /// That of TCP; 0 without it.
     [[nodiscard]] std::uint16_t port() const;
 
-    /// Takes nothing new, lets what runs finish, says goodbye to WebSockets (1001), and after `patience` cuts
-    /// off what is left. Waits for handlers that still run, however long they do. May be called again; not
-    /// from a handler.
+    /// Takes nothing new, removes the Unix socket, lets what runs finish, says goodbye to WebSockets (1001),
+    /// and after `patience` cuts off what is left. Waits for handlers that still run, however long they do.
+    /// May be called again; not from a handler.
     void stop(std::chrono::milliseconds patience);
 
   private:

@@ -2,6 +2,7 @@
 
 #include <boost/asio/any_io_executor.hpp>
 #include <boost/asio/as_tuple.hpp>
+#include <boost/asio/generic/stream_protocol.hpp>
 #include <boost/asio/ip/tcp.hpp>
 #include <boost/asio/ssl/context.hpp>
 #include <boost/asio/ssl/stream.hpp>
@@ -16,26 +17,28 @@ namespace weave::net {
 namespace asio = boost::asio;
 using boost::system::error_code;
 using Tcp = asio::ip::tcp;
+using Socket = asio::generic::stream_protocol::socket;  ///< of TCP, or a Unix socket
+using Endpoint = asio::generic::stream_protocol::endpoint;
 using Milliseconds = std::chrono::milliseconds;
 
 /// A coroutine's way to wait: the outcome comes as a tuple, nothing is thrown.
 inline constexpr auto as_result = asio::as_tuple(asio::use_awaitable);
 
-/// A TCP connection with or without TLS, one type for both, so that what stands on it is compiled once. All
-/// calls must come from its executor.
+/// A connection over TCP, with or without TLS, or over a Unix socket: one type for all, so that what stands on
+/// it is compiled once. All calls must come from its executor.
 class Stream {
   public:
     using executor_type = asio::any_io_executor;
 
-    explicit Stream(Tcp::socket socket) : m_socket(std::move(socket)) {}
+    explicit Stream(Socket socket) : m_socket(std::move(socket)) {}
 
     executor_type get_executor() { return m_socket.get_executor(); }
-    Tcp::socket& socket() { return m_socket; }
+    Socket& socket() { return m_socket; }
     /// From now on what is read and written goes through TLS.
-    asio::ssl::stream<Tcp::socket&>& add_tls(asio::ssl::context& context) {
+    asio::ssl::stream<Socket&>& add_tls(asio::ssl::context& context) {
         return m_tls.emplace(m_socket, context);
     }
-    asio::ssl::stream<Tcp::socket&>* tls() { return m_tls ? &*m_tls : nullptr; }
+    asio::ssl::stream<Socket&>* tls() { return m_tls ? &*m_tls : nullptr; }
 
     /// Ends every pending operation.
     void close() {
@@ -68,8 +71,8 @@ class Stream {
     }
 
   private:
-    Tcp::socket m_socket;
-    std::optional<asio::ssl::stream<Tcp::socket&>> m_tls;
+    Socket m_socket;
+    std::optional<asio::ssl::stream<Socket&>> m_tls;
 };
 
 /// Closes a stream when a time is over. Lives on the stream's executor; its owner must keep `owner` alive as

@@ -68,7 +68,7 @@ class WebSocketClient::Running {
         const auto run = [&]() -> asio::awaitable<void> { outcome = co_await agree(target, headers); };
         asio::co_spawn(m_io, run, asio::detached);
         while (!outcome && m_io.run_one() > 0) continue;  // not run(): an open WebSocket keeps a timer going
-        if (!outcome) return system_fault("the connection failed", host_field(m_options));
+        if (!outcome) return system_fault("the connection failed", place_of(m_options));
         if (!*outcome) return *outcome;
         asio::co_spawn(
             m_io, [this] { return read_all(); }, asio::detached);
@@ -135,7 +135,7 @@ class WebSocketClient::Running {
         const std::string host = host_field(m_options);
         const auto [error] = co_await m_socket->async_handshake(response, host, target, as_result);
         if (error == websocket::error::upgrade_declined)
-            co_return declined(response, host);
+            co_return declined(response, place_of(m_options));
         if (error) co_return network_fault(m_options, error, error == beast::error::timeout);
         co_return Status();
     }
@@ -227,7 +227,7 @@ class WebSocketClient::Running {
 
     [[nodiscard]] Error ended() const {
         return system_fault("the connection has ended (" + std::to_string(m_end->code) + ")",
-                            host_field(m_options));
+                            place_of(m_options));
     }
 
     const ClientOptions m_options;

@@ -1,7 +1,6 @@
 #pragma once
 
-#include <weave/sim/plan.hpp>
-#include <weave/sim/relax.hpp>
+#include <weave/sim/plan_run.hpp>
 #include <weave/sim/resume.hpp>
 #include <weave/sim/yarns.hpp>
 
@@ -12,15 +11,6 @@
 #include <vector>
 
 namespace weave::sim {
-
-/// Which solver relaxes.
-enum class Solver : std::uint8_t {
-    relax,  ///< steps that learn, Newton's near rest (relax.hpp)
-    paper,  ///< motion in time, as the paper did it (paper.hpp): slow, the baseline
-};
-
-Result<Solver> parse_solver(std::string_view text);
-std::string_view name_of(Solver solver);
 
 struct SimulationOptions {
     Solver solver = Solver::relax;
@@ -49,8 +39,5 @@ struct SimulationOptions {
 /// with the coarser plan, for whatever reason, the yarns are those in its points: their report says which fidelity was to come
 /// (`goes_on`), has the goal that was asked for, and is not `converged`.
 Yarns simulate(const Design& design, const Plan& plan, const SimulationOptions& options);
-
-/// Flips as a report lists those that a run did not begin, being over by then; `ending` is its ending by name.
-Json flips_not_begun(const std::vector<Flip>& flips, std::string_view ending);
 
 }  // namespace weave::sim

@@ -260,6 +260,7 @@ struct Applied {
     std::uint64_t session = 1, seq = 1, step = 0;
     std::string request;  ///< of the message that asked for it
     Change change;
+    std::optional<Error> error;  ///< where the cloth does not take it: then nothing has changed
 };
 /// How a flip ended.
 struct Flipped {

@@ -402,6 +402,7 @@ void describe(Form& form, M& applied) {
     event_at_step(form, applied);
     form.request(applied.request);
     describe(form, applied.change);
+    maybe_error(form, applied.error);
 }
 template <class Form, Either<Flipped> M>
 void describe(Form& form, M& flipped) {

@@ -1,0 +1,35 @@
+#pragma once
+
+// What is measured on relaxed yarns, and how a smallest repeat becomes the whole cloth again.
+
+#include <weave/core/json.hpp>
+#include <weave/design/design.hpp>
+#include <weave/sim/energy.hpp>
+#include <weave/sim/plan.hpp>
+#include <weave/sim/yarns.hpp>
+
+#include <cstddef>
+#include <cstdint>
+#include <vector>
+
+namespace weave::sim {
+
+/// The yarns of what a plan simulates, in a state of its control points, without a report. `energy` is of the plan's scene.
+Yarns yarns_in_state(const Design& design, const Plan& plan, Energy<double>& energy, const std::vector<double>& state);
+
+/// The yarns of the whole cloth, by copies of those of its smallest repeat.
+Yarns copied_back(Yarns yarns, const Plan& plan, const Design& design);
+
+/// What of the cloth the yarns cover, first and last from 1, once a repeat has been copied back over it.
+Json coverage_of(const Plan& plan);
+
+struct Contacts {
+    std::size_t touching = 0;  ///< pairs of segments
+    double overlap = 0;        ///< greatest 1 - d/D
+};
+Contacts contacts_of(Energy<double>& energy, const std::vector<double>& state);
+
+/// The process's greatest memory so far in bytes; 0 where the system does not say.
+std::uint64_t peak_bytes();
+
+}  // namespace weave::sim

@@ -1,0 +1,55 @@
+#include <weave/core/sha256.hpp>
+#include <weave/loom/pick_table.hpp>
+
+#include <algorithm>
+#include <simd/worker/shown.hpp>
+
+namespace weave::simd {
+
+wire::Layout layout_of(const sim::Run& run) {
+    const sim::PlanRun& now = run.now();
+    const sim::Plan& plan = now.plan();
+    const Design& design = now.design();
+    wire::Layout layout;
+    layout.fidelity = plan.fidelity;
+    layout.is_periodic = now.scene().is_periodic;
+    layout.repeats = {plan.repeats[0], plan.repeats[1]};
+    for (std::size_t y = 0; y < plan.curve_of.size(); ++y) {
+        const YarnCurve& curve = plan.curves.yarns[plan.curve_of[y]];
+        const sim::SimYarn& yarn = now.scene().yarns[y];
+        const bool warp = curve.system == System::warp;
+        wire::LayoutYarn shown;
+        shown.system = curve.system;
+        shown.number = curve.number;
+        shown.beam = warp ? design.warp.beam_order.at(curve.number) : 0;
+        shown.radius_mm = yarn.radius_mm;
+        shown.colour = warp ? colour_of_end(design, curve.number) : design.weft.yarns[curve.type].colour;
+        shown.points = yarn.control.size();
+        shown.is_periodic = yarn.is_periodic;
+        shown.turns = {static_cast<std::uint64_t>(yarn.turns[0]), static_cast<std::uint64_t>(yarn.turns[1])};
+        layout.yarns.push_back(shown);
+    }
+    return layout;
+}
+
+std::string layout_sha256(wire::Layout layout) {
+    layout.session = layout.seq = layout.layout = 1;
+    return sha256_hex(wire::write_message(wire::ServerMessage(std::move(layout))));
+}
+
+wire::Frame frame_of(const sim::Run& run) {
+    const sim::PlanRun& now = run.now();
+    wire::Frame frame;
+    frame.head.size_mm = now.scene().period_mm;
+    double smallest = 1e300;
+    for (const sim::SimYarn& yarn : now.scene().yarns) smallest = std::min(smallest, yarn.radius_mm);
+    frame.head.quantum_mm = wire::quantum_for(smallest);
+    frame.head.is_coarse = run.is_coarse();
+    for (const std::vector<Vec3>& points : now.control()) {
+        frame.counts.push_back(static_cast<std::uint32_t>(points.size()));
+        frame.points.insert(frame.points.end(), points.begin(), points.end());
+    }
+    return frame;
+}
+
+}  // namespace weave::simd

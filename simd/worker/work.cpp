@@ -1,0 +1,403 @@
+#include <weave/core/file.hpp>
+#include <weave/core/sha256.hpp>
+#include <weave/design/document.hpp>
+#include <weave/sim/yarns_file.hpp>
+#include <weave/wire/frame.hpp>
+
+#include <algorithm>
+#include <simd/link/error_form.hpp>
+#include <simd/worker/memory.hpp>
+#include <simd/worker/shown.hpp>
+#include <simd/worker/work.hpp>
+#include <utility>
+
+namespace weave::simd {
+
+namespace {
+
+/// How often a checkpoint is written, at least, as long as legs end; and how often progress is told.
+constexpr std::chrono::seconds between_checkpoints{3};
+constexpr std::chrono::milliseconds between_tellings{200};
+
+sim::RunRequest run_request(const WorkOrder& order) {
+    constexpr std::size_t most_steps = 20000, most_steps_in_time = 1'000'000;
+    sim::RunRequest request;
+    request.plan = order.simulation.plan;
+    request.goal.solver = order.simulation.solver;
+    request.goal.residual = order.simulation.residual;
+    const bool in_time = order.simulation.solver == sim::Solver::paper;
+    request.goal.most_iterations = order.simulation.most_steps.value_or(in_time ? most_steps_in_time : most_steps);
+    if (!order.is_job && !order.simulation.most_steps) request.goal.most_iterations = wire::most_number;
+    request.goal.most_seconds = order.simulation.most_seconds.value_or(1e30);
+    request.start_from = order.simulation.start_from;
+    request.flips = order.flips;
+    return request;
+}
+
+std::size_t points_of(const sim::Plan& plan) {
+    std::size_t points = 0;
+    for (const sim::SimYarn& yarn : plan.scene.yarns) points += yarn.control.size();
+    return points;
+}
+
+}  // namespace
+
+Work::Work(Link& link, WorkOrder order)
+    : m_link(link), m_order(std::move(order)), m_folder(m_order.folder), m_inbox(link), m_request(run_request(m_order)),
+      m_frame(m_order.frame), m_layout(m_order.layout), m_layout_sha256(m_order.layout_sha256) {
+    m_inbox.begin(m_order);
+}
+
+Status Work::run() {
+    WEAVE_CHECK_OK(limit_memory(m_order.planning_bytes));
+    WEAVE_CHECK_OK(begin());
+    WEAVE_CHECK_OK(wait_for_admission());
+    if (m_inbox.finish() != Finish::no) return finish();
+    WEAVE_CHECK_OK(loop());
+    return finish();
+}
+
+// ---- The beginning ----
+
+Status Work::begin() {
+    WEAVE_TRY(const Design design, read_document(m_order.document));
+    if (!m_order.takes_up) return begin_anew(design);
+    WEAVE_TRY(auto checkpoint, read_checkpoint(m_folder));
+    if (!checkpoint) return begin_anew(design);
+    WEAVE_TRY(m_run, sim::Run::resume(design, m_request, checkpoint->run, 1));
+    m_inbox.skip_changes(checkpoint->changes);
+    m_changes_made = checkpoint->changes;
+    for (const JournaledChange& change : m_order.changes) {
+        if (checkpoint->flip == change.number) m_flip = change;
+    }
+    m_kept = std::move(*checkpoint);
+    m_saved = true;
+    m_saved_step = m_kept.step;
+    m_saved_changes = m_kept.changes;
+    m_flips_told = m_run->now().flips().size();
+    return {};
+}
+
+Status Work::begin_anew(const Design& design) {
+    WEAVE_TRY(m_run, sim::Run::begin(design, m_request, 1));
+    return {};
+}
+
+/// Tells what was planned, and waits until the daemon has room for it.
+Status Work::wait_for_admission() {
+    const sim::Plan& plan = m_run->now().plan();
+    tell({{"say", "planned"},
+          {"title", m_run->now().design().title},
+          {"points", points_of(plan)},
+          {"repeats", plan.repeats[0] * plan.repeats[1]},
+          {"step", m_run->steps()},
+          {"changes", m_changes_made}});
+    while (!m_inbox.admitted()) {
+        m_inbox.wait({});
+        if (m_inbox.finish() != Finish::no) return {};
+    }
+    return limit_memory(*m_inbox.admitted());
+}
+
+// ---- The work ----
+
+Status Work::loop() {
+    while (m_inbox.finish() == Finish::no) {
+        if (m_level != m_run->level()) {
+            m_level = m_run->level();
+            m_leg_steps = sim::leg_steps(m_run->now().plan(), m_request.goal.solver);
+        }
+        m_step = m_run->steps();
+        if (settle_between()) continue;
+        tell_layout();
+        keep_state();
+        if (m_inbox.change_is_due(m_step)) {
+            if (!hold_turn()) continue;
+            WEAVE_CHECK_OK(make_changes());
+            continue;
+        }
+        answer_requests();
+        if (m_run->is_over() && m_order.is_job) return {};
+        if (m_run->is_over() || !m_inbox.goes_on(m_step)) {
+            rest();
+            continue;
+        }
+        if (!hold_turn()) continue;
+        tell_phase(wire::Phase::running);
+        m_run->use_threads(m_inbox.turn().value_or(1));
+        m_leg_began = m_step;
+        WEAVE_CHECK_OK(m_run->advance(m_leg_steps, [this](const sim::Progress& progress) { return watch(progress); }));
+        m_residual = m_run->now().last().residual;
+    }
+    return {};
+}
+
+/// What comes between two relaxations and takes no step of its own: after it there is one place for changes at every step.
+bool Work::settle_between() {
+    sim::PlanRun& now = m_run->now();
+    if (!now.at_end() || now.cut_short()) return false;
+    if (!now.is_flipping() && !m_run->is_coarse()) return false;
+    static_cast<void>(m_run->advance(0, {}));  // neither can fail
+    tell_flip_end();
+    return true;
+}
+
+void Work::keep_state() {
+    m_kept = {m_step, m_changes_made, {}, m_run->state()};
+    if (m_flip) m_kept.flip = m_flip->number;
+    save_if_due(false);
+}
+
+void Work::save_if_due(bool now) {
+    if (m_saved && m_saved_step == m_kept.step && m_saved_changes == m_kept.changes) return;
+    if (!now && Clock::now() - m_last_saved < between_checkpoints) return;
+    m_last_saved = Clock::now();
+    const Status saved = write_checkpoint(m_folder, m_kept);
+    m_saved = m_saved || saved;
+    if (saved) m_saved_step = m_kept.step, m_saved_changes = m_kept.changes;
+    Json told{{"say", "checkpoint"}, {"step", m_kept.step}, {"changes", m_kept.changes}};
+    if (!saved) told["error"] = to_json(saved.error());
+    tell(told);
+}
+
+Status Work::make_changes() {
+    while (auto change = m_inbox.take_change(m_step)) {
+        Status made;
+        if (const auto* parameters = std::get_if<wire::Parameters>(&change->change)) made = m_run->change(parameters->warp, parameters->weft);
+        if (const auto* pins = std::get_if<wire::Pins>(&change->change)) made = m_run->hold(pins->pins);
+        if (const auto* fields = std::get_if<wire::Fields>(&change->change)) made = m_run->push(fields->fields);
+        const auto* flip = std::get_if<Flip>(&change->change);
+        tell_flip_end();  // of one that this change has ended
+        m_changes_made = change->number;
+        tell_made(*change, made);
+        if (flip == nullptr) continue;
+        m_flip = *change;
+        m_is_flipping = true;
+        show_if_due();
+        WEAVE_CHECK_OK(m_run->flip(*flip, [this](const sim::Progress& progress) { return watch(progress); }));
+        m_is_flipping = false;
+        tell_flip_end();
+        return {};  // which takes steps: what comes next is due at another one
+    }
+    return {};
+}
+
+/// Tells that a change took effect, unless that was told before a fault.
+void Work::tell_made(const JournaledChange& change, const Status& made) {
+    if (change.step) return;
+    wire::Applied applied{.step = m_step, .request = change.request, .change = change.change, .error = {}};
+    if (!made) applied.error = made.error();
+    tell_event(applied, {{"applied", change.number}, {"step", m_step}});
+}
+
+void Work::tell_flip_end() {
+    if (!m_flip || m_run->now().is_flipping() || m_is_flipping) return;
+    const Json& flips = m_run->now().flips();
+    if (flips.size() <= m_flips_told) return;
+    m_flips_told = flips.size();
+    const JournaledChange flip = std::move(*m_flip);
+    m_flip.reset();
+    if (flip.flip_told) return;
+    tell_event(wire::Flipped{.step = m_run->steps(), .request = flip.request, .done = flips.back().at("done").get<bool>(),
+                             .reason = flips.back().at("reason").get<std::string>()},
+               {{"flipped", flip.number}});
+}
+
+wire::Phase Work::standing_phase() const {
+    return m_run->now().is_at_rest() && !m_run->is_coarse() ? wire::Phase::at_rest : wire::Phase::paused;
+}
+
+/// Nothing is to be done until somebody asks for it.
+void Work::rest() {
+    give_turn_back();
+    tell_phase(standing_phase());
+    save_if_due(true);
+    show(true);
+    if (m_inbox.change_is_due(m_step) || m_inbox.finish() != Finish::no) return;
+    m_inbox.wait({});
+    if (m_inbox.take_newly_watched()) m_shown_last = false;
+}
+
+// ---- During a leg ----
+
+bool Work::watch(const sim::Progress& progress) {
+    const bool is_told = progress.iteration > 0 || progress.residual > 0;  // a flip under way tells nothing
+    if (is_told) {
+        m_step = m_run->now().steps_before() + progress.iteration;
+        m_residual = progress.residual;
+        m_lost = progress.lost_crossings;
+    }
+    tell_progress(false);
+    if (m_inbox.finish() != Finish::no) return false;
+    const bool made_a_step = is_told && m_step > m_leg_began;
+    if (!made_a_step) return m_inbox.must_yield() && is_told ? stand_still() : true;
+    if (m_inbox.change_is_due(m_step)) return false;
+    show_if_due();
+    return stand_still();
+}
+
+/// Answers what is asked, and stays here while the session is paused or others have the turn. False: the leg is to end.
+bool Work::stand_still() {
+    while (true) {
+        answer_requests();
+        if (m_inbox.finish() != Finish::no) return false;
+        const bool is_step = m_step > m_leg_began;
+        if (is_step && m_inbox.change_is_due(m_step)) return false;
+        if (is_step && !m_inbox.goes_on(m_step)) {
+            give_turn_back();
+            tell_phase(wire::Phase::paused);
+            show(true);
+            m_inbox.wait({});
+            if (m_inbox.take_newly_watched()) m_shown_last = false;
+            continue;
+        }
+        if (m_has_turn && m_inbox.must_yield()) give_turn_back();
+        if (!m_has_turn) {
+            if (!hold_turn()) return false;
+            continue;
+        }
+        tell_phase(wire::Phase::running);
+        return true;
+    }
+}
+
+/// Waits for the right to compute; false where the work is to end instead.
+bool Work::hold_turn() {
+    if (m_has_turn && m_inbox.must_yield()) give_turn_back();
+    if (m_has_turn) return true;
+    tell({{"say", "turn"}});
+    while (true) {
+        if (m_inbox.finish() != Finish::no) return false;
+        if (m_inbox.turn()) break;
+        m_inbox.wait({});
+        answer_requests();
+    }
+    m_has_turn = true;
+    return true;
+}
+
+void Work::give_turn_back() {
+    if (!m_has_turn) return;
+    m_has_turn = false;
+    m_inbox.turn_given_back();
+    tell({{"say", "turn_over"}});
+}
+
+// ---- What is told ----
+
+void Work::tell(const Json& message) {
+    static_cast<void>(m_link.send(message));  // a daemon that is gone ends the work by the inbox
+}
+
+void Work::tell_event(const wire::ServerMessage& event, Json more) {
+    more["say"] = "event";
+    more["event"] = wire::write_message(event);
+    tell(more);
+}
+
+void Work::tell_layout() {
+    if (m_order.is_job) return;
+    wire::Layout layout = layout_of(*m_run);
+    std::string sha256 = layout_sha256(layout);
+    if (sha256 == m_layout_sha256) return;
+    m_layout_sha256 = std::move(sha256);
+    layout.layout = ++m_layout;
+    tell_event(layout, {{"layout", m_layout}, {"layout_sha256", m_layout_sha256}, {"points", points_of(m_run->now().plan())}});
+}
+
+void Work::tell_phase(wire::Phase phase) {
+    if (m_phase == phase) return;
+    m_phase = phase;
+    tell_progress(true);
+    tell_event(wire::PhaseChanged{.step = m_step, .phase = phase}, {{"phase", static_cast<int>(phase)}, {"step", m_step}});
+}
+
+void Work::tell_progress(bool now) {
+    if (!now && Clock::now() - m_last_told < between_tellings) return;
+    m_last_told = Clock::now();
+    Json told{{"say", "progress"}, {"step", m_step}, {"residual", m_residual}, {"goal", m_run->now().goal()}};
+    if (m_lost) told["lost"] = *m_lost;
+    tell(told);
+}
+
+void Work::show_if_due() {
+    const double rate = m_inbox.frames_per_second();
+    if (rate <= 0 || m_order.is_job) return;
+    if (std::chrono::duration<double>(Clock::now() - m_last_shown).count() * rate < 1) return;
+    show(false);
+}
+
+void Work::show(bool is_last) {
+    if (m_order.is_job || m_layout == 0) return;
+    if (is_last && std::exchange(m_shown_last, true)) return;
+    if (!is_last) m_shown_last = false;
+    m_last_shown = Clock::now();
+    wire::Frame frame = frame_of(*m_run);
+    frame.head.session = m_order.number;
+    frame.head.number = ++m_frame;
+    frame.head.step = m_step;
+    frame.head.residual = std::min(m_residual, 1e300);
+    if (m_lost) frame.head.lost_crossings = static_cast<std::uint32_t>(std::min<std::uint64_t>(*m_lost, 0xfffffffe));
+    frame.head.layout = static_cast<std::uint32_t>(m_layout);
+    frame.head.at_rest = is_last && standing_phase() == wire::Phase::at_rest;
+    frame.head.is_last = is_last;
+    frame.head.is_flipping = m_is_flipping;
+    const auto bytes = wire::encode_frame(frame);
+    if (bytes) static_cast<void>(m_link.send_frame(*bytes));
+    else tell({{"say", "unshown"}, {"error", to_json(bytes.error())}});
+}
+
+void Work::answer_requests() {
+    for (const Json& request : m_inbox.take_requests()) {
+        if (request.at("do") == "checkpoint") answer_checkpoint(request);
+        else answer_yarns(request);
+    }
+}
+
+void Work::answer_checkpoint(const Json& request) {
+    m_saved = false;  // written again, so that a disk that is full is found out
+    Json told{{"say", "checkpoint"}, {"step", m_kept.step}, {"changes", m_kept.changes}, {"id", request.at("id")}};
+    m_last_saved = Clock::now();
+    const Status saved = write_checkpoint(m_folder, m_kept);
+    m_saved = true;
+    if (saved) m_saved_step = m_kept.step, m_saved_changes = m_kept.changes;
+    else told["error"] = to_json(saved.error());
+    tell(told);
+}
+
+void Work::answer_yarns(const Json& request) {
+    Json told{{"say", "yarns"}, {"id", request.at("id")}};
+    Status written;
+    if (const auto bytes = write_yarns(m_run->yarns()); bytes) written = write_file(request.at("path").get<std::string>(), *bytes);
+    else written = bytes.error();
+    if (!written) told["error"] = to_json(written.error());
+    tell(told);
+}
+
+// ---- The end ----
+
+Status Work::finish() {
+    give_turn_back();
+    switch (m_inbox.finish()) {
+        case Finish::gone: return {};
+        case Finish::keep:
+            if (m_kept.run.is_object()) save_if_due(true);
+            tell({{"say", "kept"}, {"step", m_saved_step}});
+            return {};
+        default: break;
+    }
+    Yarns yarns = m_run->yarns();
+    Json done{{"say", "done"}, {"step", m_run->steps()}};
+    if (m_order.is_job) {
+        WEAVE_TRY(const std::string bytes, write_yarns(yarns));
+        const std::string name = "result.yarns";
+        WEAVE_CHECK_OK(write_file(m_folder / name, bytes));
+        yarns.report["yarns_sha256"] = sha256_hex(bytes);
+        done["yarns"] = name;
+    }
+    done["report"] = std::move(yarns.report);
+    tell(done);
+    return {};
+}
+
+}  // namespace weave::simd
