@@ -1,3 +1,5 @@
+#include <weave/core/json.hpp>
+#include <weave/core/text.hpp>
 #include <weave/net/dial.hpp>
 #include <weave/net/teardown.hpp>
 #include <weave/net/websocket_client.hpp>
@@ -24,6 +26,28 @@ constexpr std::size_t most_ahead = 16;
 constexpr std::size_t write_buffer_bytes = 65536;
 constexpr std::chrono::seconds silence_time{60};
 constexpr Milliseconds parting_time{1'000};
+constexpr std::size_t longest_reason = 1'000;  ///< bytes told of a server's reason to decline
+
+/// Why the server does not become a WebSocket, with the reason of its answer (net::error_answer), if it has one.
+Error declined(const websocket::response_type& response, const std::string& host) {
+    const unsigned status = response.result_int();
+    const bool passes = status >= 500 || status == 429;
+    Error error{passes ? ErrorCode::system : ErrorCode::refused, "the server answers " + std::to_string(status), host};
+    const auto body = parse_json(response.body());
+    if (!body || !body->is_object()) return error;
+    const Json cause = body->value("error", Json());
+    if (!cause.is_object() || !cause.contains("message") || !cause.at("message").is_string()) return error;
+    error.message += ": " + on_one_line(cause.at("message").get<std::string>().substr(0, longest_reason));
+    return error;
+}
+
+/// How a connection ends on which the other side said no goodbye.
+WebSocketEnd end_of(const error_code& error) {
+    if (error == websocket::error::message_too_big) return {1009, {}};
+    if (error == websocket::error::bad_frame_payload) return {1007, {}};
+    if (error == websocket::condition::protocol_violation) return {1002, {}};
+    return {};
+}
 
 }  // namespace
 
@@ -111,8 +135,7 @@ class WebSocketClient::Running {
         const std::string host = host_field(m_options);
         const auto [error] = co_await m_socket->async_handshake(response, host, target, as_result);
         if (error == websocket::error::upgrade_declined)
-            co_return Error{ErrorCode::refused, "the server answers " + std::to_string(response.result_int()),
-                            place_of(m_options)};
+            co_return declined(response, place_of(m_options));
         if (error) co_return network_fault(m_options, error, error == beast::error::timeout);
         co_return Status();
     }
@@ -132,10 +155,12 @@ class WebSocketClient::Running {
     }
 
     asio::awaitable<void> read_all() {
+        WebSocketEnd end;
         while (true) {
             while (is_ahead()) co_await m_wake_reader->async_wait(as_result);
             beast::flat_buffer buffer;
             const auto [error, size] = co_await m_socket->async_read(buffer, as_result);
+            end = end_of(error);
             if (error) break;
             WebSocketMessage message{{static_cast<const char*>(buffer.cdata().data()), size},
                                      m_socket->got_binary()};
@@ -145,8 +170,7 @@ class WebSocketClient::Running {
         }
         const auto& reason = m_socket->reason();
         const bool said = reason.code != websocket::close_code::none;
-        finish(said ? WebSocketEnd{reason.code, {reason.reason.data(), reason.reason.size()}}
-                    : WebSocketEnd{});
+        finish(said ? WebSocketEnd{reason.code, {reason.reason.data(), reason.reason.size()}} : end);
         leave();
     }
 

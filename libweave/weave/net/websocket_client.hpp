@@ -15,8 +15,8 @@ namespace weave::net {
 /// connection.
 class WebSocketClient {
   public:
-    /// Connects and has the server agree. Errors as HttpClient's; refused with the status where the server
-    /// declines.
+    /// Connects and has the server agree. Errors as HttpClient's; where the server declines, refused with its
+    /// status and reason, or system where that may pass (5xx, 429).
     static Result<WebSocketClient> connect(const ClientOptions& options, const std::string& target,
                                            const Headers& headers = {});
 
@@ -31,7 +31,8 @@ class WebSocketClient {
     /// The next message; nothing if none comes in time. Errors (system): the connection has ended and all
     /// that came before is taken.
     Result<std::optional<WebSocketMessage>> receive(std::chrono::milliseconds patience);
-    /// How the connection ended; nothing while it lasts.
+    /// How the connection ended; nothing while it lasts. What was not to be read ends it as well: 1009 for a
+    /// message that is too long, 1007 for text that is no UTF-8, 1002 for what is no WebSocket.
     [[nodiscard]] std::optional<WebSocketEnd> end() const;
     /// Says goodbye with this code and waits for the server's, up to a second.
     void close(std::uint16_t code = 1000);
