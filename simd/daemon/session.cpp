@@ -130,12 +130,15 @@ void Session::save_unsaved() {
 void Session::deliver(const Unsaved& unsaved) {
     const net::Bytes text = net::make_bytes(unsaved.event.text);
     for (const ClientPtr& client : m_clients) client->tell(text);
-    if (unsaved.event.kind != EventKind::ended) return;
-    for (const ClientPtr& client : m_clients) client->close(1000, "the session has ended");
+}
+
+void Session::say_goodbye() {
+    for (const ClientPtr& client : std::exchange(m_clients, {})) client->close(1000, "the session has ended");
 }
 
 void Session::end(wire::Why why, std::uint64_t step, std::optional<Error> error, Json report) {
     if (std::exchange(m_has_ended, true)) return;
+    m_ended_at = Clock::now();
     m_step = step;
     if (m_worker) m_around.crew.dismiss(*m_worker);
     m_worker.reset();
@@ -151,7 +154,9 @@ Status Session::save_state() {
 void Session::acknowledge(std::uint64_t seq) {
     const Status done = m_around.store.acknowledge(m_number, std::min(seq, m_seq));
     if (!done) log(LogLevel::warning, "session " + std::to_string(m_number) + ": " + done.error().text());
-    m_is_over = m_is_over || (m_has_ended && seq >= m_seq && m_unsaved.empty());
+    if (!m_has_ended || seq < m_seq || !m_unsaved.empty()) return;
+    m_is_over = true;
+    say_goodbye();
 }
 
 // ---- What the worker says ----

@@ -93,6 +93,7 @@ class Session final : public Task {
     void emit(wire::ServerMessage event, EventKind kind, std::optional<ChangeNews> news = {});
     void deliver(const Unsaved& unsaved);
     void save_unsaved();
+    void say_goodbye();
     void end(wire::Why why, std::uint64_t step, std::optional<Error> error, Json report);
     Status save_state();
     void recover(const WorkerEnd& end);
@@ -129,6 +130,7 @@ class Session final : public Task {
     std::int64_t m_seen = 0;
 
     bool m_takes_up = false, m_is_recovering = false, m_is_closing = false, m_is_put_away = false, m_has_ended = false, m_is_over = false;
+    Clock::time_point m_ended_at{};
     std::size_t m_faults = 0;  ///< since the last checkpoint
     std::vector<Unsaved> m_unsaved;  ///< events that the disk did not take yet
     std::uint64_t m_last_id = 0;

@@ -94,7 +94,6 @@ void Session::attach(const ClientPtr& client, const wire::Attach& attach) {
     for (net::Bytes& text : texts) client->tell(std::move(text));
     if (m_newest && m_newest_number > attach.frame + 1) client->tell(wire::Gap{m_number, attach.frame + 1, m_newest_number - 1});
     if (m_newest && m_newest_number > attach.frame) client->show(m_newest, true);
-    if (m_has_ended && m_unsaved.empty()) return client->close(1000, "the session has ended");
     client->session = m_number;
     m_clients.push_back(client);
     tell_rates();
@@ -250,8 +249,10 @@ void Session::ended(const WorkerEnd& end) {
               Json::object());
 }
 
-void Session::tick(Clock::time_point, std::chrono::seconds expire) {
+void Session::tick(Clock::time_point now, std::chrono::seconds expire) {
+    constexpr std::chrono::seconds to_take_the_end_in{10};
     if (!m_unsaved.empty()) save_unsaved();
+    if (m_has_ended && !m_clients.empty() && now - m_ended_at > to_take_the_end_in) say_goodbye();
     if (!is_accepted() || m_has_ended) return;
     if (!m_worker && !m_is_put_away && m_around.crew.room().left() >= expected_bytes(m_points)) take_up();
     if (m_clients.empty() && m_around.utc_s() - m_seen > expire.count()) end(wire::Why::expired, m_step, {}, Json::object());

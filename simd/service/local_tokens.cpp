@@ -33,7 +33,7 @@ Result<std::map<std::string, std::string>> read_local_tokens(const std::filesyst
     std::error_code missing;
     if (file.empty() || !std::filesystem::exists(file, missing)) return people;
     WEAVE_TRY(const SecretBytes bytes, read_private_file(file, most_bytes));
-    std::istringstream lines{std::string(bytes.view())};
+    std::istringstream lines(std::string(bytes.data(), bytes.data() + bytes.size()));
     std::size_t number = 0;
     for (std::string line; std::getline(lines, line);) {
         ++number;

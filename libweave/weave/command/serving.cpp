@@ -37,6 +37,11 @@ void EndingSignals::wait() const {
     sigwait(&m_signals, &signal);
 }
 
+bool EndingSignals::wait(std::chrono::milliseconds most) const {
+    const timespec time{most.count() / 1000, static_cast<long>(most.count() % 1000 * 1'000'000)};
+    return sigtimedwait(&m_signals, nullptr, &time) > 0;
+}
+
 Result<FolderLock> FolderLock::take(const std::filesystem::path& folder, const std::string& who) {
     const std::filesystem::path path = folder / ".lock";
     Descriptor file(::open(path.c_str(), O_RDWR | O_CREAT | O_CLOEXEC | O_NOFOLLOW, 0600));

@@ -3,6 +3,7 @@
 #include <weave/core/descriptor.hpp>
 #include <weave/core/result.hpp>
 
+#include <chrono>
 #include <csignal>
 #include <filesystem>
 #include <string>
@@ -20,6 +21,8 @@ class EndingSignals {
     EndingSignals();
     /// Waits for one of them.
     void wait() const;
+    /// The same for so long at most; whether one came.
+    [[nodiscard]] bool wait(std::chrono::milliseconds most) const;
 
   private:
     sigset_t m_signals{};
