@@ -1,5 +1,6 @@
 #include <weave/core/json_reader.hpp>
 #include <weave/core/text.hpp>
+#include <weave/keys/hex.hpp>
 
 #include <algorithm>
 #include <chrono>
@@ -96,9 +97,9 @@ Result<RecordSignature> signature_from(const Json& json, const std::string& wher
     JsonReader reader(json, where);
     RecordSignature signature;
     signature.key = reader.text("key");
-    if (!is_lower_hex(signature.key, 64)) reader.fail("must be 64 lower-case hexadecimal characters", "key");
+    if (!is_hex(signature.key, 64)) reader.fail("must be 64 lower-case hexadecimal characters", "key");
     signature.value = reader.text("value");
-    if (!is_lower_hex(signature.value, 128))
+    if (!is_hex(signature.value, 128))
         reader.fail("must be 128 lower-case hexadecimal characters", "value");
     reader.no_others();
     WEAVE_CHECK_OK(reader.status());

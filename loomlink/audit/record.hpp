@@ -2,10 +2,10 @@
 
 #include <weave/core/json.hpp>
 #include <weave/core/result.hpp>
+#include <weave/keys/hash.hpp>
 
 #include <cstdint>
 #include <functional>
-#include <loomlink/audit/hash.hpp>
 #include <optional>
 #include <string>
 #include <string_view>

@@ -1,6 +1,7 @@
 #pragma once
 
-#include <loomlink/keys/key.hpp>
+#include <weave/keys/key.hpp>
+
 #include <map>
 #include <string>
 #include <string_view>

@@ -1,10 +1,10 @@
 #pragma once
 
 #include <weave/core/result.hpp>
+#include <weave/keys/hash.hpp>
 
 #include <cstdint>
 #include <functional>
-#include <loomlink/audit/hash.hpp>
 #include <string_view>
 #include <utility>
 #include <vector>

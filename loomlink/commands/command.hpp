@@ -32,6 +32,7 @@ void add_init_command(CLI::App& app, CommandOutcome& outcome);
 void add_serve_command(CLI::App& app, CommandOutcome& outcome);
 void add_upkeep_commands(CLI::App& app, CommandOutcome& outcome);       // verify, backup, restore
 void add_session_commands(CLI::App& app, CommandOutcome& outcome);      // login, logout, me
+void add_token_command(CLI::App& app, CommandOutcome& outcome);         // token
 void add_user_commands(CLI::App& app, CommandOutcome& outcome);         // user
 void add_policy_command(CLI::App& app, CommandOutcome& outcome);        // policy
 void add_trust_commands(CLI::App& app, CommandOutcome& outcome);        // trust, key

@@ -1,22 +1,20 @@
 // evidence: what simulations found, signed by an enrolled machine.
 
 #include <weave/core/file.hpp>
-#include <weave/core/text.hpp>
+#include <weave/keys/server_key.hpp>
 
 #include <loomlink/commands/client_command.hpp>
+#include <loomlink/commands/evidence_file.hpp>
 #include <loomlink/commands/revision_place.hpp>
-#include <loomlink/commands/simulation_result.hpp>
 #include <loomlink/commands/trust_papers.hpp>
-#include <loomlink/keys/server_key.hpp>
+#include <loomlink/workflow/desk.hpp>
 
 namespace weave::loomlink {
 
 namespace {
 
-constexpr std::uint64_t most_report = std::uint64_t{4} << 20;
-
 struct EvidenceWords {
-    std::string result, key_file;
+    std::string file, key_file;
 };
 
 /// The site that a statement is for: the one that this machine is enrolled at, or that of the server's trust
@@ -27,39 +25,53 @@ Result<std::string> site_of(ApiClient& client) {
     return trust.site;
 }
 
+/// Signs the answer of `weave simulate --json` with the machine's key.
+Result<EvidenceToFile> signed_now(ApiClient& client, std::string report, const EvidenceWords& words) {
+    if (words.key_file.empty())
+        return Error{ErrorCode::usage, "a result that is not signed yet takes the machine's key: --key-file", words.file};
+    WEAVE_TRY(const KeyPair key, load_server_key(words.key_file, ServerKeyRole::evidence));
+    WEAVE_TRY(const std::string site, site_of(client));
+    auto evidence = wire::sign_evidence(key, site, std::move(report), system_clock()());
+    if (!evidence) return std::move(evidence).error().in(words.file);
+    WEAVE_TRY(wire::SimulationStatement statement, wire::read_simulation(evidence->statement));
+    return EvidenceToFile{*std::move(evidence), std::move(statement)};
+}
+
+/// What a file holds, by what it says of itself: evidence that is signed, or a result that is signed here.
+Result<EvidenceToFile> evidence_of(ApiClient& client, const EvidenceWords& words) {
+    WEAVE_TRY(std::string bytes, read_file(words.file, wire::most_evidence));
+    const auto json = parse_json(bytes);
+    if (!json) return Error(json.error()).in(words.file);
+    if (!wire::is_evidence(*json)) return signed_now(client, std::move(bytes), words);
+    if (!words.key_file.empty())
+        return Error{ErrorCode::usage, "is signed already, by the machine that simulated", words.file};
+    auto evidence = evidence_from(bytes);
+    if (!evidence) return std::move(evidence).error().in(words.file);
+    return evidence;
+}
+
 Status add_evidence(ApiClient& client, const RevisionPlace& place, const EvidenceWords& words,
                     CommandOutcome& outcome) {
-    WEAVE_TRY(const KeyPair key, load_server_key(words.key_file, ServerKeyRole::evidence));
-    WEAVE_TRY(std::string report, read_file(words.result, most_report));
-    auto statement = statement_of_result(report);
-    if (!statement) return std::move(statement).error().in(words.result);
-    WEAVE_TRY(statement->site, site_of(client));
-    const Json body = statement_body(*statement);
-    const Signature signature = key.sign(Purpose::evidence, canonical_json(body));
-    WEAVE_TRY(const Json answer,
-              client.post(place.path("evidence"),
-                          {{"statement", body},
-                           {"signature", {{"key", signature.key}, {"value", signature.value}}},
-                           {"report", std::move(report)}}));
-    outcome.answer({{"evidence", answer.value("evidence", Json())}, {"statement", body}},
-                   place.words() + ": a simulation at " + on_one_line(statement->fidelity) +
-                       (statement->converged ? ", at rest" : ", NOT at rest") +
-                       (statement->order_kept ? "" : ", crossings changed") + "\n");
+    WEAVE_TRY(const EvidenceToFile filed, evidence_of(client, words));
+    WEAVE_TRY(Json number, file_evidence(client, place, filed));
+    outcome.answer({{"evidence", std::move(number)}, {"statement", filed.evidence.statement}},
+                   place.words() + ": " + filed.words() + "\n");
     return {};
 }
 
 void add_add(CLI::App& app, CommandOutcome& outcome) {
     const auto command =
-        add_client_command(app, outcome, "add", "Sign the result of a simulation and file it for a revision",
-                           "weave simulate shoe.weave -o shoe.yarns --json > result.json; loomlink evidence "
-                           "add shoe 3 result.json "
-                           "--key-file evidence.key");
+        add_client_command(app, outcome, "add",
+                           "File what a simulation found for a revision: evidence that a machine has signed, or a result "
+                           "that this machine signs now",
+                           "loomlink evidence add shoe 3 shoe.evidence; weave simulate shoe.weave -o shoe.yarns --json > "
+                           "result.json; loomlink evidence add shoe 3 result.json --key-file evidence.key");
     const auto place = add_revision_place(command.command);
     const auto words = std::make_shared<EvidenceWords>();
-    add_text(command.command, "RESULT", words->result, "what weave simulate --json answered")->required();
-    add_text(command.command, "--key-file", words->key_file, "the machine's key, as signer enrol made it")
-        ->type_name("FILE")
-        ->required();
+    add_text(command.command, "FILE", words->file, "signed evidence, or what weave simulate --json answered")->required();
+    add_text(command.command, "--key-file", words->key_file,
+             "for a result that is not signed: the machine's key, as signer enrol made it")
+        ->type_name("FILE");
     on_client_run(command, outcome, [place, words, &outcome](ApiClient& client) {
         return add_evidence(client, *place, *words, outcome);
     });

@@ -1,9 +1,9 @@
 #include <weave/core/text.hpp>
+#include <weave/keys/hex.hpp>
 
 #include <algorithm>
 #include <loomlink/commands/log_words.hpp>
 #include <loomlink/commands/words.hpp>
-#include <loomlink/keys/hex.hpp>
 
 namespace weave::loomlink {
 

@@ -7,7 +7,7 @@ int main(int count, char** words) {
     CLI::App app("Keeps designs, their approval and their release to looms.\n", "loomlink");
     weave::prepare_program(app, WEAVE_VERSION);
     for (const auto add : {weave::loomlink::add_init_command, weave::loomlink::add_serve_command,
-                           weave::loomlink::add_session_commands, weave::loomlink::add_user_commands,
+                           weave::loomlink::add_session_commands, weave::loomlink::add_token_command, weave::loomlink::add_user_commands,
                            weave::loomlink::add_policy_command, weave::loomlink::add_trust_commands,
                            weave::loomlink::add_signer_commands, weave::loomlink::add_loom_commands,
                            weave::loomlink::add_design_commands, weave::loomlink::add_step_commands,

@@ -1,12 +1,12 @@
 #include <weave/core/descriptor.hpp>
+#include <weave/keys/private_file.hpp>
+#include <weave/keys/secret_bytes.hpp>
 
 #include <array>
 #include <cerrno>
 #include <csignal>
 #include <fcntl.h>
 #include <loomlink/commands/password_source.hpp>
-#include <loomlink/keys/private_file.hpp>
-#include <loomlink/keys/secret_bytes.hpp>
 #include <poll.h>
 #include <sys/stat.h>
 #include <termios.h>

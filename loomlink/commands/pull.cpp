@@ -1,10 +1,11 @@
 // pull: the loom's side takes what was released, and gives up what was recalled.
 
+#include <weave/keys/secret_bytes.hpp>
+
 #include <loomlink/commands/client_command.hpp>
 #include <loomlink/commands/loom_watch.hpp>
 #include <loomlink/commands/names.hpp>
 #include <loomlink/commands/sign_in.hpp>
-#include <loomlink/keys/secret_bytes.hpp>
 
 namespace weave::loomlink {
 

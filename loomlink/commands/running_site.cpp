@@ -1,10 +1,10 @@
+#include <weave/keys/private_file.hpp>
 #include <weave/net/certificate.hpp>
 #include <weave/net/server.hpp>
 
 #include <chrono>
 #include <loomlink/commands/head_keeper.hpp>
 #include <loomlink/commands/running_site.hpp>
-#include <loomlink/keys/private_file.hpp>
 #include <loomlink/service/handlers.hpp>
 #include <loomlink/service/service.hpp>
 #include <optional>
@@ -123,6 +123,7 @@ Result<Json> RunningSite::introduction() {
     }
     WEAVE_TRY(const auto trust, m_parts->workflow->store().read(newest_trust));
     if (trust) told["trust_sha256"] = trust->fingerprint();
+    told["access_public"] = m_parts->workflow->accounts().access_key().at("public");
     const auto invitation = m_parts->workflow->accounts().first_invitation();
     if (invitation)
         told["invitation"] = url + "/join#" + invitation->value("code", std::string());

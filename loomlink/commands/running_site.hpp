@@ -27,7 +27,8 @@ class RunningSite {
 
     [[nodiscard]] std::uint16_t port() const;
     /// What people need to come in: `site`, `url`, `made_in` (the folder, where the site is new),
-    /// `certificate_sha256` (with TLS), `trust_sha256` (once there is a trust document), and `invitation`, a
+    /// `certificate_sha256` (with TLS), `trust_sha256` (once there is a trust document), `access_public` (by
+    /// what simd knows access tokens), and `invitation`, a
     /// link for the first administrator, while nobody has joined. Each call makes a new invitation.
     [[nodiscard]] Result<Json> introduction();
     /// Takes nothing new, and lets what runs finish.

@@ -68,6 +68,7 @@ std::string words_of(const Json& started) {
         words += "certificate (SHA-256): " + started["certificate_sha256"].get<std::string>() + "\n";
     if (started.contains("trust_sha256"))
         words += "trust (SHA-256): " + started["trust_sha256"].get<std::string>() + "\n";
+    words += "access key for simd (public): " + started.value("access_public", std::string()) + "\n";
     if (started.contains("invitation"))
         words +=
             "The first administrator joins here, once: " + started["invitation"].get<std::string>() + "\n";

@@ -1,11 +1,11 @@
 #include <weave/core/json_reader.hpp>
+#include <weave/keys/hex.hpp>
+#include <weave/keys/private_file.hpp>
 
 #include <algorithm>
 #include <cerrno>
 #include <cstdlib>
 #include <loomlink/commands/session.hpp>
-#include <loomlink/keys/hex.hpp>
-#include <loomlink/keys/private_file.hpp>
 #include <sys/stat.h>
 
 namespace weave::loomlink {

@@ -1,5 +1,6 @@
+#include <weave/keys/secret_bytes.hpp>
+
 #include <loomlink/commands/sign_in.hpp>
-#include <loomlink/keys/secret_bytes.hpp>
 #include <utility>
 
 namespace weave::loomlink {

@@ -1,12 +1,13 @@
 // signer: machines whose simulations count.
 
 #include <weave/core/text.hpp>
+#include <weave/keys/hex.hpp>
+#include <weave/keys/server_key.hpp>
+#include <weave/keys/signer.hpp>
 
 #include <loomlink/commands/client_command.hpp>
 #include <loomlink/commands/names.hpp>
 #include <loomlink/commands/sign_in.hpp>
-#include <loomlink/keys/hex.hpp>
-#include <loomlink/keys/server_key.hpp>
 
 namespace weave::loomlink {
 
@@ -31,9 +32,12 @@ Status enrol(const ClientWish& client_wish, const EnrolWish& wish, CommandOutcom
         std::filesystem::remove(wish.key_file, ignored);  // a key that nobody knows
         return answer.error();
     }
+    WEAVE_TRY(const std::string site, text_member(*answer, "site"));
+    WEAVE_TRY(const std::string name, text_member(*answer, "name"));
+    WEAVE_CHECK_OK(save_signer_note(wish.key_file, {pair.id(), site, name}));
     KeptSession session = kept.origin == server.origin ? kept : server;
     session.fingerprint = server.fingerprint;
-    WEAVE_TRY(session.site, text_member(*answer, "site"));
+    session.site = site;
     WEAVE_CHECK_OK(save_session(file, session));
     outcome.answer(*answer, told(*answer, "name") + " is enrolled at " + on_one_line(session.site) +
                                 "; its key lies in " + on_one_line(wish.key_file) + "\n");

@@ -1,12 +1,12 @@
 #include <weave/core/descriptor.hpp>
 #include <weave/core/file.hpp>
+#include <weave/keys/private_file.hpp>
+#include <weave/keys/secret_bytes.hpp>
+#include <weave/keys/server_key.hpp>
 
 #include <csignal>
 #include <fcntl.h>
 #include <loomlink/commands/site_copy.hpp>
-#include <loomlink/keys/private_file.hpp>
-#include <loomlink/keys/secret_bytes.hpp>
-#include <loomlink/keys/server_key.hpp>
 #include <loomlink/store/backup.hpp>
 #include <loomlink/store/signatures.hpp>
 #include <loomlink/workflow/retelling.hpp>
@@ -54,7 +54,8 @@ Status copy_private(const fs::path& from, const fs::path& to) {
 Status copy_keys(const SiteFolder& from, const SiteFolder& to) {
     for (const auto& [source, target] :
          {std::pair(from.log_key(), to.log_key()), std::pair(from.stamp_key(), to.stamp_key()),
-          std::pair(from.tls().key, to.tls().key), std::pair(from.tls().certificate, to.tls().certificate)})
+          std::pair(from.access_key(), to.access_key()), std::pair(from.tls().key, to.tls().key),
+          std::pair(from.tls().certificate, to.tls().certificate)})
         WEAVE_CHECK_OK(copy_private(source, target));
     return {};
 }
@@ -124,6 +125,9 @@ Result<std::vector<AuditFinding>> verify_site(const SiteFolder& site,
     const auto log = load_server_key(site.log_key(), ServerKeyRole::log);
     look_at_key(log, site.log_key(), findings);
     look_at_key(load_server_key(site.stamp_key(), ServerKeyRole::stamp), site.stamp_key(), findings);
+    std::error_code code;
+    if (fs::exists(fs::symlink_status(site.access_key(), code)))  // serving makes it where it is missing
+        look_at_key(load_server_key(site.access_key(), ServerKeyRole::access), site.access_key(), findings);
     look_at_certificate(site.tls(), findings);
     StoreTrust trust;
     if (log) {

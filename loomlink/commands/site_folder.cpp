@@ -1,9 +1,10 @@
+#include <weave/keys/private_file.hpp>
+#include <weave/keys/server_key.hpp>
+
 #include <cerrno>
 #include <cstring>
 #include <fcntl.h>
 #include <loomlink/commands/site_folder.hpp>
-#include <loomlink/keys/private_file.hpp>
-#include <loomlink/keys/server_key.hpp>
 #include <loomlink/workflow/retelling.hpp>
 #include <sys/file.h>
 #include <sys/stat.h>
@@ -45,8 +46,17 @@ Result<bool> holds_nothing(const fs::path& folder) {
 Result<OpenSite> make_site(FolderLock lock, const SiteFolder& folder, const std::string& name) {
     WEAVE_TRY(KeyPair log, create_server_key(folder.log_key(), ServerKeyRole::log));
     WEAVE_TRY(KeyPair stamp, create_server_key(folder.stamp_key(), ServerKeyRole::stamp));
+    WEAVE_TRY(KeyPair access, create_server_key(folder.access_key(), ServerKeyRole::access));
     WEAVE_TRY(Store store, Store::create(folder.store(), name));
-    return OpenSite{std::move(lock), std::move(store), {std::move(log), std::move(stamp)}, name, true};
+    return OpenSite{std::move(lock), std::move(store), {std::move(log), std::move(stamp), std::move(access)}, name, true};
+}
+
+/// The key for access tokens. Sites that were made before there was one have none yet.
+Result<KeyPair> access_key_of(const SiteFolder& folder) {
+    std::error_code trouble;
+    if (fs::exists(fs::symlink_status(folder.access_key(), trouble)))
+        return load_server_key(folder.access_key(), ServerKeyRole::access);
+    return create_server_key(folder.access_key(), ServerKeyRole::access);
 }
 
 /// Nothing is served that somebody changed past the program: a recall that was undone would go to a loom.
@@ -62,11 +72,11 @@ Status check_tables(const SiteFolder& folder) {
 Result<OpenSite> open_old_site(FolderLock lock, const SiteFolder& folder) {
     WEAVE_TRY(KeyPair log, load_server_key(folder.log_key(), ServerKeyRole::log));
     WEAVE_TRY(KeyPair stamp, load_server_key(folder.stamp_key(), ServerKeyRole::stamp));
+    WEAVE_TRY(KeyPair access, access_key_of(folder));
     WEAVE_TRY(Store store, Store::open(folder.store()));
     WEAVE_CHECK_OK(check_tables(folder));
     WEAVE_TRY(std::string name, store.read([](const Reader& reader) { return reader.site(); }));
-    return OpenSite{
-        std::move(lock), std::move(store), {std::move(log), std::move(stamp)}, std::move(name), false};
+    return OpenSite{std::move(lock), std::move(store), {std::move(log), std::move(stamp), std::move(access)}, std::move(name), false};
 }
 
 }  // namespace

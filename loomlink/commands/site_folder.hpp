@@ -34,6 +34,7 @@ struct SiteFolder {
     [[nodiscard]] std::filesystem::path store() const { return path / "loomlink.db"; }
     [[nodiscard]] std::filesystem::path log_key() const { return path / "log.key"; }
     [[nodiscard]] std::filesystem::path stamp_key() const { return path / "stamp.key"; }
+    [[nodiscard]] std::filesystem::path access_key() const { return path / "access.key"; }
     [[nodiscard]] net::TlsFiles tls() const { return {path / "tls.pem", path / "tls.key"}; }
 };
 
@@ -50,7 +51,8 @@ struct OpenSite {
 };
 
 /// Opens the site in a folder, or makes it where the folder is missing or empty: the store, and the keys for
-/// log and stamps (mode 0600). Errors: a folder that is missing with the one above it (bad_input); refused:
+/// log, stamps and access tokens (mode 0600). The last is made anew where it is missing, since nothing that lasts is
+/// signed with it. Errors: a folder that is missing with the one above it (bad_input); refused:
 /// one that holds other things, or half a site.
 Result<OpenSite> open_site(const SiteFolder& folder, const ServeConfig& config);
 

@@ -3,6 +3,7 @@
 #include <weave/core/text.hpp>
 
 #include <loomlink/commands/client_command.hpp>
+#include <loomlink/commands/evidence_file.hpp>
 #include <loomlink/commands/names.hpp>
 #include <loomlink/commands/revision_place.hpp>
 
@@ -12,7 +13,7 @@ namespace {
 
 struct StepWords {
     std::string reason, rule, loom;
-    std::vector<std::string> looms;
+    std::vector<std::string> looms, evidence;
     std::optional<std::int64_t> pick, end;
 };
 
@@ -54,19 +55,45 @@ void on_signed_step(const SignedStep& step, CommandOutcome& outcome, const std::
         });
 }
 
+/// Submits a revision; first files the evidence that comes with it, all of which is read before any is filed.
+Status submit(ApiClient& client, const ClientWish& wish, const RevisionPlace& place, const StepWords& words,
+              CommandOutcome& outcome) {
+    std::vector<EvidenceToFile> papers;
+    for (const std::string& file : words.evidence) {
+        WEAVE_TRY(EvidenceToFile paper, load_evidence(file));
+        papers.push_back(std::move(paper));
+    }
+    std::string filed_words;
+    Json filed = Json::array();
+    for (const EvidenceToFile& paper : papers) {
+        WEAVE_TRY(Json number, file_evidence(client, place, paper));
+        filed.push_back(std::move(number));
+        filed_words += place.words() + ": " + paper.words() + "\n";
+    }
+    Json body{{"reason", words.reason}};
+    if (!words.looms.empty()) body["looms"] = words.looms;
+    WEAVE_TRY(Json answer, sign_and_post(client, wish, place.path("submit"), std::move(body)));
+    if (!papers.empty()) answer["evidence_filed"] = std::move(filed);
+    outcome.answer(answer, filed_words + place.words() + ": " + state_told(answer, words) + "\n");
+    return {};
+}
+
 void add_submit(CLI::App& app, CommandOutcome& outcome) {
     const auto step = add_signed_step(app, outcome, "submit", "Submit a revision for approval",
                                       "loomlink submit shoe 3 --reason 'Ready to weave' --loom 'EP 1'");
+    step.client.command
+        ->add_option("--evidence", step.words->evidence,
+                     "what a machine signed that it found, to be filed first; may be repeated")
+        ->allow_extra_args(false)
+        ->type_name("FILE");
     step.client.command
         ->add_option("--loom", step.words->looms,
                      "a loom that it is meant for; may be repeated; all if not given")
         ->check(loom_name())
         ->allow_extra_args(false)
         ->type_name("LOOM");
-    on_signed_step(step, outcome, "submit", [](const StepWords& words) {
-        Json body{{"reason", words.reason}};
-        if (!words.looms.empty()) body["looms"] = words.looms;
-        return body;
+    on_client_run(step.client, outcome, [step, &outcome](ApiClient& client) {
+        return submit(client, *step.client.wish, *step.place, *step.words, outcome);
     });
 }
 

@@ -2,11 +2,11 @@
 
 #include <weave/core/file.hpp>
 #include <weave/core/text.hpp>
+#include <weave/keys/hex.hpp>
 
 #include <algorithm>
 #include <loomlink/commands/client_command.hpp>
 #include <loomlink/commands/trust_papers.hpp>
-#include <loomlink/keys/hex.hpp>
 
 namespace weave::loomlink {
 
@@ -93,9 +93,15 @@ Status show_key(ApiClient& client, std::string wanted, CommandOutcome& outcome) 
 }
 
 void add_key_commands(CLI::App& app, CommandOutcome& outcome) {
-    CLI::App& key = add_group(app, "key", "The keys that count, as the newest trust document lists them");
+    CLI::App& key = add_group(app, "key", "The keys that count, as the newest trust document lists them, and that of access tokens");
     const auto list = add_client_command(key, outcome, "list", "List them");
     on_client_run(list, outcome, [&outcome](ApiClient& client) { return list_keys(client, outcome); });
+    const auto access = add_client_command(key, outcome, "access", "Tell the public key by which simd knows this site's access tokens");
+    on_client_run(access, outcome, [&outcome](ApiClient& client) -> Status {
+        WEAVE_TRY(const Json answer, client.get("/access-key"));
+        outcome.answer(answer, in_columns({{"site", told(answer, "site")}, {"id", told(answer, "key")}, {"public", told(answer, "public")}}));
+        return {};
+    });
     const auto show = add_client_command(key, outcome, "show", "Tell all of one key");
     const auto wanted = std::make_shared<std::string>();
     add_text(show.command, "KEY", *wanted, "how its id begins; your own if not given");

@@ -1,12 +1,12 @@
 // user: who may come in, and what each may do.
 
 #include <weave/core/text.hpp>
+#include <weave/keys/secret_bytes.hpp>
 
 #include <loomlink/commands/bootstrap.hpp>
 #include <loomlink/commands/client_command.hpp>
 #include <loomlink/commands/names.hpp>
 #include <loomlink/commands/sign_in.hpp>
-#include <loomlink/keys/secret_bytes.hpp>
 
 namespace weave::loomlink {
 

@@ -1,6 +1,7 @@
+#include <weave/keys/sodium.hpp>
+
 #include <cassert>
 #include <loomlink/keys/argon.hpp>
-#include <loomlink/keys/sodium.hpp>
 #include <new>
 #include <semaphore>
 #include <sodium.h>

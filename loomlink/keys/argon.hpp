@@ -1,8 +1,9 @@
 #pragma once
 
+#include <weave/keys/secret_bytes.hpp>
+
 #include <cstddef>
 #include <cstdint>
-#include <loomlink/keys/secret_bytes.hpp>
 #include <span>
 #include <string_view>
 

@@ -1,7 +1,7 @@
 #include <weave/core/json_reader.hpp>
+#include <weave/keys/members.hpp>
 
 #include <loomlink/keys/log_head.hpp>
-#include <loomlink/keys/members.hpp>
 
 namespace weave::loomlink {
 

@@ -1,11 +1,11 @@
 #include <weave/core/text.hpp>
+#include <weave/keys/codes.hpp>
+#include <weave/keys/sodium.hpp>
 
 #include <algorithm>
 #include <array>
 #include <cctype>
-#include <loomlink/keys/codes.hpp>
 #include <loomlink/keys/password.hpp>
-#include <loomlink/keys/sodium.hpp>
 #include <new>
 #include <sodium.h>
 

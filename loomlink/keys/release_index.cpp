@@ -1,7 +1,7 @@
 #include <weave/core/sha256.hpp>
+#include <weave/keys/members.hpp>
 
 #include <algorithm>
-#include <loomlink/keys/members.hpp>
 #include <loomlink/keys/release_index.hpp>
 
 namespace weave::loomlink {

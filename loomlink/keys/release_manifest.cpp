@@ -1,7 +1,7 @@
 #include <weave/core/json_reader.hpp>
+#include <weave/keys/members.hpp>
 
 #include <loomlink/keys/file_name.hpp>
-#include <loomlink/keys/members.hpp>
 #include <loomlink/keys/release_manifest.hpp>
 #include <set>
 

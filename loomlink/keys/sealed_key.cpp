@@ -1,7 +1,8 @@
-#include <loomlink/keys/hex.hpp>
-#include <loomlink/keys/members.hpp>
+#include <weave/keys/hex.hpp>
+#include <weave/keys/members.hpp>
+#include <weave/keys/sodium.hpp>
+
 #include <loomlink/keys/sealed_key.hpp>
-#include <loomlink/keys/sodium.hpp>
 #include <sodium.h>
 
 namespace weave::loomlink {

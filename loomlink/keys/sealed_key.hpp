@@ -2,10 +2,10 @@
 
 #include <weave/core/json.hpp>
 #include <weave/core/result.hpp>
+#include <weave/keys/key.hpp>
 
 #include <array>
 #include <loomlink/keys/argon.hpp>
-#include <loomlink/keys/key.hpp>
 #include <string>
 #include <string_view>
 

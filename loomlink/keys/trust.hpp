@@ -1,10 +1,10 @@
 #pragma once
 
 #include <weave/core/result.hpp>
+#include <weave/keys/signed_document.hpp>
+#include <weave/keys/utc.hpp>
 
 #include <cstdint>
-#include <loomlink/keys/signed_document.hpp>
-#include <loomlink/keys/utc.hpp>
 #include <span>
 #include <string>
 #include <string_view>

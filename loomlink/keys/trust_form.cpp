@@ -1,8 +1,8 @@
 #include <weave/core/json_reader.hpp>
+#include <weave/keys/hex.hpp>
+#include <weave/keys/members.hpp>
 
 #include <algorithm>
-#include <loomlink/keys/hex.hpp>
-#include <loomlink/keys/members.hpp>
 #include <loomlink/keys/trust_form.hpp>
 #include <set>
 

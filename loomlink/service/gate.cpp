@@ -1,4 +1,5 @@
-#include <loomlink/keys/secret_bytes.hpp>
+#include <weave/keys/secret_bytes.hpp>
+
 #include <loomlink/service/gate.hpp>
 #include <loomlink/workflow/denial.hpp>
 #include <utility>

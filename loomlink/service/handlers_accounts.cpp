@@ -41,6 +41,12 @@ void add_own_account(ApiHandlers& handlers, Accounts& accounts) {
         return with_cookie(call, accounts.log_out(call.visitor.token), {});
     };
     answers["me"] = answering([&accounts](const ApiCall& call) { return accounts.me(call.visitor.session); });
+    answers["access.token"] = answering([&accounts](const ApiCall& call) {
+        constexpr std::int64_t usual_hours = 8;  // a shift
+        return accounts.access_token(call.visitor.caller(), ask_of(call), call.whole("hours").value_or(usual_hours));
+    });
+    answers["access.key"] =
+        answering([&accounts](const ApiCall&) -> Result<Json> { return accounts.access_key(); });
     answers["me.password"] = answering([&accounts](const ApiCall& call) {
         return accounts.change_password(call.visitor.caller(), ask_of(call), call.text("old"),
                                         call.text("new"));

@@ -1,6 +1,7 @@
+#include <weave/keys/hex.hpp>
+
 #include <cstring>
 #include <filesystem>
-#include <loomlink/keys/hex.hpp>
 #include <loomlink/store/database.hpp>
 #include <unistd.h>
 

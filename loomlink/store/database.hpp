@@ -2,9 +2,9 @@
 
 #include <weave/core/json.hpp>
 #include <weave/core/result.hpp>
+#include <weave/keys/hash.hpp>
 
 #include <cstdint>
-#include <loomlink/audit/hash.hpp>
 #include <map>
 #include <memory>
 #include <optional>

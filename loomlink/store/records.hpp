@@ -1,10 +1,10 @@
 #pragma once
 
 #include <weave/core/json.hpp>
+#include <weave/keys/hash.hpp>
 
 #include <compare>
 #include <cstdint>
-#include <loomlink/audit/hash.hpp>
 #include <optional>
 #include <string>
 #include <vector>

@@ -1,7 +1,8 @@
 #pragma once
 
+#include <weave/keys/key.hpp>
+
 #include <filesystem>
-#include <loomlink/keys/key.hpp>
 #include <loomlink/store/store.hpp>
 #include <vector>
 

@@ -1,10 +1,10 @@
 #include <weave/core/file.hpp>
 #include <weave/core/text.hpp>
+#include <weave/keys/members.hpp>
+#include <weave/keys/private_file.hpp>
 
 #include <algorithm>
 #include <loomlink/keys/file_name.hpp>
-#include <loomlink/keys/members.hpp>
-#include <loomlink/keys/private_file.hpp>
 #include <loomlink/keys/release_manifest.hpp>
 #include <loomlink/terminal/state.hpp>
 #include <set>

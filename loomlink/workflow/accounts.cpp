@@ -1,9 +1,9 @@
 #include <weave/core/text.hpp>
+#include <weave/keys/codes.hpp>
+#include <weave/keys/hex.hpp>
 
 #include <algorithm>
-#include <loomlink/keys/codes.hpp>
 #include <loomlink/keys/file_name.hpp>
-#include <loomlink/keys/hex.hpp>
 #include <loomlink/keys/sealed_key.hpp>
 #include <loomlink/workflow/accounts.hpp>
 #include <loomlink/workflow/names.hpp>

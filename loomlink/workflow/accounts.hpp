@@ -1,5 +1,6 @@
 #pragma once
 
+#include <cstdint>
 #include <loomlink/keys/sealed_key.hpp>
 #include <loomlink/workflow/desk.hpp>
 #include <string>
@@ -52,6 +53,11 @@ class Accounts {
     /// For a lost password: the key is revoked, and the person joins again with a new code. `code`,
     /// `expires`.
     Result<Json> reset(const Caller& caller, const Ask& ask, const std::string& name);
+
+    /// `token`, `expires`: lets the person use simd for so many hours. Told once, and logged with its hash alone.
+    Result<Json> access_token(const Caller& caller, const Ask& ask, std::int64_t hours);
+    /// `site`, `key`, `public`: by what simd knows the tokens of this site.
+    [[nodiscard]] Json access_key() const;
 
     Result<Json> policy();
     Result<Json> set_policy(const Caller& caller, const Ask& ask, const Json& policy);

@@ -1,8 +1,8 @@
 #pragma once
 
 #include <weave/core/json.hpp>
+#include <weave/keys/key.hpp>
 
-#include <loomlink/keys/key.hpp>
 #include <string>
 #include <utility>
 #include <vector>

@@ -1,8 +1,8 @@
 #include <weave/core/log.hpp>
 #include <weave/core/text.hpp>
+#include <weave/keys/codes.hpp>
 
 #include <algorithm>
-#include <loomlink/keys/codes.hpp>
 #include <loomlink/keys/sealed_key.hpp>
 #include <loomlink/workflow/desk.hpp>
 

@@ -2,12 +2,12 @@
 
 #include <weave/core/json.hpp>
 #include <weave/core/result.hpp>
+#include <weave/keys/utc.hpp>
 #include <weave/net/throttle.hpp>
 
 #include <chrono>
 #include <functional>
 #include <loomlink/keys/password.hpp>
-#include <loomlink/keys/utc.hpp>
 #include <loomlink/store/store.hpp>
 #include <loomlink/workflow/caller.hpp>
 #include <loomlink/workflow/deed.hpp>
@@ -40,7 +40,7 @@ struct DeskSettings {
 
 /// The server's own keys.
 struct ServerKeys {
-    KeyPair log, stamp;
+    KeyPair log, stamp, access;
 };
 
 /// A step that is being stored.

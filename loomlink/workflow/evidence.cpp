@@ -1,9 +1,9 @@
 #include <weave/core/text.hpp>
+#include <weave/keys/codes.hpp>
+#include <weave/keys/hex.hpp>
 
 #include <algorithm>
 #include <iomanip>
-#include <loomlink/keys/codes.hpp>
-#include <loomlink/keys/hex.hpp>
 #include <loomlink/workflow/accounts.hpp>
 #include <loomlink/workflow/evidence.hpp>
 #include <loomlink/workflow/names.hpp>
@@ -15,14 +15,15 @@ namespace weave::loomlink {
 namespace {
 
 constexpr const char* signer_purpose = "evidence";
-constexpr std::size_t most_report = std::size_t{64} << 20;
 
 /// What the column `parameters` of the store holds: all that was signed beside its other columns.
-Json kept_parameters(const SimulationStatement& statement) {
+Json kept_parameters(const wire::SimulationStatement& statement) {
     const Json body = statement_body(statement);
     return {{"parameters", statement.parameters},
             {"regions", body.at("regions")},
-            {"order_kept", statement.order_kept}};
+            {"order_kept", statement.order_kept},
+            {"plan", body.at("plan")},
+            {"result_sha256", body.at("result_sha256")}};
 }
 
 Result<std::string> signer_name(const Reader& reader, const PersonKey& key) {
@@ -59,6 +60,7 @@ Result<KnownSimulation> known_simulation(const Reader& reader, const Evidence& e
     known.evidence = evidence;
     WEAVE_TRY(const Json kept, parse_json(evidence.parameters));
     known.order_kept = kept.at("order_kept").get<bool>();
+    known.result_sha256 = kept.at("result_sha256").get<std::string>();
     for (const Json& region : kept.at("regions"))
         known.regions.push_back(
             {region.at("first_pick"), region.at("picks"), region.at("first_end"), region.at("ends")});
@@ -103,7 +105,7 @@ std::vector<std::string> missing_simulation(const std::vector<KnownSimulation>& 
     if (!policy.simulation_required) return {};
     const auto picks = static_cast<std::size_t>(revision.picks);
     const auto ends = static_cast<std::size_t>(revision.ends);
-    std::vector<SimulatedRegion> regions;
+    std::vector<wire::SimulatedRegion> regions;
     for (const KnownSimulation& one : known) {
         if (!one.stale.empty() || rank_of_fidelity(one.evidence.fidelity) < rank_of_fidelity(policy.fidelity))
             continue;
@@ -204,7 +206,7 @@ namespace {
 
 /// Whether this signature authorises evidence about this revision.
 Result<std::string> check_signer(const Reader& reader, const std::string& site, const Revision& revision,
-                                 const SimulationStatement& statement, const Json& body,
+                                 const wire::SimulationStatement& statement, const Json& body,
                                  const Signature& signature) {
     WEAVE_TRY(const auto key, reader.key(signature.key));
     if (!key || key->purpose != signer_purpose || key->revoked)
@@ -222,7 +224,7 @@ Result<std::string> check_signer(const Reader& reader, const std::string& site, 
 
 }  // namespace
 
-Evidence evidence_row(const SimulationStatement& statement, const std::string& signer, Seq event) {
+Evidence evidence_row(const wire::SimulationStatement& statement, const std::string& signer, Seq event) {
     Evidence row;
     row.design_sha256 = statement.design_sha256;
     row.scene_sha256 = statement.scene_sha256;
@@ -241,8 +243,8 @@ Evidence evidence_row(const SimulationStatement& statement, const std::string& s
 
 Result<Json> EvidenceDesk::add(const std::string& design, std::int64_t number, const std::string& request,
                                const Json& body, const Signature& signature, std::string_view report) {
-    WEAVE_TRY(const SimulationStatement statement, read_simulation(body));
-    if (report.size() > most_report) return bad_input("has more than 64 MiB", "report");
+    WEAVE_TRY(const wire::SimulationStatement statement, wire::read_simulation(body));
+    if (report.size() > wire::most_report) return bad_input("has more than 4 MiB", "report");
     if (!report.empty() && sha256(report) != statement.report_sha256)
         return bad_input("is not the report that was signed", "report");
     Deed deed{

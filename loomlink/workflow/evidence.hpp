@@ -1,6 +1,7 @@
 #pragma once
 
 #include <weave/core/json.hpp>
+#include <weave/wire/evidence.hpp>
 
 #include <cstddef>
 #include <loomlink/workflow/desk.hpp>
@@ -11,41 +12,16 @@
 
 namespace weave::loomlink {
 
-/// A part of a cloth that was simulated, from 0, ends excluded; wholly on the card.
-struct SimulatedRegion {
-    std::size_t first_pick = 0, picks = 0, first_end = 0, ends = 0;
-};
-
-/// What a simulation says that it found: the body that a signer signs.
-struct SimulationStatement {
-    std::string site;
-    Hash design_sha256{}, scene_sha256{}, report_sha256{};
-    std::size_t picks = 0, ends = 0;       ///< of the whole cloth
-    std::vector<SimulatedRegion> regions;  ///< none: the whole
-    std::string fidelity, solver;
-    Json parameters = Json::object();
-    std::optional<double> residual;  ///< none where it was not finite
-    bool converged = false, order_kept = false;
-    std::string at;
-};
-
-/// The body; `coverage` is told beside the regions and must be theirs.
-Json statement_body(const SimulationStatement& statement);
-/// Reads what statement_body() makes, and nothing else.
-Result<SimulationStatement> read_simulation(const Json& body);
-
 /// The row that the store keeps of a statement, signed by the machine whose key `signer` names.
-Evidence evidence_row(const SimulationStatement& statement, const std::string& signer, Seq event);
-
-/// The share of a card that regions cover together, wherever they overlap.
-double covered_share(const std::vector<SimulatedRegion>& regions, std::size_t picks, std::size_t ends);
+Evidence evidence_row(const wire::SimulationStatement& statement, const std::string& signer, Seq event);
 
 /// Simulation evidence that speaks of a revision, or spoke of another one of its design.
 struct KnownSimulation {
     Evidence evidence;
-    std::vector<SimulatedRegion> regions;
+    std::vector<wire::SimulatedRegion> regions;
     bool order_kept = false;
-    std::string signer, at;  ///< name of the machine; when it was filed
+    std::string result_sha256;  ///< of the .yarns file
+    std::string signer, at;     ///< name of the machine; when it was filed
     std::string stale;       ///< why it does not count; empty: it does
 };
 /// All of a design's, those about this very revision first.

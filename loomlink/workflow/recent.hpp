@@ -1,7 +1,8 @@
 #pragma once
 
+#include <weave/keys/utc.hpp>
+
 #include <chrono>
-#include <loomlink/keys/utc.hpp>
 #include <map>
 #include <mutex>
 #include <string>

@@ -13,7 +13,7 @@ namespace {
 const std::set<std::string>& kinds_without_rows() {
     static const std::set<std::string> kinds{
         "refused",         "log.viewed",         "log.exported",      "release.viewed", "release.pulled",
-        "revision.viewed", "revision.validated", "revision.exported", "revision.pulled"};
+        "revision.viewed", "revision.validated", "revision.exported", "revision.pulled", "access.given"};
     return kinds;
 }
 

@@ -89,6 +89,7 @@ Result<Json> evidence_json(const Reader& reader, const Design& design, const Rev
                         {"at", known.at},
                         {"solver", known.evidence.solver},
                         {"report_sha256", hash_hex(known.evidence.report)},
+                        {"result_sha256", known.result_sha256},
                         {"stale", known.stale.empty() ? Json(nullptr) : Json(known.stale)}});
     }
     return list;

@@ -1,4 +1,5 @@
-#include <loomlink/keys/codes.hpp>
+#include <weave/keys/codes.hpp>
+
 #include <loomlink/workflow/accounts.hpp>
 
 namespace weave::loomlink {

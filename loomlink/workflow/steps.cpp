@@ -1,5 +1,6 @@
+#include <weave/keys/codes.hpp>
+
 #include <algorithm>
-#include <loomlink/keys/codes.hpp>
 #include <loomlink/workflow/missing.hpp>
 #include <loomlink/workflow/names.hpp>
 #include <loomlink/workflow/release_files.hpp>

@@ -119,7 +119,7 @@ void ToldDesigns::commented(const Telling& told) {
 
 void ToldDesigns::evidence_added(const Telling& told) {
     const Evidence row =
-        evidence_row(read_simulation(told.data("statement")).value(), told.text("key"), told.seq());
+        evidence_row(wire::read_simulation(told.data("statement")).value(), told.text("key"), told.seq());
     m_things.push_back(kept_thing(
         of_record("evidence", told.seq()),
         {hash_hex(row.design_sha256), hash_hex(row.scene_sha256), row.coverage, row.fidelity, row.parameters,

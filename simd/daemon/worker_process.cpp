@@ -62,7 +62,7 @@ class SpawnPlan {
 
 }  // namespace
 
-Result<std::unique_ptr<WorkerProcess>> WorkerProcess::start(const std::filesystem::path& program, Listener listener) {
+Result<std::unique_ptr<WorkerProcess>> WorkerProcess::start(const std::filesystem::path& program, Json order, Listener listener) {
     WEAVE_TRY(auto ends, Link::pair());
     std::string path = program.string(), word = "worker";
     std::array<char*, 3> words{path.data(), word.data(), nullptr};
@@ -73,12 +73,12 @@ Result<std::unique_ptr<WorkerProcess>> WorkerProcess::start(const std::filesyste
     pid_t id = 0;
     const int fault = ::posix_spawn(&id, path.c_str(), plan.files(), plan.attributes(), words.data(), environ);
     if (fault != 0) return system_fault(std::string("cannot start a worker: ") + std::strerror(fault));
-    return std::unique_ptr<WorkerProcess>(new WorkerProcess(id, std::move(ends.first), std::move(listener)));
+    return std::unique_ptr<WorkerProcess>(new WorkerProcess(id, std::move(ends.first), std::move(order), std::move(listener)));
 }
 
-WorkerProcess::WorkerProcess(pid_t id, Descriptor link, Listener listener)
+WorkerProcess::WorkerProcess(pid_t id, Descriptor link, Json order, Listener listener)
     : m_id(id), m_handle(static_cast<int>(::syscall(SYS_pidfd_open, id, 0))), m_link(std::move(link)), m_listener(std::move(listener)),
-      m_thread([this] { listen(); }) {}
+      m_thread([this, first = std::move(order)] { listen(first); }) {}
 
 WorkerProcess::~WorkerProcess() {
     kill();
@@ -91,7 +91,8 @@ void WorkerProcess::kill() {
     m_link.cut();
 }
 
-void WorkerProcess::listen() {
+void WorkerProcess::listen(const Json& order) {
+    static_cast<void>(m_link.send(order));  // where it is gone already, that is found out below
     while (true) {
         auto message = m_link.receive();
         if (!message) log(LogLevel::warning, "a worker was ended: " + message.error().text());

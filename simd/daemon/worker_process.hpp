@@ -22,8 +22,8 @@ class WorkerProcess {
         std::function<void(std::string how)> ended;
     };
 
-    /// Starts `program worker` with nothing but its link and standard error. Errors: system.
-    static Result<std::unique_ptr<WorkerProcess>> start(const std::filesystem::path& program, Listener listener);
+    /// Starts `program worker` with nothing but its link and standard error, and gives it its order. Errors: system.
+    static Result<std::unique_ptr<WorkerProcess>> start(const std::filesystem::path& program, Json order, Listener listener);
     /// Kills it if it still runs, and waits for its thread: not to be called from the listener.
     ~WorkerProcess();
     WorkerProcess(const WorkerProcess&) = delete;
@@ -37,8 +37,8 @@ class WorkerProcess {
     [[nodiscard]] std::uint64_t memory_bytes() const;
 
   private:
-    WorkerProcess(pid_t id, Descriptor link, Listener listener);
-    void listen();
+    WorkerProcess(pid_t id, Descriptor link, Json order, Listener listener);
+    void listen(const Json& order);
 
     pid_t m_id;
     int m_handle = -1;  ///< a pidfd: its number is never given to another process

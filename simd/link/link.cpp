@@ -29,14 +29,18 @@ Result<std::pair<Descriptor, Descriptor>> Link::pair() {
 }
 
 Status Link::send(const Json& message) {
-    return send('c', canonical_json(message));
+    return send('c', canonical_json(message), 0);
+}
+
+Status Link::post(const Json& message) {
+    return send('c', canonical_json(message), MSG_DONTWAIT);
 }
 
 Status Link::send_frame(std::string_view bytes) {
-    return send('f', bytes);
+    return send('f', bytes, 0);
 }
 
-Status Link::send(char kind, std::string_view bytes) {
+Status Link::send(char kind, std::string_view bytes, int flags) {
     const auto size = static_cast<std::uint32_t>(bytes.size());
     std::array<char, 5> head{};
     for (std::size_t k = 0; k < 4; ++k) head[k] = static_cast<char>(size >> (8 * k) & 0xffU);
@@ -44,7 +48,7 @@ Status Link::send(char kind, std::string_view bytes) {
     const std::lock_guard lock(m_sending);
     for (std::string_view part : {std::string_view(head.data(), head.size()), bytes}) {
         while (!part.empty()) {
-            const ssize_t sent = ::send(m_socket.number(), part.data(), part.size(), MSG_NOSIGNAL);
+            const ssize_t sent = ::send(m_socket.number(), part.data(), part.size(), MSG_NOSIGNAL | flags);
             if (sent < 0 && errno == EINTR) continue;
             if (sent < 0) {
                 const Error fault = link_fault("send");

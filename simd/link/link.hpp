@@ -35,6 +35,8 @@ class Link {
     /// or stuck.
     Status send(const Json& message);
     Status send_frame(std::string_view bytes);
+    /// Does not wait: an other side that has left so much unread that this finds no room is given up.
+    Status post(const Json& message);
     /// The next message, or nothing once the other side is gone. Errors: a message longer than any may be.
     Result<std::optional<LinkMessage>> receive();
     /// Ends what send and receive wait for, from any thread.
@@ -43,7 +45,7 @@ class Link {
     void stop_receiving();
 
   private:
-    Status send(char kind, std::string_view bytes);
+    Status send(char kind, std::string_view bytes, int flags);
     bool read_whole(char* into, std::size_t size);
 
     Descriptor m_socket;

@@ -28,6 +28,15 @@ Result<wire::Change> change_from(std::string_view text) {
     return std::move(make.change);
 }
 
+std::string simulation_text(const wire::Simulation& simulation, const std::vector<Flip>& flips) {
+    return wire::write_message(wire::Submit{no_request, "", simulation, flips});
+}
+
+Result<SimulationWork> simulation_from(std::string_view text) {
+    WEAVE_TRY(wire::Submit work, message_of<wire::Submit>(text));
+    return SimulationWork{std::move(work.simulation), std::move(work.flips)};
+}
+
 Json to_json(const JournaledChange& change) {
     return {{"number", change.number},
             {"request", change.request},

@@ -44,6 +44,14 @@ Result<WorkOrder> work_order_from(const Json& json);
 Json to_json(const JournaledChange& change);
 Result<JournaledChange> journaled_change_from(const Json& json);
 
+/// A simulation and the flips that follow it as text, to be kept.
+std::string simulation_text(const wire::Simulation& simulation, const std::vector<Flip>& flips = {});
+struct SimulationWork {
+    wire::Simulation simulation;
+    std::vector<Flip> flips;
+};
+Result<SimulationWork> simulation_from(std::string_view text);
+
 /// A change as JSON, with the members that a `change` message has.
 std::string change_text(const wire::Change& change);
 Result<wire::Change> change_from(std::string_view text);

@@ -1,4 +1,5 @@
 #include <simd/worker/inbox.hpp>
+#include <simd/worker/memory.hpp>
 #include <utility>
 
 namespace weave::simd {
@@ -39,7 +40,8 @@ void Inbox::read() {
 void Inbox::obey(const Json& message) {
     const std::string what = message.at("do");
     if (what == "admitted") {
-        m_admitted = message.at("bytes").get<std::uint64_t>();
+        m_admitted = message;
+        static_cast<void>(limit_memory(message.at("bytes").get<std::uint64_t>()));  // unlimited it may go on as well
     } else if (what == "go_on") {
         m_runs = true;
         m_pause_at.reset();
@@ -78,7 +80,7 @@ Finish Inbox::finish() {
     return m_finish;
 }
 
-std::optional<std::uint64_t> Inbox::admitted() {
+std::optional<Json> Inbox::admitted() {
     const std::lock_guard lock(m_mutex);
     return m_admitted;
 }

@@ -41,8 +41,8 @@ class Inbox {
     void wait(std::optional<Clock::time_point> until);
 
     [[nodiscard]] Finish finish();
-    /// Bytes of memory that were granted once the plan was told; nothing before.
-    std::optional<std::uint64_t> admitted();
+    /// What was granted once the plan was told: `bytes` of memory, `number` and `folder`; nothing before.
+    std::optional<Json> admitted();
 
     /// Whether the session is to go on from this step.
     [[nodiscard]] bool goes_on(std::uint64_t step);
@@ -74,7 +74,8 @@ class Inbox {
     std::condition_variable m_came;
     bool m_news = false;
     Finish m_finish = Finish::no;
-    std::optional<std::uint64_t> m_admitted, m_pause_at;
+    std::optional<Json> m_admitted;
+    std::optional<std::uint64_t> m_pause_at;
     bool m_runs = false;
     std::deque<JournaledChange> m_changes;
     std::optional<std::size_t> m_turn;

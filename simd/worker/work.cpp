@@ -96,7 +96,10 @@ Status Work::wait_for_admission() {
         m_inbox.wait({});
         if (m_inbox.finish() != Finish::no) return {};
     }
-    return limit_memory(*m_inbox.admitted());
+    const Json granted = *m_inbox.admitted();
+    m_order.number = granted.at("number");
+    m_folder = granted.at("folder").get<std::string>();
+    return {};
 }
 
 // ---- The work ----
@@ -296,7 +299,10 @@ void Work::tell_event(const wire::ServerMessage& event, Json more) {
 }
 
 void Work::tell_layout() {
-    if (m_order.is_job) return;
+    const sim::LedParameters& parameters = m_run->now().parameters();
+    const Laid laid{m_run->level(), parameters.now(System::warp).radius, parameters.now(System::weft).radius};
+    if (m_order.is_job || m_laid == laid) return;
+    m_laid = laid;
     wire::Layout layout = layout_of(*m_run);
     std::string sha256 = layout_sha256(layout);
     if (sha256 == m_layout_sha256) return;
@@ -328,10 +334,11 @@ void Work::show_if_due() {
 }
 
 void Work::show(bool is_last) {
-    if (m_order.is_job || m_layout == 0) return;
+    if (m_order.is_job) return;
     if (is_last && std::exchange(m_shown_last, true)) return;
     if (!is_last) m_shown_last = false;
     m_last_shown = Clock::now();
+    tell_layout();  // parameters move on with the leg
     wire::Frame frame = frame_of(*m_run);
     frame.head.session = m_order.number;
     frame.head.number = ++m_frame;

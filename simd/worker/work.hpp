@@ -74,6 +74,12 @@ class Work {
     double m_residual = 0;
     std::optional<std::uint64_t> m_lost;
     std::string m_layout_sha256;
+    /// What a layout follows from: while it is the same no yarn has other points or another radius.
+    struct Laid {
+        std::size_t level = 0;
+        double warp_radius = 0, weft_radius = 0;
+        friend bool operator==(const Laid&, const Laid&) = default;
+    } m_laid;
     std::optional<wire::Phase> m_phase;
     std::optional<JournaledChange> m_flip;  ///< whose yarns are being led past one another
     std::size_t m_flips_told = 0;

@@ -2,10 +2,10 @@
 // was written and whose regions lie on the card.
 #include "support/must.hpp"
 
-#include <loomlink/workflow/evidence.hpp>
+#include <weave/wire/evidence.hpp>
 
 using namespace weave;
-using namespace weave::loomlink;
+using namespace weave::wire;
 using fuzz::must;
 
 namespace {

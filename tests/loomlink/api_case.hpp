@@ -1,7 +1,6 @@
 #pragma once
 
 #include "service_case.hpp"
-#include "temporary_folder.hpp"
 
 #include <weave/core/file.hpp>
 
@@ -11,6 +10,7 @@
 #include <memory>
 #include <optional>
 #include <string>
+#include <support/temporary_folder.hpp>
 
 namespace weave::loomlink::testing {
 

@@ -1,7 +1,5 @@
 #pragma once
 
-#include "temporary_folder.hpp"
-
 #include <weave/core/file.hpp>
 #include <weave/core/json.hpp>
 #include <weave/design/document.hpp>
@@ -19,6 +17,7 @@
 #include <optional>
 #include <spawn.h>
 #include <string>
+#include <support/temporary_folder.hpp>
 #include <sys/stat.h>
 #include <sys/wait.h>
 #include <unistd.h>

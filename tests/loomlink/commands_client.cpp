@@ -2,7 +2,6 @@
 
 #include <array>
 #include <loomlink/commands/api_client.hpp>
-#include <loomlink/commands/simulation_result.hpp>
 #include <netinet/in.h>
 #include <sys/socket.h>
 #include <thread>
@@ -148,47 +147,4 @@ TEST_CASE("bytes beyond what was asked for are refused", "[commands]") {
 
 TEST_CASE("a path is what was meant, whatever a name holds", "[commands]") {
     CHECK(api_path({"looms", "EP 1/../x", "index"}) == "/looms/EP%201%2F..%2Fx/index");
-}
-
-TEST_CASE("a part of a cloth that was simulated becomes one region; what is no result is refused",
-          "[commands]") {
-    const Json part{
-        {"design_sha256", std::string(64, 'a')},
-        {"scene_sha256", std::string(64, 'b')},
-        {"coverage",
-         {{"picks", {11, 20}}, {"ends", {1, 5}}, {"of", {{"picks", 100}, {"ends", 50}}}, {"whole", false}}},
-        {"solver", "relax"},
-        {"fidelity", "standard"},
-        {"residual", nullptr},
-        {"converged", false},
-        {"order_kept", true}};
-    auto statement = statement_of_result(part.dump());
-    if (!statement) FAIL(statement.error().text());
-    REQUIRE(statement->regions.size() == 1);
-    CHECK(statement->regions[0].first_pick == 10);
-    CHECK(statement->regions[0].picks == 10);
-    CHECK(statement->regions[0].ends == 5);
-    CHECK_FALSE(statement->residual);
-    statement->site = "mill";
-    CHECK(read_simulation(statement_body(*statement)));
-    for (const char* member : {"design_sha256", "coverage", "converged", "order_kept", "fidelity"}) {
-        Json broken = part;
-        broken.erase(member);
-        INFO(member);
-        CHECK_FALSE(statement_of_result(broken.dump()));
-        broken[member] = 7;
-        CHECK_FALSE(statement_of_result(broken.dump()));
-    }
-    for (const Json& span : {Json::array({1, 1}), Json::array({3, 1}), Json::array({1.5, 2}), Json("x")}) {
-        Json false_whole = part;
-        false_whole["coverage"]["whole"] = true;
-        false_whole["coverage"]["picks"] = span;
-        INFO(span.dump());
-        CHECK_FALSE(statement_of_result(false_whole.dump()));
-    }
-    Json outside = part;
-    outside["coverage"]["picks"] = {11, 101};
-    CHECK_FALSE(statement_of_result(outside.dump()));
-    outside["coverage"]["picks"] = {20, 11};
-    CHECK_FALSE(statement_of_result(outside.dump()));
 }

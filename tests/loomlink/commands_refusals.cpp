@@ -62,7 +62,7 @@ TEST_CASE("a group without a command tells those that it has", "[commands]") {
     const TemporaryFolder folder;
     const std::vector<std::pair<std::string, std::string>> groups{
         {"design", "list, make and show"},      {"loom", "list, show, add, profile and operators"},
-        {"trust", "show, pending and publish"}, {"key", "list and show"},
+        {"trust", "show, pending and publish"}, {"key", "list, access and show"},
         {"audit", "head, bundle and verify"},   {"evidence", "add and list"}};
     for (const auto& [group, commands] : groups) {
         const Ended ended = Running({group, "--json"}, folder.path).wait();

@@ -184,6 +184,8 @@ TEST_CASE("what a simulation found is signed by the machine that was enrolled, a
     const Json found{
         {"design_sha256", revision.at("design_sha256")},
         {"scene_sha256", revision.at("scene_sha256")},
+        {"yarns_sha256", std::string(64, '7')},
+        {"plan", {{{"term", "friction"}, {"choice", "off"}, {"reason", "the scene has none"}}}},
         {"coverage",
          {{"of", {{"picks", revision.at("picks")}, {"ends", revision.at("ends")}}}, {"whole", true}}},
         {"solver", "relax"},

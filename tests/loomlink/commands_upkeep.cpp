@@ -1,10 +1,11 @@
 #include "commands_case.hpp"
 #include "store_case.hpp"
 
+#include <weave/keys/hex.hpp>
+#include <weave/keys/key.hpp>
+
 #include <algorithm>
 #include <loomlink/commands/head_keeper.hpp>
-#include <loomlink/keys/hex.hpp>
-#include <loomlink/keys/key.hpp>
 #include <support/random.hpp>
 #include <utility>
 

@@ -7,10 +7,10 @@
 
 #include <weave/core/file.hpp>
 #include <weave/design/document.hpp>
+#include <weave/keys/hex.hpp>
 
 #include <catch2/catch.hpp>
 
-#include <loomlink/keys/hex.hpp>
 #include <loomlink/workflow/retelling.hpp>
 #include <loomlink/workflow/workflow.hpp>
 #include <map>
@@ -41,7 +41,7 @@ struct FlowSite {
     Folder folder;
     std::filesystem::path path = folder / "store.db";
     Instant time = parse_utc("2026-11-26T08:00:00.000Z").value();
-    ServerKeys keys{KeyPair::generate(), KeyPair::generate()};
+    ServerKeys keys{KeyPair::generate(), KeyPair::generate(), KeyPair::generate()};
     std::unique_ptr<Workflow> flow;
     std::map<std::string, Caller> people;
     net::ThrottleRate refusals = DeskSettings().refusals;  ///< that are logged; read by open()
@@ -81,7 +81,8 @@ struct FlowSite {
         settings.refusals = refusals;
         flow =
             got(Workflow::open(Store::open(path).value(),
-                               {KeyPair::from_seed(keys.log.seed()), KeyPair::from_seed(keys.stamp.seed())},
+                               {KeyPair::from_seed(keys.log.seed()), KeyPair::from_seed(keys.stamp.seed()),
+                                KeyPair::from_seed(keys.access.seed())},
                                settings, [this] { return time; }));
     }
 
@@ -137,14 +138,16 @@ struct FlowSite {
     }
 
     /// A simulation of the whole of a revision of shoe that counts.
-    SimulationStatement simulation_of(std::int64_t number) {
+    wire::SimulationStatement simulation_of(std::int64_t number) {
         const Json revision = got(flow->designs().revision(people.at("enno"), "shoe", number));
-        SimulationStatement found;
+        wire::SimulationStatement found;
         found.site = "mill";
         found.at = "2026-11-26T08:00:00.000Z";
         found.design_sha256 = *parse_hash(revision.at("design_sha256").get<std::string>());
         found.scene_sha256 = *parse_hash(revision.at("scene_sha256").get<std::string>());
         found.report_sha256 = sha256("report");
+        found.result_sha256 = sha256("yarns");
+        found.plan = {{"friction", "off", "the scene has none"}};
         found.picks = 4;
         found.ends = 8;
         found.fidelity = "standard";

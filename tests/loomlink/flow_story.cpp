@@ -185,7 +185,7 @@ TEST_CASE("evidence counts for the very design and scene, from a signer that is 
     };
     CHECK(denied(approve(1)) == Denial::conflict);
 
-    SimulationStatement found = site.simulation_of(1);
+    wire::SimulationStatement found = site.simulation_of(1);
     const auto hand_in = [&](const KeyPair& key, std::int64_t number) {
         const Json body = statement_body(found);
         return flow.evidence().add("shoe", number, "evidence-1", body,
@@ -257,8 +257,8 @@ TEST_CASE("the codes for the first administrator end with that one; who has the 
     DeskSettings settings;
     settings.key_cost = settings.login_cost = test_cost();
     static_cast<void>(Store::create(path, "mill").value());
-    const auto flow = got(Workflow::open(Store::open(path).value(), {KeyPair::generate(), KeyPair::generate()},
-                                         settings));
+    const auto flow = got(Workflow::open(Store::open(path).value(),
+                                         {KeyPair::generate(), KeyPair::generate(), KeyPair::generate()}, settings));
     const Json first = got(flow->accounts().first_invitation());
     const Json second = got(flow->accounts().first_invitation());
     const auto join = [&](const Json& code, const std::string& name, const std::string& full_name) {

@@ -3,7 +3,7 @@
 
 #include "flow_case.hpp"
 
-#include <loomlink/keys/hex.hpp>
+#include <weave/keys/hex.hpp>
 
 namespace weave::loomlink::testing {
 
@@ -15,7 +15,7 @@ void add_evidence(FlowSite& site) {
     const KeyPair machine = KeyPair::generate();
     const Json code = got(flow.evidence().invite_signer(site.people.at("ada"), site.ask(), "gpu-1"));
     got(flow.evidence().enrol(code.at("code"), to_hex(machine.public_key()), "10.0.0.3"));
-    SimulationStatement found = site.simulation_of(1);
+    wire::SimulationStatement found = site.simulation_of(1);
     found.regions = {{0, 2, 0, 8}};
     const Json body = statement_body(found);
     got(flow.evidence().add("shoe", 1, "evidence-1", body,
@@ -43,6 +43,7 @@ void live_a_day(FlowSite& site) {
     site.save("dora", 1, "twill two");
     got(flow.steps().submit(people.at("dora"), site.ask("dora"), {"shoe", 2, "ready"}, {}));
     got(flow.steps().request_changes(people.at("abe"), site.ask("abe"), {"shoe", 2, "too loose"}));
+    got(flow.accounts().access_token(people.at("dora"), site.ask(), 8));
     got(flow.accounts().reset(people.at("ada"), site.ask(), "eve"));
     got(flow.accounts().set_active(people.at("ada"), site.ask(), "enno", false));
     got(flow.accounts().invite(people.at("ada"), site.ask(), {"operator"}));

@@ -1,8 +1,9 @@
 #include "site.hpp"
 
+#include <weave/keys/hex.hpp>
+
 #include <catch2/catch.hpp>
 
-#include <loomlink/keys/hex.hpp>
 #include <support/random.hpp>
 
 using namespace weave;

@@ -1,8 +1,7 @@
-#include "temporary_folder.hpp"
-
 #include <weave/core/file.hpp>
 
 #include <loomlink/commands/config.hpp>
+#include <support/temporary_folder.hpp>
 
 using namespace weave;
 using namespace weave::loomlink;

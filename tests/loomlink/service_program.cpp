@@ -1,8 +1,9 @@
 #include "program.hpp"
 #include "service_case.hpp"
-#include "temporary_folder.hpp"
 
 #include <weave/core/file.hpp>
+
+#include <support/temporary_folder.hpp>
 
 using namespace weave;
 using namespace weave::loomlink::testing;

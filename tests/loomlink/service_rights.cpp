@@ -19,6 +19,8 @@ const std::map<std::string, std::string> expected{
     {"GET /me", "all"},
     {"GET /me/waiting", "all"},
     {"POST /me/password", "all"},
+    {"POST /access-tokens", "daem"},
+    {"GET /access-key", "all"},
     {"POST /invitations", "m"},
     {"POST /invitations/accept", "any"},
     {"GET /people", "m"},

@@ -8,6 +8,7 @@
 #include <loomlink/keys/release_manifest.hpp>
 #include <loomlink/terminal/check.hpp>
 #include <string>
+#include <support/refusals.hpp>
 #include <vector>
 
 namespace weave::testing {
@@ -16,13 +17,13 @@ namespace weave::testing {
 struct Site {
     static constexpr const char* name = "mill";
     static constexpr const char* loom = "loom 7";
-    loomlink::KeyPair anna = loomlink::KeyPair::generate(), ben = loomlink::KeyPair::generate(),
-                      carl = loomlink::KeyPair::generate(), thief = loomlink::KeyPair::generate(),
-                      stamp = loomlink::KeyPair::generate(), log = loomlink::KeyPair::generate();
+    KeyPair anna = KeyPair::generate(), ben = KeyPair::generate(),
+                      carl = KeyPair::generate(), thief = KeyPair::generate(),
+                      stamp = KeyPair::generate(), log = KeyPair::generate();
 
     /// 2026-11-26T08:00 and some minutes.
-    static loomlink::Instant at(int minutes) {
-        return loomlink::parse_utc("2026-11-26T08:00:00.000Z").value() + std::chrono::minutes(minutes);
+    static Instant at(int minutes) {
+        return parse_utc("2026-11-26T08:00:00.000Z").value() + std::chrono::minutes(minutes);
     }
 
     /// Anna and Ben are roots, both have to sign; Anna, Ben and Carl release, two of them; one stamp and one
@@ -43,15 +44,15 @@ struct Site {
         return trust;
     }
 
-    static std::string sign(loomlink::Purpose purpose, const Json& body,
-                            const std::vector<const loomlink::KeyPair*>& keys) {
-        loomlink::SignedDocument document{body, {}};
-        for (const auto* key : keys) document.signatures.push_back(loomlink::sign_body(*key, purpose, body));
+    static std::string sign(Purpose purpose, const Json& body,
+                            const std::vector<const KeyPair*>& keys) {
+        SignedDocument document{body, {}};
+        for (const auto* key : keys) document.signatures.push_back(sign_body(*key, purpose, body));
         return write_signed(document);
     }
     static std::string sign_trust(const loomlink::TrustDocument& trust,
-                                  const std::vector<const loomlink::KeyPair*>& keys) {
-        return sign(loomlink::Purpose::trust_document, trust_body(trust), keys);
+                                  const std::vector<const KeyPair*>& keys) {
+        return sign(Purpose::trust_document, trust_body(trust), keys);
     }
     [[nodiscard]] std::string trust_bytes() const { return sign_trust(trust_terms(), {&anna, &ben}); }
     [[nodiscard]] loomlink::TrustDocument trust() const {
@@ -63,8 +64,8 @@ struct Site {
 
     /// The honest log has one root a size.
     static std::string root_of(std::uint64_t size) { return sha256_hex("log of " + std::to_string(size)); }
-    [[nodiscard]] loomlink::SignedLogHead head(std::uint64_t size, const loomlink::KeyPair& key) const {
-        return sign_head(key, {name, size, root_of(size), at(0)});
+    [[nodiscard]] loomlink::SignedLogHead head(std::uint64_t size, const KeyPair& key) const {
+        return loomlink::sign_head(key, {name, size, root_of(size), at(0)});
     }
     static Status consistent(const loomlink::LogHead& older, const loomlink::LogHead& newer) {
         if (older.root == root_of(older.size) && newer.root == root_of(newer.size)) return {};
@@ -105,8 +106,8 @@ struct Site {
         return manifest;
     }
     static std::string sign_manifest(const loomlink::ReleaseManifest& manifest,
-                                     const std::vector<const loomlink::KeyPair*>& keys) {
-        return sign(loomlink::Purpose::release_manifest, manifest_body(manifest), keys);
+                                     const std::vector<const KeyPair*>& keys) {
+        return sign(Purpose::release_manifest, manifest_body(manifest), keys);
     }
     [[nodiscard]] std::string manifest(std::uint64_t number) const {
         return sign_manifest(manifest_terms(number), {&anna, &carl});
@@ -128,19 +129,12 @@ struct Site {
         return index;
     }
     [[nodiscard]] std::string sign_index(const loomlink::ReleaseIndex& index) const {
-        return sign(loomlink::Purpose::release_index, index_body(index), {&stamp});
+        return sign(Purpose::release_index, index_body(index), {&stamp});
     }
     [[nodiscard]] std::string index(std::uint64_t epoch, std::uint64_t releases, int minutes) const {
         return sign_index(index_terms(epoch, releases, minutes));
     }
 };
-
-/// A refusal that says `words`.
-template <class Outcome>
-void check_refused(const Outcome& outcome, const std::string& words) {
-    REQUIRE_FALSE(outcome);
-    CHECK_THAT(outcome.error().text(), Catch::Contains(words));
-}
 
 /// A finding: bytes that are not what was signed, which a program tells by its exit status from what was
 /// signed and may not be used.

@@ -1,11 +1,11 @@
 #include "site.hpp"
-#include "temporary_folder.hpp"
 
 #include <weave/core/file.hpp>
 
 #include <catch2/catch.hpp>
 
 #include <loomlink/terminal/folder.hpp>
+#include <support/temporary_folder.hpp>
 #include <sys/stat.h>
 
 using namespace weave;

@@ -1,8 +1,9 @@
 #include "site.hpp"
 
+#include <weave/keys/members.hpp>
+
 #include <catch2/catch.hpp>
 
-#include <loomlink/keys/members.hpp>
 #include <support/random.hpp>
 
 using namespace weave;

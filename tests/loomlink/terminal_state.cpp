@@ -1,5 +1,4 @@
 #include "site.hpp"
-#include "temporary_folder.hpp"
 
 #include <weave/core/file.hpp>
 
@@ -7,6 +6,7 @@
 
 #include <loomlink/terminal/state.hpp>
 #include <support/random.hpp>
+#include <support/temporary_folder.hpp>
 #include <sys/stat.h>
 
 using namespace weave;

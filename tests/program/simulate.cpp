@@ -2,6 +2,7 @@
 
 #include "run.hpp"
 
+#include <weave/core/sha256.hpp>
 #include <weave/sim/yarns_file.hpp>
 
 using program_tests::Ended;
@@ -20,6 +21,7 @@ TEST_CASE("simulate relaxes a design, says how it ended, and its yarns are drawn
     CHECK(said.at("order_kept") == true);
     CHECK(said.at("residual").get<double>() <= 1e-6);
     CHECK(said.at("design_sha256") == shop.json({"info", "d.weave"}).at("design_sha256"));
+    CHECK(said.at("yarns_sha256") == weave::sha256_hex(shop.get("d.yarns")));
     const weave::Result<weave::Yarns> yarns = weave::read_yarns(shop.get("d.yarns"));
     REQUIRE(yarns);
     CHECK(yarns->yarns.size() == 4);

@@ -4,8 +4,10 @@
 
 #include <weave/core/sha256.hpp>
 #include <weave/design/document.hpp>
+#include <weave/keys/key.hpp>
 #include <weave/sim/run.hpp>
 #include <weave/sim/yarns_file.hpp>
+#include <weave/wire/evidence.hpp>
 
 #include <atomic>
 #include <csignal>
@@ -21,6 +23,10 @@ using weave::testing::JobResult;
 using weave::testing::ScriptedSimd;
 
 namespace {
+
+std::string signed_for(const Json& report) {
+    return wire::write_evidence(wire::sign_evidence(KeyPair::generate(), "mill", canonical_json(report), std::chrono::system_clock::now()).value());
+}
 
 /// Relaxes as a server does; `steps` (0: no limit) ends it as a cancelled job is.
 JobResult relaxed(const wire::Submit& submit, std::size_t steps = 0) {
@@ -40,8 +46,9 @@ JobResult relaxed(const wire::Submit& submit, std::size_t steps = 0) {
         if (Status went = (*run)->advance(1000, stops); !went) return {went.error(), Json::object(), "", {}};
     }
     Yarns yarns = (*run)->yarns();
-    JobResult result{{}, yarns.report, write_yarns(yarns).value(), R"({"format":"weave-signed-evidence","version":1})"};
+    JobResult result{{}, yarns.report, write_yarns(yarns).value(), {}};
     result.report["yarns_sha256"] = sha256_hex(result.yarns);
+    result.evidence = signed_for(result.report);
     return result;
 }
 
@@ -272,6 +279,13 @@ TEST_CASE("what a server gives is believed only so far as it fits together") {
     refused("not one that this program knows", [](JobResult& result) { result.report["fidelity"] = "\x1b[31m"; });
     refused("something else than was asked for", [](JobResult& result) { result.report["flips"] = Json::array({{{"pick", 1}, {"end", 1}, {"done", true}, {"tried", true}, {"flip_seconds", 0}, {"settle_seconds", 0}}}); });
     refused("", [&](JobResult& result) { result.yarns = "no yarns", rehash(result); });
+    refused("canonical", [](JobResult& result) { result.evidence = R"({"format":"weave-signed-evidence"})"; });
+    refused("another than was told", [](JobResult& result) { *result.evidence += "\n"; });
+    refused("of other yarns", [](JobResult& result) {
+        Json other = result.report;
+        other["yarns_sha256"] = std::string(64, 'a');
+        result.evidence = signed_for(other);
+    });
     refused("something else than was asked for", [&](JobResult& result) {
         Yarns yarns = read_yarns(result.yarns).value();
         yarns.scene_sha256 = std::string(64, 'a');
@@ -281,10 +295,10 @@ TEST_CASE("what a server gives is believed only so far as it fits together") {
 
 TEST_CASE("what the server signed is written beside, byte by byte") {
     Mill mill;
-    const std::string signed_bytes = "{ \"format\": \"weave-signed-evidence\",\n \"version\": 1 }\n";
+    std::string signed_bytes;
     mill.simd.work = [&](const wire::Submit& submit) {
         JobResult result = relaxed(submit);
-        result.evidence = signed_bytes;
+        signed_bytes = *result.evidence;
         return result;
     };
     mill.shop.must(mill.on({"simulate", "d.weave", "-o", "d.yarns", "--evidence", "d.evidence"}));

@@ -97,6 +97,8 @@ TEST_CASE("a run that is taken up again before every leg ends bit by bit as the 
         INFO(of.what);
         const Yarns unbroken = driven(of.design, of.request, of.leg, {}, false);
         CHECK(unbroken.report.at("converged") == true);
+        for (const Json& flip : unbroken.report.value("flips", Json::array())) CHECK(flip.at("done") == true);
+        CHECK(unbroken.report.value("flips", Json::array()).size() == of.request.flips.size());
         check_same_cloth(driven(of.design, of.request, of.leg, {}, true), unbroken);
     }
 }
@@ -112,7 +114,9 @@ TEST_CASE("changes at numbered legs are the same changes in a run that is taken 
         {10, [](Run& run) { return run.change({}, {.strain = {}, .stiffness_scale = 2, .radius_scale = {}}); }}};
     const Yarns unbroken = driven(design, draft(), 10, deeds, false);
     CHECK(unbroken.yarns.size() == evaluate(design)->block->picks() + evaluate(design)->block->ends());
-    CHECK(unbroken.report.at("flips").size() == 1);
+    REQUIRE(unbroken.report.at("flips").size() == 1);
+    INFO(unbroken.report.at("flips").dump());
+    CHECK(unbroken.report.at("flips").at(0).at("tried") == true);
     check_same_cloth(driven(design, draft(), 10, deeds, true), unbroken);
 }
 

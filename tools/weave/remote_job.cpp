@@ -5,7 +5,9 @@
 #include <weave/core/file.hpp>
 #include <weave/core/sha256.hpp>
 #include <weave/core/text.hpp>
+#include <weave/keys/hash.hpp>
 #include <weave/sim/yarns_file.hpp>
+#include <weave/wire/evidence.hpp>
 
 #include <algorithm>
 #include <utility>
@@ -71,8 +73,11 @@ Status fetch_evidence(wire::Follower& follower, const wire::JobEnded& ended, con
     if (!ended.evidence)
         return Error{ErrorCode::refused, ended.phase == wire::JobPhase::done ? "the server has no key to sign evidence with" : "only of a job that is done there is evidence", where};
     WEAVE_TRY(const std::string bytes, follower.download(wire::job_evidence(ended.job), most_evidence_bytes));
-    const auto document = parse_json(bytes);
-    if (!document || canonical_json(*document) != canonical_json(*ended.evidence)) return bad_input("its evidence is another than was told", where);
+    if (canonical_json(*ended.evidence) != bytes) return bad_input("its evidence is another than was told", where);
+    auto evidence = wire::read_evidence(bytes);
+    if (!evidence) return std::move(evidence).error().in(where);
+    WEAVE_TRY(const wire::SimulationStatement statement, wire::read_simulation(evidence->statement));
+    if (hash_hex(statement.result_sha256) != ended.report.at("yarns_sha256")) return bad_input("its evidence is of other yarns", where);
     return write_file(file, bytes);
 }
 

@@ -1,6 +1,7 @@
 #include "server_wish.hpp"
 
 #include <weave/core/file.hpp>
+#include <weave/keys/secret_bytes.hpp>
 
 #include <cstdlib>
 #include <string_view>
@@ -29,8 +30,9 @@ Status take_token(wire::ServerPlace& place, const ServerWish& wish) {
         if (!used) return std::move(used).error().in("WEAVE_TOKEN");
         return {};
     }
-    WEAVE_TRY(const std::string bytes, read_file(wish.token_file, most_file_bytes));
+    WEAVE_TRY(std::string bytes, read_file(wish.token_file, most_file_bytes));
     Status used = wire::use_token(place, bytes);
+    wipe(bytes);
     if (!used) return std::move(used).error().in(wish.token_file);
     return {};
 }

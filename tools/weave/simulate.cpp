@@ -9,6 +9,7 @@
 #include "teller.hpp"
 
 #include <weave/core/file.hpp>
+#include <weave/core/sha256.hpp>
 #include <weave/core/text.hpp>
 #include <weave/design/document.hpp>
 #include <weave/picture/cloth_view.hpp>
@@ -191,6 +192,7 @@ Status run_simulation(CommandOutcome& outcome, const SimulateWish& wish) {
     WEAVE_CHECK_OK(write_file(wish.out, bytes));
     Json answer = yarns.report;
     answer["file"] = wish.out;
+    answer["yarns_sha256"] = sha256_hex(bytes);
     return tell_ending(outcome, yarns.report, std::move(answer), {cloth.design, task.flips, wish.save_design});
 }
 

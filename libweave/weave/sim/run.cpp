@@ -88,7 +88,9 @@ Status Run::advance(std::size_t most_steps, const Watch& watch) {
     if (!m_now->at_end()) m_now->leg(most_steps, watch);
     else if (m_now->is_flipping()) m_now->end_flip();
     else if (is_coarse()) refine();
-    else if (m_next_flip < m_request.flips.size()) return flip(m_request.flips[m_next_flip++], watch);
+    else if (m_next_flip == m_request.flips.size()) return {};
+    else if (is_reduced()) return unfold();  // the whole comes to rest before
+    else return flip(m_request.flips[m_next_flip++], watch);
     return {};
 }
 
@@ -127,10 +129,14 @@ void Run::refine() {
     ++m_level;
 }
 
+bool Run::is_reduced() const {
+    const std::array<std::size_t, 2>& repeats = m_now->plan().repeats;
+    return repeats[0] * repeats[1] > 1;
+}
+
 /// The whole cloth in place of its smallest repeat, from where that lies.
 Status Run::unfold() {
-    const std::array<std::size_t, 2>& repeats = m_now->plan().repeats;
-    if (repeats[0] * repeats[1] == 1) return {};
+    if (!is_reduced()) return {};
     const LedParameters planned(m_now->plan()), led = m_now->parameters();
     const Scene base = m_design.scene, shown = m_now->design().scene;
     const Scene now = with_parameters(base, led, planned, false), wanted = with_parameters(base, led, planned, true);
@@ -217,6 +223,7 @@ Status Run::push(const std::vector<ForceField>& fields) {
 Status Run::flip(const Flip& flip, const Watch& watch) {
     settle();
     if (!m_now->cut_short()) WEAVE_CHECK_OK(unfold());
+    m_now->forget_stop();
     m_now->begin_flip(flip, watch);
     return {};
 }

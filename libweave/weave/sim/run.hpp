@@ -76,6 +76,7 @@ class Run {
     void relax(Plan plan);
     void refine();
     void settle();
+    [[nodiscard]] bool is_reduced() const;
     Status unfold();
     Status restore(const Json& state);
     Json coarser_json(const Yarns& yarns) const;

@@ -6,7 +6,7 @@ const kept = 'log-head';
 const page = 100;
 
 const words = {
-    'design.added': 'Design made', 'evidence.added': 'Evidence added', 'log.exported': 'Log downloaded', 'log.viewed': 'Log looked at',
+    'access.given': 'Access to simd given', 'design.added': 'Design made', 'evidence.added': 'Evidence added', 'log.exported': 'Log downloaded', 'log.viewed': 'Log looked at',
     'design.viewed': 'Design looked at', 'loom.index_pulled': 'List of releases pulled', 'loom.viewed': 'Loom looked at', 'loom.watched': 'Loom watched',
     'revision.checked': 'Checked for a loom', 'loom.added': 'Loom added', 'loom.fault_reported': 'Fault reported', 'loom.loaded': 'Loaded on the loom', 'loom.operators_set': 'Operators set',
     'loom.place_kept': 'Last pick remembered', 'loom.profile_set': 'Profile put in force', 'person.disabled': 'Disabled', 'person.enabled': 'Enabled',

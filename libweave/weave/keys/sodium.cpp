@@ -1,0 +1,16 @@
+#include <weave/core/log.hpp>
+#include <weave/keys/sodium.hpp>
+
+#include <cstdlib>
+#include <sodium.h>
+
+namespace weave {
+
+void need_sodium() {
+    static const bool ready = [] { return sodium_init() >= 0; }();
+    if (ready) return;
+    log(LogLevel::warning, "libsodium cannot start: the system gives no random bytes");
+    std::abort();
+}
+
+}  // namespace weave

@@ -1,0 +1,29 @@
+#pragma once
+
+#include <weave/wire/evidence.hpp>
+
+#include <loomlink/commands/api_client.hpp>
+#include <loomlink/commands/revision_place.hpp>
+#include <string>
+
+namespace weave::loomlink {
+
+/// Evidence that a machine has signed, ready to be filed, and what it says.
+struct EvidenceToFile {
+    wire::SignedEvidence evidence;
+    wire::SimulationStatement statement;
+
+    /// Such as `a simulation at standard, at rest`.
+    [[nodiscard]] std::string words() const;
+};
+
+/// Reads what a file says that weave::wire::write_evidence() made. Errors (bad_input) name the file.
+Result<EvidenceToFile> load_evidence(const std::string& file);
+
+/// The same of bytes that were read already.
+Result<EvidenceToFile> evidence_from(std::string_view bytes);
+
+/// Files it for a revision, and answers its number. The server judges the signature, and for whom it was given.
+Result<Json> file_evidence(ApiClient& client, const RevisionPlace& place, const EvidenceToFile& filed);
+
+}  // namespace weave::loomlink

@@ -1,0 +1,143 @@
+#include <weave/command/serving.hpp>
+#include <weave/core/log.hpp>
+#include <weave/keys/signer.hpp>
+#include <weave/net/certificate.hpp>
+#include <weave/net/server.hpp>
+#include <weave/wire/evidence.hpp>
+
+#include <array>
+#include <chrono>
+#include <optional>
+#include <simd/commands/running_daemon.hpp>
+#include <simd/daemon/daemon.hpp>
+#include <simd/service/routes.hpp>
+#include <simd/store/store.hpp>
+#include <unistd.h>
+#include <utility>
+
+namespace weave::simd {
+
+struct RunningDaemon::Parts {
+    FolderLock lock;
+    DaemonFolder folder;
+    ServeConfig config;
+    std::filesystem::path socket;
+    std::shared_ptr<net::Metrics> metrics;
+    std::optional<net::TlsFiles> tls;
+    std::unique_ptr<Daemon> daemon;
+    std::unique_ptr<Doorkeeper> doorkeeper;
+    std::optional<net::Server> server;  ///< last, so that it ends first
+};
+
+namespace {
+
+constexpr std::chrono::seconds connections_end_in{3}, work_is_put_away_in{20};
+
+/// The names and addresses that clients use.
+std::vector<std::string> client_hosts(const ServeConfig& config) {
+    std::vector<std::string> hosts = config.hosts;
+    if (hosts.empty()) {
+        std::array<char, 256> name{};
+        if (::gethostname(name.data(), name.size() - 1) == 0 && name[0] != '\0') hosts.emplace_back(name.data());
+        hosts.insert(hosts.end(), {"localhost", "127.0.0.1", "::1"});
+    }
+    const bool everywhere = config.address == "0.0.0.0" || config.address == "::";
+    if (!everywhere && std::ranges::find(hosts, config.address) == hosts.end()) hosts.push_back(config.address);
+    return hosts;
+}
+
+Result<std::optional<net::TlsFiles>> tls_of(const DaemonFolder& folder, const ServeConfig& config) {
+    if (config.plain || config.address.empty()) return std::optional<net::TlsFiles>();
+    if (!config.certificate.empty()) return std::optional(net::TlsFiles{config.certificate, config.key});
+    net::TlsFiles own{folder.certificate(), folder.key()};
+    if (!std::filesystem::exists(own.certificate)) {
+        WEAVE_TRY(const auto made, net::make_certificate(own, client_hosts(config)));
+        log(LogLevel::info, "made a certificate, SHA-256 " + made.fingerprint);
+    }
+    return std::optional(std::move(own));
+}
+
+/// What signs the evidence of jobs; null where nothing does.
+Result<std::function<std::optional<std::string>(const Json&)>> signing(const ServeConfig& config) {
+    using Sign = std::function<std::optional<std::string>(const Json&)>;
+    if (config.evidence_key.empty()) return Sign();
+    WEAVE_TRY(Signer signer, load_signer(config.evidence_key));
+    return Sign([signer = std::make_shared<Signer>(std::move(signer))](const Json& report) -> std::optional<std::string> {
+        const auto now = std::chrono::floor<std::chrono::seconds>(std::chrono::system_clock::now());
+        const auto evidence = wire::sign_evidence(signer->key, signer->site, canonical_json(report), now);
+        if (evidence) return wire::write_evidence(*evidence);
+        log(LogLevel::warning, "no evidence could be signed: " + evidence.error().text());
+        return {};
+    });
+}
+
+DaemonSettings settings_of(const DaemonFolder& folder, const ServeConfig& config, const std::filesystem::path& program) {
+    DaemonSettings settings;
+    settings.folder = folder.path;
+    settings.crew.program = program;
+    settings.crew.turns.threads = threads_of(config);
+    settings.crew.memory_bytes = memory_of(config);
+    settings.crew.stall = std::chrono::seconds(config.stall_seconds);
+    settings.most_sessions = config.sessions;
+    settings.sessions_per_person = config.sessions_per_person;
+    settings.jobs_at_once = config.jobs_at_once;
+    settings.jobs_per_person = config.jobs_per_person;
+    settings.expire = std::chrono::minutes(config.expire_minutes);
+    return settings;
+}
+
+}  // namespace
+
+RunningDaemon::RunningDaemon(std::unique_ptr<Parts> parts) : m_parts(std::move(parts)) {}
+RunningDaemon::~RunningDaemon() = default;
+
+Result<std::unique_ptr<RunningDaemon>> RunningDaemon::start(const DaemonFolder& folder, const ServeConfig& config, const std::filesystem::path& program) {
+    WEAVE_CHECK_OK(check_places(config));
+    WEAVE_CHECK_OK(make_service_folder(folder.path));
+    WEAVE_TRY(FolderLock lock, FolderLock::take(folder.path, "simd"));
+    auto parts = std::make_unique<Parts>(Parts{std::move(lock), folder, config, {}, std::make_shared<net::Metrics>(), {}, {}, {}, {}});
+    parts->socket = config.unix_socket.empty() ? folder.socket() : config.unix_socket;
+    WEAVE_TRY(parts->tls, tls_of(folder, config));
+    DaemonSettings settings = settings_of(folder, config, program);
+    settings.metrics = parts->metrics;
+    WEAVE_TRY(settings.sign, signing(config));
+    WEAVE_TRY(auto store, Store::open(folder.store()));
+    WEAVE_TRY(parts->daemon, Daemon::start(std::move(store), settings));
+    parts->doorkeeper = std::make_unique<Doorkeeper>(TokenRules{config.site, config.access_keys, folder.tokens()});
+    WEAVE_TRY(net::Router routes, service_routes({*parts->daemon, *parts->doorkeeper, parts->metrics, WEAVE_VERSION}));
+    net::ServerOptions options;
+    options.address = config.address;
+    options.port = config.port;
+    options.tls = parts->tls;
+    options.hosts = config.hosts;
+    options.workers = config.workers;
+    options.metrics = parts->metrics;
+    options.unix_socket = parts->socket;
+    WEAVE_TRY(net::Server server, net::Server::start(std::move(routes), std::move(options)));
+    parts->server.emplace(std::move(server));
+    return std::unique_ptr<RunningDaemon>(new RunningDaemon(std::move(parts)));
+}
+
+std::uint16_t RunningDaemon::port() const {
+    return m_parts->server->port();
+}
+
+Json RunningDaemon::introduction() const {
+    const ServeConfig& config = m_parts->config;
+    Json told{{"unix_socket", m_parts->socket.string()}, {"threads", threads_of(config)}, {"memory_bytes", memory_of(config)}};
+    if (!config.address.empty()) {
+        std::string host = config.plain ? config.address : client_hosts(config).front();
+        if (host.find(':') != std::string::npos) host = "[" + host + "]";
+        told["url"] = (config.plain ? "http://" : "https://") + host + ":" + std::to_string(port());
+    }
+    if (!m_parts->tls) return told;
+    if (const auto certificate = net::read_certificate(m_parts->tls->certificate)) told["certificate_sha256"] = certificate->fingerprint;
+    return told;
+}
+
+void RunningDaemon::stop() {
+    m_parts->server->stop(connections_end_in);
+    m_parts->daemon->stop(work_is_put_away_in);
+}
+
+}  // namespace weave::simd

@@ -1,0 +1,106 @@
+// status and top: what a daemon is doing.
+
+#include <weave/command/serving.hpp>
+#include <weave/core/file.hpp>
+#include <weave/wire/client.hpp>
+
+#include <cstdlib>
+#include <iostream>
+#include <limits>
+#include <memory>
+#include <simd/commands/command.hpp>
+#include <simd/commands/running_daemon.hpp>
+#include <simd/commands/status_table.hpp>
+#include <sys/ioctl.h>
+#include <unistd.h>
+
+namespace weave::simd {
+
+namespace {
+
+struct StatusWords {
+    std::string folder = ".", on, token_file, fingerprint, authorities;
+};
+
+Result<wire::ServerPlace> place_of_words(const StatusWords& words) {
+    WEAVE_TRY(wire::ServerPlace place, wire::place_of(words.on.empty() ? "unix:" + std::filesystem::absolute(DaemonFolder{words.folder}.socket()).string() : words.on));
+    if (!words.fingerprint.empty() || !words.authorities.empty()) {
+        if (!place.options.tls) return Error{ErrorCode::usage, "is for a place that is reached over TLS", words.fingerprint.empty() ? "--authorities" : "--fingerprint"};
+        place.options.tls->fingerprint = words.fingerprint;
+        place.options.tls->authorities = words.authorities;
+    }
+    if (!words.token_file.empty()) {
+        WEAVE_TRY(const std::string token, read_file(words.token_file, 2 * wire::most_token_bytes));
+        WEAVE_CHECK_OK(wire::use_token(place, token));
+    } else if (const char* const token = std::getenv("WEAVE_TOKEN"); token != nullptr && place.options.unix_socket.empty()) {
+        WEAVE_CHECK_OK(wire::use_token(place, token));
+    }
+    return place;
+}
+
+Result<Json> status_from(const wire::ServerPlace& place) {
+    constexpr std::uint64_t most = std::uint64_t{16} << 20;
+    WEAVE_TRY(const std::string text, wire::download(place, "/api/v1/status", most));
+    return parse_json(text);
+}
+
+/// Columns and lines of the terminal.
+std::pair<std::size_t, std::size_t> size_of_terminal() {
+    winsize size{};
+    if (::ioctl(STDOUT_FILENO, TIOCGWINSZ, &size) != 0 || size.ws_col == 0) return {120, 40};
+    return {size.ws_col, size.ws_row};
+}
+
+Status status(const StatusWords& words, CommandOutcome& outcome) {
+    WEAVE_TRY(const wire::ServerPlace place, place_of_words(words));
+    WEAVE_TRY(const Json status, status_from(place));
+    outcome.answer(status, status_table(status, 200, std::numeric_limits<std::size_t>::max()));
+    return {};
+}
+
+/// The terminal's other screen, which leaves what was there before as it was.
+class OtherScreen {
+  public:
+    OtherScreen() { std::cout << "\033[?1049h\033[?25l"; }
+    ~OtherScreen() { std::cout << "\033[?25h\033[?1049l" << std::flush; }
+    OtherScreen(const OtherScreen&) = delete;
+    OtherScreen& operator=(const OtherScreen&) = delete;
+};
+
+Status top(const StatusWords& words, CommandOutcome& outcome) {
+    if (::isatty(STDOUT_FILENO) == 0) return status(words, outcome);
+    WEAVE_TRY(const wire::ServerPlace place, place_of_words(words));
+    WEAVE_TRY(Json seen, status_from(place));
+    const EndingSignals signals;
+    const OtherScreen screen;
+    std::string trouble;
+    while (true) {
+        const auto [columns, lines] = size_of_terminal();
+        std::cout << "\033[H\033[J" << status_table(seen, columns, lines - 1) << trouble << std::flush;
+        if (signals.wait(std::chrono::seconds(1))) return {};
+        auto next = status_from(place);
+        trouble = next ? "" : "\n" + next.error().text() + "; trying again\n";
+        if (next) seen = std::move(*next);
+    }
+}
+
+CLI::App* add_status_command(CLI::App& app, CommandOutcome& outcome, const char* name, const char* help, const std::shared_ptr<StatusWords>& words) {
+    CLI::App* const command = add_command(app, outcome, name, help);
+    command->add_option("folder", words->folder, "the folder of a daemon of this machine; the current one if not given");
+    command->add_option("--on", words->on, "another place: https://box:8444, box, unix:/path")->type_name("PLACE");
+    command->add_option("--token-file", words->token_file, "a file with the token to show there (else WEAVE_TOKEN)")->type_name("FILE");
+    command->add_option("--fingerprint", words->fingerprint, "SHA-256 of its certificate, which alone is taken then")->type_name("HEX");
+    command->add_option("--authorities", words->authorities, "PEM file of certificates that may have signed its own")->type_name("FILE");
+    return command;
+}
+
+}  // namespace
+
+void add_status_commands(CLI::App& app, CommandOutcome& outcome) {
+    const auto words = std::make_shared<StatusWords>();
+    on_run(add_status_command(app, outcome, "status", "Tell what a daemon is doing", words), outcome, [words, &outcome] { return status(*words, outcome); });
+    on_run(add_status_command(app, outcome, "top", "Show what a daemon is doing, every second, until Ctrl-C", words), outcome,
+           [words, &outcome] { return top(*words, outcome); });
+}
+
+}  // namespace weave::simd

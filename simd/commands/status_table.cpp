@@ -1,0 +1,106 @@
+#include <weave/core/text.hpp>
+
+#include <algorithm>
+#include <array>
+#include <cstdint>
+#include <cstdio>
+#include <simd/commands/status_table.hpp>
+#include <simd/daemon/room.hpp>
+#include <simd/service/page.hpp>
+#include <vector>
+
+namespace weave::simd {
+
+namespace {
+
+struct Column {
+    const char* title;
+    std::size_t width;
+    bool is_text;
+};
+
+constexpr std::array<Column, 11> columns_of_table{{{"", 4, true},
+                                                   {"STATE", 8, true},
+                                                   {"PERSON", 12, true},
+                                                   {"STEPS", 9, false},
+                                                   {"PER S", 7, false},
+                                                   {"RESIDUAL", 9, false},
+                                                   {"POINTS", 9, false},
+                                                   {"MEMORY", 9, false},
+                                                   {"COMPUTED", 11, false},
+                                                   {"LEFT", 11, false},
+                                                   {"TITLE", 30, true}}};
+
+std::string cell(std::string text, const Column& column) {
+    text = on_one_line(text);
+    if (text.size() > column.width) text = text.substr(0, column.width - 1) + "~";
+    const std::string blanks(column.width - text.size(), ' ');
+    return (column.is_text ? text + blanks : blanks + text) + " ";
+}
+
+std::string row(const std::array<std::string, 11>& texts, std::size_t width) {
+    std::string line;
+    for (std::size_t k = 0; k < texts.size(); ++k) line += cell(texts[k], columns_of_table[k]);
+    if (line.size() > width) line.resize(width);
+    while (!line.empty() && line.back() == ' ') line.pop_back();
+    return line + "\n";
+}
+
+std::string form(const char* how, double value) {
+    std::array<char, 40> text{};
+    std::snprintf(text.data(), text.size(), how, value);
+    return text.data();
+}
+
+std::string residual(const Json& work) {
+    const Json& value = work.at("residual");
+    return value.is_null() || value.get<double>() <= 0 ? "-" : form("%.1e", value.get<double>());
+}
+
+std::array<std::string, 11> texts_of(const Json& work, bool is_job) {
+    const bool has_pace = work.contains("steps_per_second");
+    const Json left = work.value("left_s", Json());
+    return {(is_job ? "j" : "s") + std::to_string(work.at(is_job ? "job" : "session").get<std::uint64_t>()),
+            work.at("phase"),
+            work.value("person", std::string("-")),
+            std::to_string(work.at("step").get<std::uint64_t>()),
+            has_pace ? form("%.0f", work.at("steps_per_second")) : "-",
+            residual(work),
+            std::to_string(work.at("points").get<std::uint64_t>()),
+            memory_text(work.at("memory_bytes")),
+            time_text(work.at("computed_s")),
+            left.is_null() ? "-" : time_text(left),
+            work.value("title", std::string("-"))};
+}
+
+/// What computes comes first, then what waits, then what rests.
+int rank(const Json& work) {
+    const std::string phase = work.at("phase");
+    return phase == "running" ? 0 : phase == "waiting" ? 1 : phase == "paused" ? 2 : 3;
+}
+
+}  // namespace
+
+std::string status_table(const Json& status, std::size_t columns, std::size_t lines) {
+    const Json& memory = status.at("memory");
+    std::string text = "simd, up " + time_text(status.at("up_s")) + ": " + counted(status.at("sessions").size(), "session") + ", " +
+                       counted(status.at("jobs").size(), "job") + ", " + counted(status.at("clients").get<std::size_t>(), "connection") + "; " +
+                       counted(status.at("threads").get<std::size_t>(), "thread") + ", " + std::to_string(status.at("turns_waiting").get<std::size_t>()) +
+                       " waiting to compute; memory promised " + memory_text(memory.at("promised_bytes")) + " of " + memory_text(memory.at("bytes"));
+    if (text.size() > columns) text.resize(columns);
+    text += "\n\n";
+    std::array<std::string, 11> titles;
+    for (std::size_t k = 0; k < titles.size(); ++k) titles[k] = columns_of_table[k].title;
+    text += row(titles, columns);
+    std::vector<std::pair<int, std::array<std::string, 11>>> rows;
+    for (const Json& session : status.at("sessions")) rows.emplace_back(rank(session), texts_of(session, false));
+    for (const Json& job : status.at("jobs")) rows.emplace_back(rank(job), texts_of(job, true));
+    std::ranges::stable_sort(rows, {}, [](const auto& entry) { return entry.first; });
+    const std::size_t shown = std::min(rows.size(), lines > 4 ? lines - 4 : 1);
+    for (std::size_t k = 0; k < shown; ++k) text += row(rows[k].second, columns);
+    if (rows.empty()) text += "nothing is simulated\n";
+    if (shown < rows.size()) text += "and " + std::to_string(rows.size() - shown) + " more\n";
+    return text;
+}
+
+}  // namespace weave::simd

@@ -1,0 +1,55 @@
+#pragma once
+
+#include <weave/net/websocket.hpp>
+#include <weave/wire/message.hpp>
+
+#include <chrono>
+#include <cstdint>
+#include <memory>
+#include <mutex>
+#include <optional>
+#include <string>
+
+namespace weave::simd {
+
+/// A connection, as the daemon sees it: somebody who is told of a session and of his or her jobs. Safe from any thread.
+class Client {
+  public:
+    using Clock = std::chrono::steady_clock;
+
+    /// `until`: when its right to be here ends; nothing: not by itself.
+    Client(std::string person, std::optional<std::chrono::system_clock::time_point> until, std::shared_ptr<net::WebSocket> socket)
+        : m_person(std::move(person)), m_until(until), m_socket(std::move(socket)) {}
+
+    [[nodiscard]] const std::string& person() const { return m_person; }
+    [[nodiscard]] std::optional<std::chrono::system_clock::time_point> until() const { return m_until; }
+    [[nodiscard]] Clock::time_point opened() const { return m_opened; }
+
+    /// Queues a message that must arrive.
+    void tell(const wire::ServerMessage& message);
+    /// The same of one that is written already.
+    void tell(net::Bytes text) { m_socket->send_control(std::move(text)); }
+    /// Offers a frame, which waits for the connection or is overtaken; `is_last` ones whatever the pace.
+    void show(const net::Bytes& frame, bool is_last);
+    void close(std::uint16_t code, std::string reason) { m_socket->close(code, std::move(reason)); }
+
+    void want_frames(double most_per_second);
+    [[nodiscard]] double frames_per_second() const;
+    [[nodiscard]] std::uint64_t dropped_frames() const { return m_socket->dropped_frames(); }
+
+    /// The session that it is attached to; 0: none. Only the daemon sets it.
+    std::uint64_t session = 0;
+    /// Has said hello. Only the daemon sets it.
+    bool is_greeted = false;
+
+  private:
+    const std::string m_person;
+    const std::optional<std::chrono::system_clock::time_point> m_until;
+    const Clock::time_point m_opened = Clock::now();
+    const std::shared_ptr<net::WebSocket> m_socket;
+    mutable std::mutex m_mutex;
+    double m_frames_per_second = 30;
+    Clock::time_point m_last_shown{};
+};
+
+}  // namespace weave::simd

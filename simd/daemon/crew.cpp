@@ -1,0 +1,167 @@
+#include <weave/core/log.hpp>
+
+#include <algorithm>
+#include <simd/daemon/crew.hpp>
+#include <simd/link/error_form.hpp>
+#include <utility>
+
+namespace weave::simd {
+
+Crew::Crew(std::mutex& lock, const Rules& rules)
+    : m_lock(lock), m_rules(rules), m_room(rules.memory_bytes),
+      m_turns(rules.turns, {[this](Id id, std::size_t threads) { post(id, {{"do", "turn"}, {"threads", threads}}); },
+                            [this](Id id) { post(id, {{"do", "yield"}}); }}) {}
+
+Crew::~Crew() {
+    std::vector<std::unique_ptr<WorkerProcess>> processes;
+    {
+        const std::lock_guard lock(m_lock);
+        for (auto& [id, member] : m_members) {
+            member.task = nullptr;
+            if (member.process) processes.push_back(std::move(member.process));
+        }
+        m_members.clear();
+    }
+    processes.clear();  // whose threads want the lock
+    bury();
+}
+
+Crew::Id Crew::hire(Task& task, const std::string& person, bool is_job) {
+    Member& member = m_members[++m_last];
+    member.task = &task;
+    member.person = person;
+    member.is_job = is_job;
+    m_to_start.push_back(m_last);
+    return m_last;
+}
+
+std::size_t Crew::planning() const {
+    return static_cast<std::size_t>(
+        std::ranges::count_if(m_members, [](const auto& entry) { return entry.second.process && !entry.second.is_admitted; }));
+}
+
+void Crew::start(Id id, Member& member) {
+    WorkOrder order = member.task->order();
+    order.planning_bytes = m_rules.planning_bytes;
+    auto process = WorkerProcess::start(m_rules.program, to_json(order),
+                                        {[this, id](LinkMessage message) { heard(id, std::move(message)); },
+                                         [this, id](std::string how) { lost(id, std::move(how)); }});
+    if (process) {
+        member.process = std::move(*process);
+        m_turns.add(id, member.person, member.is_job);
+        return;
+    }
+    Task& task = *member.task;
+    m_members.erase(id);
+    task.ended({"could not be started", process.error(), false});
+}
+
+void Crew::heard(Id id, LinkMessage message) {
+    const std::lock_guard lock(m_lock);
+    const auto found = m_members.find(id);
+    if (found == m_members.end() || found->second.task == nullptr) return;
+    if (message.is_frame) return found->second.task->shown(std::move(message.bytes));
+    try {
+        obey(id, found->second, Json::parse(message.bytes));
+    } catch (const std::exception& fault) {  // JSON that is not as a worker of this program writes it
+        log(LogLevel::warning, std::string("a worker said what no worker says, and is ended: ") + fault.what());
+        kill(id);
+    }
+}
+
+void Crew::obey(Id id, Member& member, const Json& message) {
+    const std::string what = message.at("say");
+    if (what == "turn") {
+        m_turns.want(id, Clock::now());
+    } else if (what == "turn_over") {
+        m_turns.over(id, Clock::now());
+    } else if (what == "planned") {
+        member.task->planned(message);
+    } else if (what == "failed") {
+        member.end.failure = error_from(message.at("error"));
+        member.end.is_final = message.at("is_final");
+    } else {
+        member.task->said(what, message);
+    }
+}
+
+void Crew::lost(Id id, std::string how) {
+    const std::lock_guard lock(m_lock);
+    const auto found = m_members.find(id);
+    if (found == m_members.end()) return;
+    Member member = std::move(found->second);
+    m_members.erase(found);
+    m_turns.remove(id, Clock::now());
+    m_room.give_back(id);
+    m_dead.push_back(std::move(member.process));
+    member.end.how = std::move(how);
+    if (member.task != nullptr) member.task->ended(member.end);
+}
+
+bool Crew::admit(Id id, std::size_t points, Json also) {
+    const auto found = m_members.find(id);
+    if (found == m_members.end() || !m_room.take(id, expected_bytes(points))) return false;
+    found->second.is_admitted = true;
+    // Estimates err. What takes far more than its own must not take that of others.
+    constexpr std::uint64_t twice = 2, spare = 256U << 20U;
+    also["do"] = "admitted";
+    also["bytes"] = twice * expected_bytes(points) + spare;
+    post(id, also);
+    return true;
+}
+
+void Crew::post(Id id, const Json& message) {
+    const auto found = m_members.find(id);
+    if (found == m_members.end() || !found->second.process) return;
+    static_cast<void>(found->second.process->link().post(message));  // the thread that listens finds out that it is gone
+}
+
+void Crew::kill(Id id) {
+    const auto found = m_members.find(id);
+    if (found != m_members.end() && found->second.process) found->second.process->kill();
+}
+
+void Crew::dismiss(Id id) {
+    const auto found = m_members.find(id);
+    if (found == m_members.end()) return;
+    found->second.task = nullptr;
+    if (found->second.process) return found->second.process->kill();
+    std::erase(m_to_start, id);
+    m_members.erase(found);
+}
+
+void Crew::tick(Clock::time_point now) {
+    while (!m_to_start.empty() && planning() < m_rules.planning_at_once) {
+        const Id id = m_to_start.front();
+        m_to_start.pop_front();
+        if (const auto found = m_members.find(id); found != m_members.end()) start(id, found->second);
+    }
+    m_turns.tick(now);
+    for (auto& [id, member] : m_members) {
+        const auto kept = m_turns.kept_since_asked(id, now);
+        if (!kept || *kept < m_rules.stall || member.end.failure) continue;
+        member.end.failure = system_fault("it no longer answered for " + std::to_string(m_rules.stall.count()) + " s");
+        kill(id);
+    }
+}
+
+void Crew::bury() {
+    std::vector<std::unique_ptr<WorkerProcess>> dead;
+    const std::lock_guard lock(m_lock);
+    dead.swap(m_dead);
+    // Their threads have told of the end as the last that they do, so joining them here waits for nobody.
+    dead.clear();
+}
+
+std::optional<pid_t> Crew::process(Id id) const {
+    const auto found = m_members.find(id);
+    if (found == m_members.end() || !found->second.process) return {};
+    return found->second.process->id();
+}
+
+std::uint64_t Crew::memory_bytes(Id id) const {
+    const auto found = m_members.find(id);
+    return found == m_members.end() || !found->second.process ? 0 : found->second.process->memory_bytes();
+}
+
+}  // namespace weave::simd

@@ -1,0 +1,85 @@
+#pragma once
+
+#include <chrono>
+#include <cstdint>
+#include <deque>
+#include <filesystem>
+#include <map>
+#include <memory>
+#include <mutex>
+#include <optional>
+#include <simd/daemon/room.hpp>
+#include <simd/daemon/task.hpp>
+#include <simd/daemon/turns.hpp>
+#include <simd/daemon/worker_process.hpp>
+#include <string>
+#include <vector>
+
+namespace weave::simd {
+
+/// The worker processes: started a few at a time, admitted where there is memory, given turns, watched, and taken away. Its owner
+/// has the lock for every call but bury().
+class Crew {
+  public:
+    using Clock = std::chrono::steady_clock;
+    using Id = std::uint64_t;
+
+    struct Rules {
+        std::filesystem::path program;      ///< this one
+        Turns::Rules turns;
+        std::uint64_t memory_bytes = 0;     ///< for all workers together
+        std::uint64_t planning_bytes = std::uint64_t{2} << 30;  ///< for one that still plans
+        std::size_t planning_at_once = 2;
+        std::chrono::seconds stall{300};    ///< a worker that keeps a turn so long after it was asked back is ended
+    };
+
+    Crew(std::mutex& lock, const Rules& rules);
+    /// Ends all workers at once.
+    ~Crew();
+
+    /// Has a worker started for this task as soon as its turn to plan comes. The task must outlive it, or dismiss it.
+    Id hire(Task& task, const std::string& person, bool is_job);
+    /// Grants the planned points their memory; false where there is too little. `also` is told with it: number and folder.
+    bool admit(Id id, std::size_t points, Json also);
+    void post(Id id, const Json& message);
+    /// Ends a worker at once; its task is told.
+    void kill(Id id);
+    /// The same, but nobody is told.
+    void dismiss(Id id);
+    /// To be called every few milliseconds, from one thread that lasts as long as the crew: workers die with it.
+    void tick(Clock::time_point now);
+    /// Clears away what has ended. Without the lock.
+    void bury();
+
+    [[nodiscard]] Room& room() { return m_room; }
+    [[nodiscard]] const Turns& turns() const { return m_turns; }
+    [[nodiscard]] std::size_t size() const { return m_members.size(); }
+    [[nodiscard]] std::optional<pid_t> process(Id id) const;
+    [[nodiscard]] std::uint64_t memory_bytes(Id id) const;
+
+  private:
+    struct Member {
+        Task* task = nullptr;  ///< null: dismissed
+        std::string person;
+        bool is_job = false, is_admitted = false;
+        std::unique_ptr<WorkerProcess> process;
+        WorkerEnd end;
+    };
+
+    void start(Id id, Member& member);
+    void heard(Id id, LinkMessage message);
+    void obey(Id id, Member& member, const Json& message);
+    void lost(Id id, std::string how);
+    [[nodiscard]] std::size_t planning() const;
+
+    std::mutex& m_lock;
+    Rules m_rules;
+    Room m_room;
+    Turns m_turns;
+    Id m_last = 0;
+    std::map<Id, Member> m_members;
+    std::deque<Id> m_to_start;
+    std::vector<std::unique_ptr<WorkerProcess>> m_dead;
+};
+
+}  // namespace weave::simd

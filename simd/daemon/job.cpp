@@ -1,0 +1,199 @@
+#include <weave/core/log.hpp>
+
+#include <algorithm>
+#include <simd/daemon/job.hpp>
+#include <simd/link/error_form.hpp>
+#include <utility>
+
+namespace weave::simd {
+
+namespace {
+
+/// Faults of the worker without a checkpoint between them after which a job has failed.
+constexpr std::size_t most_faults = 3;
+constexpr const char* phase_names[]{"waiting", "running", "done", "failed", "cancelled"};
+
+wire::JobPhase phase_of(const std::string& name) {
+    for (std::size_t k = 0; k < std::size(phase_names); ++k) {
+        if (name == phase_names[k]) return static_cast<wire::JobPhase>(k);
+    }
+    return wire::JobPhase::waiting;
+}
+
+}  // namespace
+
+Job::Job(Surroundings around, const StoredJob& stored) : m_around(std::move(around)), m_stored(stored), m_phase(phase_of(stored.phase)) {
+    m_around.folder /= std::to_string(number());
+    m_step = stored.step;
+    if (!is_over()) {
+        m_phase = wire::JobPhase::waiting;
+        return;
+    }
+    m_is_saved = true;
+    if (auto report = parse_json(stored.report)) m_report = std::move(*report);
+    if (stored.error) {
+        if (const auto error = parse_json(*stored.error)) m_error = error_from(*error);
+    }
+}
+
+Job::~Job() {
+    if (m_worker) m_around.crew.dismiss(*m_worker);
+}
+
+wire::JobState Job::state() const {
+    wire::JobState state;
+    state.job = number();
+    state.phase = m_phase;
+    state.title = m_stored.title;
+    state.step = m_step;
+    if (m_step > 0) state.residual = m_residual;
+    if (m_pace && m_phase == wire::JobPhase::running) state.left_s = m_pace->seconds_left();
+    return state;
+}
+
+wire::JobEnded Job::ending() const {
+    wire::JobEnded ending{number(), m_phase, m_error, m_report, {}};
+    if (m_stored.evidence) {
+        if (auto evidence = parse_json(*m_stored.evidence)) ending.evidence = std::move(*evidence);
+    }
+    return ending;
+}
+
+std::optional<std::filesystem::path> Job::yarns() const {
+    if (!is_over() || !m_stored.yarns) return {};
+    return m_around.folder / *m_stored.yarns;
+}
+
+Json Job::status(bool with_names) const {
+    const wire::JobState now = state();
+    Json told{{"job", number()},
+              {"phase", phase_names[static_cast<int>(m_phase)]},
+              {"step", now.step},
+              {"residual", now.residual ? Json(*now.residual) : Json()},
+              {"left_s", now.left_s ? Json(*now.left_s) : Json()},
+              {"points", m_points},
+              {"memory_bytes", m_worker ? m_around.crew.memory_bytes(*m_worker) : 0},
+              {"computed_s", m_worker ? m_around.crew.turns().spent_s(*m_worker) : 0.0}};
+    if (!with_names) return told;
+    told["person"] = person();
+    told["title"] = m_stored.title;
+    if (m_worker) {
+        if (const auto process = m_around.crew.process(*m_worker)) told["worker"] = *process;
+    }
+    return told;
+}
+
+// ---- Its work ----
+
+void Job::begin() {
+    m_worker = m_around.crew.hire(*this, person(), true);
+}
+
+WorkOrder Job::order() {
+    WorkOrder order;
+    order.is_job = true;
+    order.number = number();
+    order.document = m_stored.document;
+    if (auto work = simulation_from(m_stored.simulation)) {
+        order.simulation = std::move(work->simulation);
+        order.flips = std::move(work->flips);
+    }
+    order.folder = m_around.folder.string();
+    order.takes_up = true;  // from the checkpoint of an earlier attempt, if there is one
+    return order;
+}
+
+void Job::planned(const Json& plan) {
+    m_points = plan.at("points").get<std::size_t>() * (simulation_from(m_stored.simulation)->flips.empty() ? 1 : plan.at("repeats").get<std::size_t>());
+    const std::uint64_t bytes = expected(), whole = m_around.crew.room().whole();
+    if (bytes > whole) {
+        const Error error{ErrorCode::refused, "the cloth needs " + memory_text(bytes) + ", and " + memory_text(whole) + " is all that there is: simulate a part of it, or fewer points", "simulation"};
+        return end(wire::JobPhase::failed, error, Json::object(), {});
+    }
+    std::error_code code;
+    std::filesystem::create_directories(m_around.folder, code);
+    if (code || !m_around.crew.admit(*m_worker, m_points, {{"number", number()}, {"folder", m_around.folder.string()}})) {
+        m_around.crew.dismiss(*m_worker);  // its place in the queue is what it was
+        m_worker.reset();
+        return;
+    }
+    m_phase = wire::JobPhase::running;
+    m_began = Clock::now();
+    const Status started = m_around.store.start_job(number());
+    if (!started) log(LogLevel::warning, "job " + std::to_string(number()) + ": " + started.error().text());
+}
+
+void Job::said(const std::string& what, const Json& message) {
+    if (what == "progress") {
+        m_step = message.at("step");
+        m_residual = std::min(message.at("residual").get<double>(), 1e300);
+        const double goal = message.at("goal");
+        if (!m_pace) m_pace.emplace(goal);
+        m_pace->add(std::chrono::duration<double>(Clock::now() - m_began).count(), m_residual);
+    } else if (what == "checkpoint" && !message.contains("error")) {
+        const std::uint64_t step = message.at("step");
+        if (m_checkpoint_step != step) m_faults = 0;
+        m_checkpoint_step = step;
+        static_cast<void>(m_around.store.job_progress(number(), m_step, m_residual));  // told to people, no more
+    } else if (what == "checkpoint") {
+        log(LogLevel::warning, "job " + std::to_string(number()) + ": " + error_from(message.at("error")).text());
+    } else if (what == "done") {
+        m_is_done = true;
+        m_step = message.at("step");
+        end(m_is_cancelled ? wire::JobPhase::cancelled : wire::JobPhase::done, {}, message.at("report"), message.value("yarns", std::string()));
+    }
+}
+
+void Job::cancel() {
+    if (is_over()) return;
+    m_is_cancelled = true;
+    if (m_phase == wire::JobPhase::running && m_worker) m_around.crew.post(*m_worker, {{"do", "finish"}, {"with_report", true}});
+    else end(wire::JobPhase::cancelled, {}, Json::object(), {});
+}
+
+void Job::put_away() {
+    m_is_put_away = true;
+    if (m_phase == wire::JobPhase::running && m_worker) m_around.crew.post(*m_worker, {{"do", "finish"}, {"with_report", false}});
+    else if (m_worker) m_around.crew.dismiss(*std::exchange(m_worker, {}));
+}
+
+void Job::ended(const WorkerEnd& end) {
+    m_worker.reset();
+    if (is_over() || m_is_put_away) return;
+    if (m_is_cancelled) return this->end(wire::JobPhase::cancelled, {}, Json::object(), {});
+    const Error why = end.failure.value_or(system_fault("the worker " + end.how));
+    log(LogLevel::warning, "job " + std::to_string(number()) + ": " + why.text());
+    m_phase = wire::JobPhase::waiting;
+    if (end.is_final) return this->end(wire::JobPhase::failed, why, Json::object(), {});
+    if (++m_faults > most_faults)
+        this->end(wire::JobPhase::failed, Error{why.code, why.message + ", " + std::to_string(m_faults) + " times in a row since its last checkpoint", why.where},
+                  Json::object(), {});
+}
+
+// ---- Its end ----
+
+void Job::end(wire::JobPhase phase, std::optional<Error> error, Json report, std::string yarns) {
+    if (m_worker && !m_is_done) m_around.crew.dismiss(*std::exchange(m_worker, {}));
+    m_phase = phase;
+    m_error = std::move(error);
+    m_report = std::move(report);
+    if (!yarns.empty()) m_stored.yarns = std::move(yarns);
+    if (phase == wire::JobPhase::done && m_around.sign) m_stored.evidence = m_around.sign(m_report);
+    save_end();
+}
+
+/// The end is told once the disk has it.
+void Job::save_end() {
+    const Status saved = m_around.store.end_job(number(), phase_names[static_cast<int>(m_phase)],
+                                                m_error ? std::optional(canonical_json(to_json(*m_error))) : std::nullopt,
+                                                canonical_json(m_report), m_stored.evidence, m_stored.yarns);
+    if (!saved) return log(LogLevel::warning, "job " + std::to_string(number()) + ": " + saved.error().text());
+    m_is_saved = true;
+    m_around.has_ended(*this);
+}
+
+void Job::tick() {
+    if (is_over() && !m_is_saved) save_end();
+}
+
+}  // namespace weave::simd

@@ -1,0 +1,36 @@
+#pragma once
+
+#include <algorithm>
+#include <cstddef>
+#include <cstdint>
+#include <map>
+#include <string>
+
+namespace weave::simd {
+
+/// Memory that a cloth of so many control points is expected to take while it relaxes, bytes. Measured: 980,000 points took
+/// 5.7 kB each at their most (docs/simulation), small ones some 30 MiB in all.
+std::uint64_t expected_bytes(std::size_t points);
+
+/// The memory of the machine that workers may have, and who has been promised how much.
+class Room {
+  public:
+    explicit Room(std::uint64_t bytes) : m_bytes(bytes) {}
+
+    [[nodiscard]] std::uint64_t whole() const { return m_bytes; }
+    [[nodiscard]] std::uint64_t taken() const;
+    [[nodiscard]] std::uint64_t left() const { return m_bytes - std::min(m_bytes, taken()); }
+    /// Whether there is room for this worker with so many bytes, in place of what it has been promised before; then it has them.
+    bool take(std::uint64_t worker, std::uint64_t bytes);
+    void give_back(std::uint64_t worker) { m_promised.erase(worker); }
+    [[nodiscard]] std::uint64_t promised(std::uint64_t worker) const;
+
+  private:
+    std::uint64_t m_bytes;
+    std::map<std::uint64_t, std::uint64_t> m_promised;
+};
+
+/// An amount of memory for people, such as `3.1 GiB`.
+std::string memory_text(std::uint64_t bytes);
+
+}  // namespace weave::simd

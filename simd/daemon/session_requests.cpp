@@ -1,0 +1,261 @@
+#include <weave/core/log.hpp>
+#include <weave/wire/frame.hpp>
+
+#include <algorithm>
+#include <simd/daemon/session.hpp>
+#include <tuple>
+#include <utility>
+
+namespace weave::simd {
+
+namespace {
+
+constexpr std::uint64_t most_unacknowledged = 10'000;
+constexpr std::size_t events_at_once = 1000;
+/// Faults of the worker without a checkpoint between them after which a session is given up.
+constexpr std::size_t most_faults = 3;
+
+Error no_disk(const Error& error) {
+    return {ErrorCode::system, "the disk does not take it: " + error.message, ""};
+}
+
+}  // namespace
+
+Session::Session(Surroundings around, const StoredSession& stored, std::vector<JournaledChange> changes)
+    : m_around(std::move(around)), m_person(stored.person), m_request(stored.request), m_title(stored.title), m_document(stored.document),
+      m_number(stored.number), m_changes(std::move(changes)), m_seq(stored.seq), m_frame(stored.state.frame), m_frames_promised(stored.state.frame),
+      m_layout(stored.state.layout), m_step(stored.state.step), m_runs(stored.state.phase == "running"), m_pause_at(stored.state.pause_at),
+      m_checkpoint_step(stored.state.checkpoint_step), m_seen(stored.state.seen), m_takes_up(true), m_has_ended(stored.has_ended) {
+    m_around.folder /= std::to_string(m_number);
+    m_layout_sha256 = stored.layout_sha256;
+    if (const auto told = wire::read_server_message(stored.phase_event)) {
+        if (const auto* changed = std::get_if<wire::PhaseChanged>(&*told)) m_phase = changed->phase;
+    }
+    if (auto work = simulation_from(stored.simulation)) m_simulation = std::move(work->simulation);
+}
+
+wire::SessionSummary Session::summary() const {
+    return {m_number, m_title, m_phase, m_step, m_step > 0 ? std::optional(m_residual) : std::nullopt, std::max<std::uint64_t>(1, m_points), m_clients.size()};
+}
+
+Json Session::status(bool with_names) const {
+    constexpr const char* phases[]{"running", "paused", "at rest"};
+    Json told{{"session", m_number},
+              {"phase", m_has_ended ? "ended" : !m_worker ? "waiting" : phases[static_cast<int>(m_phase)]},
+              {"step", m_step},
+              {"residual", m_residual},
+              {"points", m_points},
+              {"steps_per_second", m_phase == wire::Phase::running ? m_pace : 0.0},
+              {"clients", m_clients.size()},
+              {"memory_bytes", m_worker ? m_around.crew.memory_bytes(*m_worker) : 0},
+              {"computed_s", m_worker ? m_around.crew.turns().spent_s(*m_worker) : 0.0},
+              {"checkpoint_step", m_checkpoint_step ? Json(*m_checkpoint_step) : Json()},
+              {"frames", m_frame}};
+    if (!with_names) return told;
+    told["person"] = m_person;
+    told["title"] = m_title;
+    if (m_worker) {
+        if (const auto process = m_around.crew.process(*m_worker)) told["worker"] = *process;
+    }
+    return told;
+}
+
+// ---- Answers ----
+
+void Session::answer(const ClientPtr& client, const std::string& request) {
+    const std::string text = wire::write_message(wire::Accepted{request, {}, {}, {}});
+    const Status remembered = m_around.store.remember(client->person(), request, text);
+    if (!remembered) return refuse(client, request, no_disk(remembered.error()));
+    client->tell(net::make_bytes(text));
+}
+
+void Session::refuse(const ClientPtr& client, const std::string& request, Error error) const {
+    client->tell(wire::Refused{request, std::move(error), {}});
+}
+
+void Session::post(const Json& message) {
+    if (m_worker) m_around.crew.post(*m_worker, message);
+}
+
+// ---- Who looks on ----
+
+void Session::attach(const ClientPtr& client, const wire::Attach& attach) {
+    if (attach.seq > m_seq || attach.frame > std::max(m_frame, m_frames_promised))
+        return refuse(client, attach.request, {ErrorCode::usage, "has had fewer events and frames than that", "session " + std::to_string(m_number)});
+    std::vector<net::Bytes> texts;
+    for (std::uint64_t after = attach.seq;;) {
+        const auto events = m_around.store.events_after(m_number, after, events_at_once);
+        if (!events) return refuse(client, attach.request, no_disk(events.error()));
+        for (const Event& event : *events) texts.push_back(net::make_bytes(event.text));
+        if (events->size() < events_at_once) break;
+        after = events->back().seq;
+    }
+    client->tell(wire::Accepted{attach.request, m_number, {}, {}});
+    for (net::Bytes& text : texts) client->tell(std::move(text));
+    if (m_newest && m_newest_number > attach.frame + 1) client->tell(wire::Gap{m_number, attach.frame + 1, m_newest_number - 1});
+    if (m_newest && m_newest_number > attach.frame) client->show(m_newest, true);
+    client->session = m_number;
+    m_clients.push_back(client);
+    tell_rates();
+}
+
+void Session::leave(const ClientPtr& client) {
+    std::erase(m_creators, client);
+    if (std::erase(m_clients, client) == 0) return;
+    m_seen = m_around.utc_s();
+    static_cast<void>(save_state());  // at worst it expires a little sooner
+    tell_rates();
+}
+
+/// The worker makes frames for the fastest of those that look on.
+void Session::tell_rates() {
+    double fastest = 0;
+    for (const ClientPtr& client : m_clients) fastest = std::max(fastest, client->frames_per_second());
+    post({{"do", "frames"}, {"per_second", fastest}});
+}
+
+void Session::want_frames(const ClientPtr& client, const wire::WantFrames& want) {
+    client->want_frames(want.most_per_second);
+    tell_rates();
+    client->tell(wire::Accepted{want.request, {}, {}, {}});
+}
+
+void Session::read_state(const ClientPtr& client, const std::string& request) const {
+    client->tell(wire::State{request, m_number, m_phase, m_step, m_seq, m_frame, m_layout, m_residual, m_lost});
+}
+
+// ---- What is to be done with it ----
+
+void Session::go_on(const ClientPtr& client, const std::string& request, std::optional<std::uint64_t> steps) {
+    if (m_has_ended) return refuse(client, request, gone());
+    const auto before = std::pair(m_runs, m_pause_at);
+    m_runs = true;
+    m_pause_at.reset();
+    if (steps) m_pause_at = std::min(wire::most_number, m_step + std::min(*steps, wire::most_number));
+    if (const Status saved = save_state(); !saved) {
+        std::tie(m_runs, m_pause_at) = before;
+        return refuse(client, request, no_disk(saved.error()));
+    }
+    answer(client, request);
+    post({{"do", "go_on"}, {"until", m_pause_at ? Json(*m_pause_at) : Json()}});
+}
+
+void Session::pause(const ClientPtr& client, const std::string& request) {
+    if (m_has_ended) return refuse(client, request, gone());
+    m_runs = false;
+    m_pause_at = m_step;
+    static_cast<void>(save_state());  // at worst it goes on after a fault of the daemon
+    answer(client, request);
+    post({{"do", "pause"}});
+}
+
+bool Session::unfolds_for(const wire::Change& change) const {
+    return m_repeats > 1 && !std::holds_alternative<wire::Parameters>(change);
+}
+
+std::optional<Error> Session::why_no_change(const wire::Change& change) const {
+    if (m_has_ended) return gone();
+    const auto left = m_around.store.unacknowledged(m_number);
+    if (!left) return no_disk(left.error());
+    if (*left >= most_unacknowledged)
+        return Error{ErrorCode::refused, "its clients have left " + std::to_string(*left) + " events unacknowledged", "session " + std::to_string(m_number)};
+    if (!unfolds_for(change) || !m_worker) return {};
+    Room& room = m_around.crew.room();
+    const std::uint64_t bytes = expected_bytes(m_points * m_repeats), own = room.promised(*m_worker);
+    if (bytes <= room.left() + own) return {};
+    return Error{ErrorCode::refused, "for this the whole cloth is simulated, which needs " + memory_text(bytes) + ", and " + memory_text(room.left() + own) + " are free", "change"};
+}
+
+void Session::change(const ClientPtr& client, const wire::MakeChange& make) {
+    if (auto error = why_no_change(make.change)) return refuse(client, make.request, std::move(*error));
+    const std::string text = wire::write_message(wire::Accepted{make.request, {}, {}, {}});
+    const auto number = m_around.store.add_change(m_number, client->person(), make.request, change_text(make.change), text);
+    if (!number) return refuse(client, make.request, no_disk(number.error()));
+    m_changes.push_back({*number, make.request, make.change, {}, false});
+    client->tell(net::make_bytes(text));
+    if (m_worker && unfolds_for(make.change)) {
+        m_around.crew.admit(*m_worker, m_points * m_repeats, {{"number", m_number}, {"folder", m_around.folder.string()}});
+        m_repeats = 1;
+    }
+    post({{"do", "change"}, {"change", to_json(m_changes.back())}});
+}
+
+void Session::checkpoint(const ClientPtr& client, const std::string& request) {
+    if (m_has_ended || !m_worker) return refuse(client, request, m_has_ended ? gone() : Error{ErrorCode::refused, "waits for room", "session"});
+    m_checkpoint_requests[++m_last_id] = {client, request};
+    post({{"do", "checkpoint"}, {"id", m_last_id}});
+}
+
+void Session::close(const ClientPtr& client, const std::string& request) {
+    if (m_has_ended) return refuse(client, request, gone());
+    answer(client, request);
+    m_is_closing = true;
+    if (!m_worker) return end(wire::Why::closed, m_step, {}, Json::object());
+    post({{"do", "finish"}, {"with_report", true}});
+}
+
+void Session::write_yarns(std::function<void(Result<std::filesystem::path>)> done) {
+    if (m_has_ended || !m_worker) return done(m_has_ended ? gone() : Error{ErrorCode::refused, "waits for room", "session"});
+    m_yarns_requests[++m_last_id] = std::move(done);
+    post({{"do", "yarns"}, {"id", m_last_id}, {"path", (m_around.folder / ("state-" + std::to_string(m_last_id) + ".yarns")).string()}});
+}
+
+void Session::fail_waiting(const Error& error) {
+    for (auto& [id, request] : std::exchange(m_checkpoint_requests, {})) refuse(request.first, request.second, error);
+    for (auto& [id, done] : std::exchange(m_yarns_requests, {})) done(error);
+}
+
+// ---- The worker's life ----
+
+WorkOrder Session::order() {
+    WorkOrder order;
+    order.number = std::max<std::uint64_t>(1, m_number);
+    order.document = m_document;
+    order.simulation = m_simulation;
+    order.folder = m_around.folder.string();
+    order.takes_up = m_takes_up;
+    order.changes = m_changes;
+    order.runs = true;
+    order.pause_at = m_pause_at;
+    order.frame = m_frame;
+    order.layout = m_layout;
+    order.layout_sha256 = m_layout_sha256;
+    return order;
+}
+
+void Session::take_up() {
+    if (m_has_ended || m_worker) return;
+    m_takes_up = m_is_recovering = true;
+    m_worker = m_around.crew.hire(*this, m_person, false);
+}
+
+void Session::put_away() {
+    m_is_put_away = true;
+    post({{"do", "finish"}, {"with_report", false}});
+}
+
+void Session::ended(const WorkerEnd& end) {
+    m_worker.reset();
+    if (m_has_ended || m_is_put_away) return;
+    const Error why = end.failure.value_or(system_fault("the worker " + end.how));
+    if (!is_accepted()) return refuse_creation(why, {});
+    fail_waiting(why);
+    if (m_is_closing) return this->end(wire::Why::closed, m_step, {}, Json::object());
+    ++m_faults;
+    log(LogLevel::warning, "session " + std::to_string(m_number) + ": " + why.text());
+    if (!end.is_final && m_faults <= most_faults) return take_up();
+    this->end(wire::Why::failed, m_step,
+              end.is_final ? why : Error{why.code, why.message + ", " + std::to_string(m_faults) + " times in a row since its last checkpoint", why.where},
+              Json::object());
+}
+
+void Session::tick(Clock::time_point now, std::chrono::seconds expire) {
+    constexpr std::chrono::seconds to_take_the_end_in{10};
+    if (!m_unsaved.empty()) save_unsaved();
+    if (m_has_ended && !m_clients.empty() && now - m_ended_at > to_take_the_end_in) say_goodbye();
+    if (!is_accepted() || m_has_ended) return;
+    if (!m_worker && !m_is_put_away && m_around.crew.room().left() >= expected_bytes(m_points)) take_up();
+    if (m_clients.empty() && m_around.utc_s() - m_seen > expire.count()) end(wire::Why::expired, m_step, {}, Json::object());
+}
+
+}  // namespace weave::simd

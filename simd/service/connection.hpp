@@ -1,0 +1,35 @@
+#pragma once
+
+#include <weave/net/websocket.hpp>
+
+#include <cstddef>
+#include <memory>
+#include <simd/daemon/daemon.hpp>
+#include <simd/service/visitors.hpp>
+#include <string>
+
+namespace weave::simd {
+
+/// One WebSocket that speaks the protocol (wire/PROTOCOL.md): reads what comes, and hands it to the daemon.
+class Connection final : public net::WebSocketHandler {
+  public:
+    Connection(Daemon& daemon, Visitor visitor, std::string server) : m_daemon(daemon), m_visitor(std::move(visitor)), m_server(std::move(server)) {}
+    ~Connection() override;
+
+    void opened(std::shared_ptr<net::WebSocket> socket) override;
+    void message(net::WebSocketMessage message) override;
+    void closed(const net::WebSocketEnd&) override {}
+
+  private:
+    void greet(const wire::ClientMessage& message);
+    void not_understood(const std::string& text, const Error& error);
+
+    Daemon& m_daemon;
+    const Visitor m_visitor;
+    const std::string m_server;
+    std::shared_ptr<Client> m_client;
+    bool m_is_greeted = false;
+    std::size_t m_not_understood = 0;
+};
+
+}  // namespace weave::simd

@@ -1,0 +1,15 @@
+#pragma once
+
+#include <weave/core/json.hpp>
+
+#include <string>
+
+namespace weave::simd {
+
+/// The status of a machine (Daemon::status() without names) as a page that renews itself, without scripts and outside resources.
+std::string status_page(const Json& status, const std::string& version);
+
+/// A time for people, such as `3 min 20 s`.
+std::string time_text(double seconds);
+
+}  // namespace weave::simd

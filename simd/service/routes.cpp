@@ -1,0 +1,108 @@
+#include <weave/core/file.hpp>
+#include <weave/core/text.hpp>
+#include <weave/net/health.hpp>
+#include <weave/wire/message.hpp>
+
+#include <functional>
+#include <simd/service/connection.hpp>
+#include <simd/service/page.hpp>
+#include <simd/service/routes.hpp>
+#include <utility>
+
+namespace weave::simd {
+
+namespace {
+
+using net::Request;
+using net::Response;
+
+/// No file that is handed out is larger; it is in memory once.
+constexpr std::uint64_t most_file = std::uint64_t{8} << 30;
+
+Response unknown_visitor(const Error& error) {
+    Response response = net::error_answer(error, 401);
+    response.headers.set("WWW-Authenticate", "Bearer");
+    return response;
+}
+
+/// An answer that only visitors get.
+net::Handler for_visitors(Doorkeeper& doorkeeper, std::function<Response(const Visitor&, const Request&)> answer) {
+    return [&doorkeeper, answer = std::move(answer)](const Request& request) {
+        const auto visitor = doorkeeper.let_in(request);
+        return visitor ? answer(*visitor, request) : unknown_visitor(visitor.error());
+    };
+}
+
+std::uint64_t number_in(const Request& request, const char* place) {
+    const auto number = parse_whole(request.place(place));
+    return number && *number > 0 ? static_cast<std::uint64_t>(*number) : 0;
+}
+
+Response not_there(const Error& error) {
+    return net::error_answer(error, error.code == ErrorCode::refused ? 404 : net::status_of(error.code));
+}
+
+Response file_answer(const std::filesystem::path& path) {
+    auto bytes = read_file(path, most_file);
+    if (!bytes) return net::error_answer(system_fault(bytes.error().text()));
+    return net::answer(200, "application/octet-stream", net::make_bytes(std::move(*bytes)));
+}
+
+Response session_yarns(Daemon& daemon, const Visitor& visitor, const Request& request) {
+    const auto path = daemon.session_yarns(visitor.person, number_in(request, "session"));
+    if (!path) return not_there(path.error());
+    Response response = file_answer(*path);
+    std::error_code ignored;
+    std::filesystem::remove(*path, ignored);
+    return response;
+}
+
+Response job_yarns(Daemon& daemon, const Visitor& visitor, const Request& request) {
+    const auto path = daemon.job_yarns(visitor.person, number_in(request, "job"));
+    return path ? file_answer(*path) : not_there(path.error());
+}
+
+Response job_evidence(Daemon& daemon, const Visitor& visitor, const Request& request) {
+    auto document = daemon.job_evidence(visitor.person, number_in(request, "job"));
+    return document ? net::answer(200, "application/json", net::make_bytes(std::move(*document))) : not_there(document.error());
+}
+
+net::WebSocketAdmission open_wire(const ServiceParts& parts, const Request& request) {
+    auto visitor = parts.doorkeeper.let_in(request);
+    if (!visitor) return unknown_visitor(visitor.error());
+    return std::make_unique<Connection>(parts.daemon, std::move(*visitor), "simd " + parts.version);
+}
+
+}  // namespace
+
+Result<net::Router> service_routes(const ServiceParts& parts) {
+    net::Router router;
+    Daemon& daemon = parts.daemon;
+    const auto get = [&](const char* name, const char* pattern, const char* description, net::Handler handler) {
+        return router.add({name, "GET", pattern, description, 0, std::move(handler), {}});
+    };
+    WEAVE_CHECK_OK(router.add({"wire", "GET", "/api/v1/wire", "The protocol, over a WebSocket.", wire::most_client_bytes, {},
+                               [parts](const Request& request) { return open_wire(parts, request); }}));
+    WEAVE_CHECK_OK(get("session.yarns", "/api/v1/sessions/{session}/yarns", "The yarns of a session as they lie.",
+                       for_visitors(parts.doorkeeper, [&daemon](const Visitor& visitor, const Request& request) { return session_yarns(daemon, visitor, request); })));
+    WEAVE_CHECK_OK(get("job.yarns", "/api/v1/jobs/{job}/yarns", "The yarns of a job that has ended.",
+                       for_visitors(parts.doorkeeper, [&daemon](const Visitor& visitor, const Request& request) { return job_yarns(daemon, visitor, request); })));
+    WEAVE_CHECK_OK(get("job.evidence", "/api/v1/jobs/{job}/evidence", "The signed evidence of a job that is done.",
+                       for_visitors(parts.doorkeeper, [&daemon](const Visitor& visitor, const Request& request) { return job_evidence(daemon, visitor, request); })));
+    WEAVE_CHECK_OK(get("status", "/api/v1/status", "Sessions, jobs, memory and pace.",
+                       for_visitors(parts.doorkeeper, [&daemon](const Visitor& visitor, const Request&) {
+                           return net::json_answer(200, daemon.status(visitor.is_local));
+                       })));
+    WEAVE_CHECK_OK(get("health", "/healthz", "Whether it does its work.", [checks = daemon.health()](const Request&) { return net::health_answer(checks); }));
+    WEAVE_CHECK_OK(get("metrics", "/metrics", "Numbers for Prometheus.", [metrics = parts.metrics](const Request&) {
+        return net::answer(200, "text/plain; version=0.0.4; charset=utf-8", net::make_bytes(metrics->text()));
+    }));
+    WEAVE_CHECK_OK(get("page", "/", "What the machine does, for people.", [&daemon, version = parts.version](const Request&) {
+        Response page = net::answer(200, "text/html; charset=utf-8", net::make_bytes(status_page(daemon.status(false), version)));
+        page.headers.set("Content-Security-Policy", "default-src 'none'; style-src 'unsafe-inline'; frame-ancestors 'none'; base-uri 'none'; form-action 'none'");
+        return page;
+    }));
+    return router;
+}
+
+}  // namespace weave::simd
