@@ -1,0 +1,340 @@
+// Simulation on a server: the same words, files and exit status as on this machine, whatever happens to the connection.
+
+#include "run.hpp"
+
+#include <weave/core/sha256.hpp>
+#include <weave/design/document.hpp>
+#include <weave/keys/key.hpp>
+#include <weave/sim/run.hpp>
+#include <weave/sim/yarns_file.hpp>
+#include <weave/wire/evidence.hpp>
+
+#include <atomic>
+#include <csignal>
+#include <cstdlib>
+#include <support/scripted_simd.hpp>
+#include <thread>
+
+using namespace weave;
+using Catch::Contains;
+using program_tests::Ended;
+using program_tests::Workshop;
+using weave::testing::JobResult;
+using weave::testing::ScriptedSimd;
+
+namespace {
+
+std::string signed_for(const Json& report) {
+    return wire::write_evidence(wire::sign_evidence(KeyPair::generate(), "mill", canonical_json(report), std::chrono::system_clock::now()).value());
+}
+
+/// Relaxes as a server does; `steps` (0: no limit) ends it as a cancelled job is.
+JobResult relaxed(const wire::Submit& submit, std::size_t steps = 0) {
+    const auto design = read_document(submit.document);
+    if (!design) return {design.error(), Json::object(), "", {}};
+    sim::RunRequest request;
+    request.plan = submit.simulation.plan;
+    request.goal = {submit.simulation.solver, submit.simulation.residual, submit.simulation.most_steps.value_or(20000),
+                    submit.simulation.most_seconds.value_or(1e30)};
+    request.start_from = submit.simulation.start_from;
+    request.flips = submit.flips;
+    auto run = sim::Run::begin(*design, request, 1);
+    if (!run) return {run.error(), Json::object(), "", {}};
+    const auto stops = [&](const sim::Progress& progress) { return steps == 0 || progress.iteration < steps; };
+    if (steps > 0) static_cast<void>((*run)->advance(steps, stops));
+    while (steps == 0 && !(*run)->is_over()) {
+        if (Status went = (*run)->advance(1000, stops); !went) return {went.error(), Json::object(), "", {}};
+    }
+    Yarns yarns = (*run)->yarns();
+    JobResult result{{}, yarns.report, write_yarns(yarns).value(), {}};
+    result.report["yarns_sha256"] = sha256_hex(result.yarns);
+    result.evidence = signed_for(result.report);
+    return result;
+}
+
+/// A server that relaxes, and a workshop with a design.
+struct Mill {
+    Workshop shop;
+    ScriptedSimd simd;
+    Mill() {
+        simd.work = [](const wire::Submit& submit) { return relaxed(submit); };
+        shop.must({"samples", "plain", "-o", "d.weave"});
+    }
+    [[nodiscard]] std::vector<std::string> on(std::vector<std::string> words) const {
+        words.emplace_back("--on");
+        words.push_back(simd.origin());
+        return words;
+    }
+    std::set<std::uint64_t> settled() {
+        return simd.look([](ScriptedSimd& s) { return s.acknowledged_jobs; });
+    }
+};
+
+/// Words without figures of time.
+std::string timeless(std::string words) {
+    for (std::size_t at = 0; (at = words.find(" s", at)) != std::string::npos; ++at) {
+        std::size_t first = at;
+        while (first > 0 && (std::isdigit(static_cast<unsigned char>(words[first - 1])) != 0 || words[first - 1] == '.')) --first;
+        if (first == at) continue;
+        words.replace(first, at - first, "T");
+        at = first;
+    }
+    return words;
+}
+
+/// A report without what differs from run to run.
+Json timeless(Json report) {
+    for (const char* key : {"seconds", "peak_bytes", "threads", "file", "saved_design", "job", "server", "yarns_sha256"}) report.erase(key);
+    if (report.contains("coarser")) report["coarser"].erase("seconds");
+    for (Json& flip : report.contains("flips") ? report["flips"] : report["none"] = Json::array())
+        for (const char* key : {"flip_seconds", "settle_seconds"}) flip.erase(key);
+    report.erase("none");
+    return report;
+}
+
+}  // namespace
+
+TEST_CASE("a server's run is told as one of this machine") {
+    const std::vector<std::vector<std::string>> wishes{
+        {"--residual", "1e-6"},
+        {"--steps", "3"},
+        {"--fidelity", "draft", "--wraparound"},
+        {"--fidelity", "reference", "--residual", "1e-5"},
+        {"--fidelity", "reference", "--steps", "2"},
+        {"--set", "warp.strain=1.02", "--boundary", "x=relaxing:0.1", "--pin", "1,2", "--field", "sphere:0,0,3,1,0.1", "--whole"},
+        {"--region", "picks:1-5,ends:2-6", "--start-from", "draft"},
+        {"--flip", "1,1", "--save-design"},
+    };
+    for (std::vector<std::string> wish : wishes) {
+        Mill mill;
+        mill.shop.must({"tile", "d.weave", "--x", "3", "--y", "3", "-o", "large.weave"});
+        INFO(Workshop::joined(wish));
+        const bool saves = wish.back() == "--save-design";
+        const auto words = [&](const std::string& place) {
+            std::vector<std::string> all{"simulate", "large.weave", "-o", place + ".yarns"};
+            all.insert(all.end(), wish.begin(), wish.end());
+            if (saves) all.push_back(place + ".weave");
+            return all;
+        };
+        const Ended here = mill.shop.run(words("here")), there = mill.shop.run(mill.on(words("there")));
+        INFO(there.err);
+        CHECK(here.exit <= 1);
+        CHECK(there.exit == here.exit);
+        CHECK(there.complaints() == here.complaints());
+        CHECK(timeless(there.out.substr(there.out.find(','))) == timeless(here.out.substr(here.out.find(','))));
+        const Json of_here = mill.shop.json(words("here"), here.exit), of_there = mill.shop.json(mill.on(words("there")), here.exit);
+        CHECK(canonical_json(timeless(of_there)) == canonical_json(timeless(of_here)));
+        CHECK(of_there.at("job") == 2);
+        CHECK(of_there.at("server") == mill.simd.place().name);
+        CHECK(of_there.at("file") == "there.yarns");
+        CHECK(of_there.at("yarns_sha256") == sha256_hex(mill.shop.get("there.yarns")));
+        const Yarns ours = read_yarns(mill.shop.get("here.yarns")).value(), theirs = read_yarns(mill.shop.get("there.yarns")).value();
+        CHECK((ours.design_sha256 == theirs.design_sha256 && ours.scene_sha256 == theirs.scene_sha256));
+        REQUIRE(ours.yarns.size() == theirs.yarns.size());
+        for (std::size_t k = 0; k < ours.yarns.size(); ++k) CHECK(ours.yarns[k].spline.control == theirs.yarns[k].spline.control);
+        CHECK(mill.settled() == std::set<std::uint64_t>{1, 2});
+        CHECK(mill.shop.has("there.weave") == mill.shop.has("here.weave"));
+        if (mill.shop.has("here.weave")) CHECK(mill.shop.get("there.weave") == mill.shop.get("here.weave"));
+    }
+}
+
+TEST_CASE("what a server cannot do is refused by name before anything is sent") {
+    Mill mill;
+    mill.shop.must({"simulate", "d.weave", "-o", "before.yarns"});
+    const std::vector<std::vector<std::string>> wishes{{"--starts", "3"}, {"--symmetry"}, {"--resume", "before.yarns"}, {"--seed", "1"}, {"--threads", "2"},
+                                                       {"--backend", "cuda"}, {"--backend", "cpu"}};
+    for (const auto& wish : wishes) {
+        std::vector<std::string> words{"simulate", "d.weave", "-o", "d.yarns"};
+        words.insert(words.end(), wish.begin(), wish.end());
+        mill.shop.refused(mill.on(words), 2, {wish.front(), "--on"});
+    }
+    mill.shop.refused(mill.on({"simulate", "d.weave", "--explain"}), 2, {"--on", "--explain"});
+    mill.shop.refused({"simulate", "d.weave", "-o", "x", "--evidence", "e"}, 2, {"--evidence requires --on"});
+    mill.shop.refused({"simulate", "d.weave", "-o", "x", "--on", "http://box:9000"}, 2, {"--on http://box:9000", "within this machine"});
+    mill.shop.refused({"simulate", "d.weave", "-o", "x", "--on", "two words"}, 2, {"--on two words"});
+    mill.shop.refused({"simulate", "d.weave", "-o", "x", "--on", "box", "--fingerprint", "12"}, 2, {"--fingerprint", "64 hexadecimal digits"});
+    mill.shop.refused(mill.on({"simulate", "d.weave", "-o", "x", "--fingerprint", std::string(64, 'a')}), 2, {"--fingerprint", "TLS"});
+    CHECK(mill.simd.look([](ScriptedSimd& s) { return s.connections; }) == 0);
+    // What the plan would refuse is told without a queue.
+    mill.shop.refused(mill.on({"simulate", "d.weave", "-o", "x", "--region", "picks:1-9,ends:1-2"}), 2, {"within 2 picks"});
+    mill.shop.refused(mill.on({"simulate", "d.weave", "-o", "x", "--set", "friction=-1"}), 3, {"d.weave", "friction"});
+    CHECK(mill.simd.look([](ScriptedSimd& s) { return s.count_of<wire::Submit>(); }) == 0);
+    // And so is what the protocol does not take.
+    mill.shop.refused(mill.on({"simulate", "d.weave", "-o", "x", "--residual", "2"}), 2, {"simulation.residual"});
+}
+
+TEST_CASE("broken connections and a restarted server change nothing but the time it takes") {
+    const std::uint16_t code = GENERATE(as<std::uint16_t>{}, 1001, 1011);
+    for (std::size_t at = 0; at < 8; ++at) {
+        INFO("broken with " << code << " at message " << at);
+        Mill mill;
+        mill.simd.mishaps[at + 1] = {code, "", ""};
+        const Ended ended = mill.shop.run(mill.on({"simulate", "d.weave", "-o", "d.yarns"}));
+        INFO(ended.err);
+        CHECK(ended.exit == 0);
+        CHECK(ended.out.find("at rest") != std::string::npos);
+        CHECK(mill.settled() == std::set<std::uint64_t>{1});  // submitted once, whatever was sent twice
+    }
+    Mill mill;
+    mill.simd.holds_jobs = true;
+    Workshop::Running running = mill.shop.start(mill.on({"simulate", "d.weave", "-o", "d.yarns"}));
+    while (mill.simd.look([](ScriptedSimd& s) { return s.count_of<wire::Submit>(); }) == 0) std::this_thread::sleep_for(std::chrono::milliseconds(5));
+    mill.simd.stop();
+    REQUIRE(running.says("trying again"));
+    mill.simd.restart();
+    REQUIRE(running.says("connected again"));
+    REQUIRE(running.says("relaxing on 127.0.0.1"));
+    mill.simd.let_go();
+    const Ended ended = running.finish();
+    INFO(ended.err);
+    CHECK(ended.exit == 0);
+    CHECK_THAT(ended.err, Contains("residual 5.00e-01 (goal 1e-03) after 20 steps, to go some 12 s, so far "));
+    CHECK(read_yarns(mill.shop.get("d.yarns")));
+}
+
+TEST_CASE("a job that waits tells its place and how long, and Ctrl-C takes it out of the queue") {
+    Mill mill;
+    mill.simd.holds_queue = true;
+    Workshop::Running running = mill.shop.start(mill.on({"simulate", "d.weave", "-o", "d.yarns"}));
+    while (mill.simd.look([](ScriptedSimd& s) { return s.count_of<wire::Submit>(); }) == 0) std::this_thread::sleep_for(std::chrono::milliseconds(5));
+    std::this_thread::sleep_for(std::chrono::milliseconds(1100));
+    mill.simd.restart();  // after which it is told again
+    REQUIRE(running.says("place 3 in the queue, begins in some 240 s, so far "));
+    ::kill(running.child, SIGINT);
+    const Ended ended = running.finish();
+    INFO(ended.err);
+    CHECK(ended.exit == 1);
+    CHECK_THAT(ended.err, Contains("again to end at once, and the job goes on") && Contains("cancelled before it began"));
+    CHECK(mill.shop.names() == std::set<std::string>{"d.weave"});
+    CHECK(mill.settled() == std::set<std::uint64_t>{1});
+}
+
+TEST_CASE("Ctrl-C cancels the job and leaves its yarns as they lay, as on this machine") {
+    Mill mill;
+    mill.simd.holds_jobs = true;
+    mill.simd.work = [](const wire::Submit& submit) { return relaxed(submit, 2); };
+    Workshop::Running running = mill.shop.start(mill.on({"simulate", "d.weave", "-o", "d.yarns", "--evidence", "d.evidence", "--json"}));
+    while (mill.simd.look([](ScriptedSimd& s) { return s.count_of<wire::Submit>(); }) == 0) std::this_thread::sleep_for(std::chrono::milliseconds(5));
+    ::kill(running.child, SIGINT);
+    const Ended ended = running.finish();
+    INFO(ended.err);
+    CHECK(ended.exit == 4);  // a cancelled job has no evidence
+    const Json answer = parse_json(ended.out).value();
+    CHECK(answer.at("interrupted") == true);
+    CHECK(answer.at("left_undone").at(0) == "coming to rest");
+    CHECK(answer.at("converged") == false);
+    CHECK(read_yarns(mill.shop.get("d.yarns")));
+    CHECK_FALSE(mill.shop.has("d.evidence"));
+    CHECK(mill.settled() == std::set<std::uint64_t>{1});
+}
+
+TEST_CASE("a token goes to the server and nowhere else") {
+    Mill mill;
+    mill.simd.token = "a-very-secret-token";
+    mill.shop.put("right", "a-very-secret-token\n");
+    mill.shop.put("wrong", "another-secret-token\n");
+    mill.shop.put("none", "no token\n");
+    const std::vector<std::string> words = mill.on({"simulate", "d.weave", "-o", "d.yarns"});
+    const auto with = [&](const std::string& file) {
+        std::vector<std::string> all = words;
+        all.insert(all.end(), {"--token-file", file});
+        return all;
+    };
+    CHECK_THAT(mill.shop.refused(words, 4, {"401"}), !Contains("secret"));
+    CHECK_THAT(mill.shop.refused(with("wrong"), 4, {"401"}), !Contains("secret"));
+    mill.shop.refused(with("none"), 3, {"none: token"});
+    mill.shop.refused(with("missing"), 3, {"missing"});
+    CHECK(mill.shop.run(with("right")).exit == 0);
+    ::setenv("WEAVE_TOKEN", "a-very-secret-token", 1);
+    CHECK(mill.shop.run(words).exit == 0);
+    CHECK(mill.shop.run(with("wrong")).exit == 4);  // the file is meant, where one is named
+    ::unsetenv("WEAVE_TOKEN");
+}
+
+TEST_CASE("a failed job ends with the server's reason and its exit status") {
+    Mill mill;
+    mill.simd.work = [](const wire::Submit&) { return JobResult{system_fault("the worker ran out of memory"), Json::object(), "", {}}; };
+    mill.shop.refused(mill.on({"simulate", "d.weave", "-o", "d.yarns"}), 5, {"d.weave: ", "ran out of memory"});
+    CHECK(mill.settled() == std::set<std::uint64_t>{1});
+}
+
+TEST_CASE("what a server gives is believed only so far as it fits together") {
+    const auto refused = [](const std::string& why, auto change) {
+        INFO(why);
+        Mill mill;
+        mill.simd.work = [&](const wire::Submit& submit) {
+            JobResult result = relaxed(submit);
+            change(result);
+            return result;
+        };
+        const std::string line = mill.shop.refused(mill.on({"simulate", "d.weave", "-o", "d.yarns", "--evidence", "e"}), 3, {why});
+        CHECK_THAT(line, Contains("weave jobs fetch 1 --on http://127.0.0.1"));
+        CHECK(mill.settled().empty());  // it can be looked into
+    };
+    const auto rehash = [](JobResult& result) { result.report["yarns_sha256"] = sha256_hex(result.yarns); };
+    refused("SHA-256", [](JobResult& result) { result.yarns[result.yarns.size() / 2] ^= 1; });
+    refused("not one that this program knows", [](JobResult& result) { result.report.erase("yarns_sha256"); });
+    refused("not one that this program knows", [](JobResult& result) { result.report.erase("ending"); });
+    refused("not one that this program knows", [](JobResult& result) { result.report["residual"] = "small"; });
+    refused("not one that this program knows", [](JobResult& result) { result.report["fidelity"] = "\x1b[31m"; });
+    refused("something else than was asked for", [](JobResult& result) { result.report["flips"] = Json::array({{{"pick", 1}, {"end", 1}, {"done", true}, {"tried", true}, {"flip_seconds", 0}, {"settle_seconds", 0}}}); });
+    refused("", [&](JobResult& result) { result.yarns = "no yarns", rehash(result); });
+    refused("canonical", [](JobResult& result) { result.evidence = R"({"format":"weave-signed-evidence"})"; });
+    refused("another than was told", [](JobResult& result) { *result.evidence += "\n"; });
+    refused("of other yarns", [](JobResult& result) {
+        Json other = result.report;
+        other["yarns_sha256"] = std::string(64, 'a');
+        result.evidence = signed_for(other);
+    });
+    refused("something else than was asked for", [&](JobResult& result) {
+        Yarns yarns = read_yarns(result.yarns).value();
+        yarns.scene_sha256 = std::string(64, 'a');
+        result.yarns = write_yarns(yarns).value(), rehash(result);
+    });
+}
+
+TEST_CASE("what the server signed is written beside, byte by byte") {
+    Mill mill;
+    std::string signed_bytes;
+    mill.simd.work = [&](const wire::Submit& submit) {
+        JobResult result = relaxed(submit);
+        signed_bytes = *result.evidence;
+        return result;
+    };
+    mill.shop.must(mill.on({"simulate", "d.weave", "-o", "d.yarns", "--evidence", "d.evidence"}));
+    CHECK(mill.shop.get("d.evidence") == signed_bytes);
+    mill.simd.work = [](const wire::Submit& submit) {
+        JobResult result = relaxed(submit);
+        result.evidence.reset();
+        return result;
+    };
+    const Ended none = mill.shop.run(mill.on({"simulate", "d.weave", "-o", "e.yarns", "--evidence", "e.evidence"}));
+    CHECK(none.exit == 4);
+    CHECK_THAT(none.err, Contains("no key to sign"));
+    CHECK_THAT(none.out, Contains("e.yarns, at rest"));
+    CHECK((mill.shop.has("e.yarns") && !mill.shop.has("e.evidence")));
+    mill.shop.refused(mill.on({"simulate", "d.weave", "-o", "e.yarns", "--evidence", "d.weave"}), 2, {"d.weave"});
+}
+
+TEST_CASE("jobs are listed, fetched and cancelled") {
+    Mill mill;
+    mill.simd.holds_jobs = true;
+    Workshop::Running running = mill.shop.start(mill.on({"simulate", "d.weave", "-o", "no/such/folder.yarns"}));
+    while (mill.simd.look([](ScriptedSimd& s) { return s.count_of<wire::Submit>(); }) == 0) std::this_thread::sleep_for(std::chrono::milliseconds(5));
+    CHECK(mill.shop.must(mill.on({"jobs"})).out == "1  cloth: running, residual 5.00e-01 after 20 steps, to go some 12 s\n");
+    const Json list = mill.shop.json(mill.on({"jobs"}));
+    CHECK((list.at("jobs").at(0).at("job") == 1 && list.at("jobs").at(0).at("phase") == "running" && list.at("server") == mill.simd.place().name));
+    mill.shop.refused(mill.on({"jobs", "fetch", "1", "-o", "d.yarns"}), 4, {"job 1", "has not ended yet"});
+    mill.shop.refused(mill.on({"jobs", "fetch", "7", "-o", "d.yarns"}), 4, {"job 7", "no such job"});
+    CHECK_THAT(mill.shop.must(mill.on({"jobs", "cancel", "1"})).out, Contains("job 1 is cancelled"));
+    mill.shop.refused(mill.on({"jobs", "cancel", "9"}), 2, {"job 9", "there is no such job"});
+    const Ended ended = running.finish();  // which could not write, so the job is kept
+    CHECK(ended.exit == 5);
+    CHECK_THAT(ended.err, Contains("weave jobs fetch 1 --on "));
+    const Json fetched = mill.shop.json(mill.on({"jobs", "fetch", "1", "-o", "d.yarns"}));
+    CHECK((fetched.at("job") == 1 && fetched.at("converged") == true && fetched.at("file") == "d.yarns"));
+    CHECK(fetched.at("yarns_sha256") == sha256_hex(mill.shop.get("d.yarns")));
+    CHECK(mill.settled() == std::set<std::uint64_t>{1});
+    CHECK(mill.shop.must(mill.on({"jobs"})).out == "no jobs\n");
+    mill.shop.refused({"jobs"}, 2, {"--on HOST"});
+}

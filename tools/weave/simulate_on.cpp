@@ -1,0 +1,176 @@
+#include "simulate_on.hpp"
+
+#include "interrupt.hpp"
+#include "remote_job.hpp"
+#include "simulate_ending.hpp"
+#include "teller.hpp"
+
+#include <weave/core/file.hpp>
+#include <weave/design/document.hpp>
+
+#include <chrono>
+#include <utility>
+
+namespace weave::program {
+
+namespace {
+
+using Clock = std::chrono::steady_clock;
+using namespace std::chrono_literals;
+
+/// Without a word of the job for so long, the server is asked whether it still has it.
+constexpr auto longest_silence = 30s;
+/// How long a person who ends a run waits for a server that is away.
+constexpr auto cancel_patience = 15s;
+
+/// The run as a server takes it: its design with the scene of this run, and how it is simulated.
+Result<wire::Submit> order_of(const SimulateTask& task, const SimulateWish& wish) {
+    wire::Submit submit{wire::new_request_id(), write_document(task.design), {}, task.flips};
+    submit.simulation.plan = task.request;
+    submit.simulation.solver = task.options.solver;
+    submit.simulation.residual = task.options.residual;
+    submit.simulation.most_steps = task.options.most_iterations;
+    submit.simulation.most_seconds = wish.seconds;
+    if (const std::string first = first_points(wish); !first.empty()) {
+        WEAVE_TRY(submit.simulation.start_from, sim::parse_fidelity(first));
+    }
+    return submit;
+}
+
+/// An error that leaves the job on the server, with the way to it.
+Error kept(Error error, std::uint64_t job, const SimulateWish& wish) {
+    error.message += "; the job is kept: weave jobs fetch " + std::to_string(job) + " --on " + wish.server.host;
+    return error;
+}
+
+/// Follows one job to its end.
+class JobWatch {
+  public:
+    JobWatch(wire::Follower& follower, std::uint64_t job, Teller& teller) : m_follower(follower), m_job(job), m_teller(teller) {}
+
+    Result<wire::JobEnded> to_its_end() {
+        while (true) {
+            if (interrupted() && !m_cancelled) {
+                WEAVE_CHECK_OK(cancel());
+            }
+            WEAVE_TRY(auto received, m_follower.receive(200ms));
+            tell_trouble();
+            auto* message = received ? std::get_if<wire::ServerMessage>(&*received) : nullptr;
+            if (message != nullptr && is_end(*message)) return std::get<wire::JobEnded>(std::move(*message));
+            if (message != nullptr) hear(*message);
+            if (Clock::now() - m_heard > longest_silence) {
+                WEAVE_CHECK_OK(look());
+            }
+        }
+    }
+
+  private:
+    [[nodiscard]] bool is_end(const wire::ServerMessage& message) const {
+        const auto* ended = std::get_if<wire::JobEnded>(&message);
+        return ended != nullptr && ended->job == m_job;
+    }
+
+    void hear(const wire::ServerMessage& message) {
+        const auto* progress = std::get_if<wire::JobProgress>(&message);
+        if (progress != nullptr && progress->state.job == m_job) hear(progress->state);
+    }
+    void hear(const wire::JobState& state) {
+        m_heard = Clock::now();
+        if (!m_cancelled) m_teller(state);
+    }
+
+    Status cancel() {
+        m_cancelled = true;
+        const auto answer = m_follower.ask(wire::Cancel{wire::new_request_id(), m_job}, cancel_patience);
+        return answer ? Status() : Status(answer.error());  // refused: it has just ended
+    }
+
+    /// Another client of the same person may have dealt with the end of the job.
+    Status look() {
+        m_heard = Clock::now();
+        auto list = wire::answer_of<wire::JobList>(m_follower.ask(wire::ListJobs{wire::new_request_id()}, answer_patience));
+        if (!list) return m_follower.trouble() ? Status() : Status(std::move(list).error());
+        for (const wire::JobState& state : list->jobs) {
+            if (state.job == m_job) return hear(state), Status();
+        }
+        return Error{ErrorCode::refused, "the server has forgotten it: its end was dealt with elsewhere", name_of(m_job)};
+    }
+
+    void tell_trouble() {
+        const bool troubled = m_follower.trouble().has_value();
+        if (troubled && !m_troubled) m_teller.note(m_follower.trouble()->text() + "; trying again");
+        if (!troubled && m_troubled) m_teller.note(m_follower.place().name + ": connected again");
+        m_troubled = troubled;
+    }
+
+    wire::Follower& m_follower;
+    std::uint64_t m_job;
+    Teller& m_teller;
+    bool m_cancelled = false, m_troubled = false;
+    Clock::time_point m_heard = Clock::now();
+};
+
+/// Whether these are yarns of what was asked for.
+Status check_yarns(const RemoteYarns& fetched, const wire::JobEnded& ended, const SimulateTask& task) {
+    const Yarns& yarns = fetched.yarns;
+    const bool same = yarns.scene_sha256 == scene_sha256(task.design) && (!task.flips.empty() || yarns.design_sha256 == design_sha256(task.design));
+    const bool all_flips = ended.report.value("flips", Json::array()).size() == task.flips.size();
+    if (!same || !all_flips) return bad_input("the server gives yarns of something else than was asked for", name_of(ended.job));
+    return {};
+}
+
+/// The files that a job leaves; the job can be fetched again if it fails.
+Status keep_files(wire::Follower& follower, const wire::JobEnded& ended, const SimulateTask& task, const SimulateWish& wish) {
+    WEAVE_TRY(const RemoteYarns fetched, fetch_yarns(follower, ended));
+    WEAVE_CHECK_OK(check_yarns(fetched, ended, task));
+    WEAVE_CHECK_OK(write_file(wish.out, fetched.bytes));
+    if (wish.evidence.empty() || !ended.evidence) return {};
+    return fetch_evidence(follower, ended, wish.evidence);
+}
+
+/// The report as a run on this machine tells it.
+Json report_of(const wire::JobEnded& ended, const SimulateTask& task) {
+    Json report = ended.report;
+    const std::vector<std::string> undone = left_undone(report, {task.flips.size(), 0, false});
+    if (!undone.empty()) report["left_undone"] = undone;
+    if (!undone.empty() && ended.phase == wire::JobPhase::cancelled) report["interrupted"] = true;
+    return report;
+}
+
+void settle(CommandOutcome& outcome, wire::Follower& follower, std::uint64_t job) {
+    const Status settled = follower.acknowledge_job(job, answer_patience);
+    if (!settled) outcome.note(settled.error().text() + "; " + name_of(job) + " is still kept there");
+    follower.close();
+}
+
+}  // namespace
+
+Status simulate_on(CommandOutcome& outcome, wire::Follower& follower, const Design& design, const SimulateTask& task, const SimulateWish& wish,
+                   double goal) {
+    const HeldInterrupt held("the job is cancelled, and its yarns are fetched as they lie; again to end at once, and the job goes on");
+    Teller teller(goal);
+    teller.turn_to(" on " + follower.place().name);
+    WEAVE_TRY(const wire::Submit order, order_of(task, wish));
+    WEAVE_TRY(const wire::Accepted accepted, wire::answer_of<wire::Accepted>(follower.ask(order, answer_patience)));
+    if (!accepted.job) return bad_input("the server gives the job no number", follower.place().name);
+    const std::uint64_t job = *accepted.job;
+    const Result<wire::JobEnded> ended = JobWatch(follower, job, teller).to_its_end();
+    teller.end();
+    if (!ended) return kept(ended.error(), job, wish);
+    if (!has_yarns(*ended)) {
+        settle(outcome, follower, job);
+        return reason_of(*ended).in(wish.file);
+    }
+    if (Status files = keep_files(follower, *ended, task, wish); !files) return kept(std::move(files).error(), job, wish);
+    const Json report = report_of(*ended, task);
+    Json answer = report;
+    answer["file"] = wish.out;
+    answer["job"] = job;
+    answer["server"] = follower.place().name;
+    WEAVE_CHECK_OK(tell_ending(outcome, report, std::move(answer), {design, task.flips, wish.save_design}));
+    settle(outcome, follower, job);
+    if (!wish.evidence.empty() && !ended->evidence) return fetch_evidence(follower, *ended, wish.evidence);  // says why there is none
+    return {};
+}
+
+}  // namespace weave::program
