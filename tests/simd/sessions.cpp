@@ -68,7 +68,7 @@ TEST_CASE("a session is seen to relax, takes changes, and ends with a report") {
 
 TEST_CASE("a session goes so many steps, pauses, and goes on as one that never paused") {
     const Box box;
-    Followed whole(box, document_of("layer-to-layer"), at(sim::Fidelity::standard)), pieces(box, document_of("satin-5"), at(sim::Fidelity::standard));
+    Followed whole(box, document_of("layer-to-layer"), at(sim::Fidelity::standard)), pieces(box, document_of("layer-to-layer"), at(sim::Fidelity::standard));
     whole.run();
     REQUIRE(whole.until_phase(wire::Phase::at_rest));
     for (const std::uint64_t steps : {1, 3, 10}) {

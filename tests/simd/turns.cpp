@@ -32,8 +32,7 @@ class Machine {
             for (const Turns::Id id : std::exchange(asked, {})) {
                 if (stuck[id]) continue;
                 computing.erase(id);
-                turns.over(id, now);
-                turns.want(id, now);
+                turns.again(id, now);
             }
             std::size_t in_use = 0;
             for (const auto& [id, threads] : computing) in_use += stuck[id] ? 0 : threads;
