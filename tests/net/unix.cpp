@@ -302,8 +302,9 @@ TEST_CASE("places that no socket can have are refused in words") {
     const Error long_one = refused_start(on("/tmp/" + std::string(103, 'a')));
     REQUIRE(long_one.code == ErrorCode::usage);
     REQUIRE(long_one.message == "the path of a socket may have 107 bytes, this one has 108");
-    REQUIRE(HttpClient(client_at("/tmp/" + std::string(103, 'a'))).send({"GET", "/", {}, {}}).error().message ==
-            long_one.message);
+    REQUIRE(
+        HttpClient(client_at("/tmp/" + std::string(103, 'a'))).send({"GET", "/", {}, {}}).error().message ==
+        long_one.message);
     REQUIRE(refused_start(on(std::string("/tmp/a\0b", 8))).code == ErrorCode::usage);
     REQUIRE(refused_start(on(folder.path / "none" / "s")).code == ErrorCode::system);
     REQUIRE(refused_start(on({})).code == ErrorCode::usage);  // neither TCP nor a socket

@@ -1,15 +1,33 @@
-#include <cstring>
+#include <weave/sql/database.hpp>
+
 #include <filesystem>
-#include <loomlink/keys/hex.hpp>
-#include <loomlink/store/database.hpp>
 #include <unistd.h>
 
-namespace weave::loomlink::sql {
+namespace weave::sql {
 
-std::string Row::bytes(int column) const {
+namespace {
+
+std::string in_hex(std::string_view bytes) {
+    constexpr std::string_view digits = "0123456789abcdef";
+    std::string text;
+    for (const char c : bytes) {
+        const auto byte = static_cast<unsigned char>(c);
+        text += digits[byte >> 4];
+        text += digits[byte & 15];
+    }
+    return text;
+}
+
+}  // namespace
+
+std::string_view Row::view(int column) const {
     const auto* data = static_cast<const char*>(sqlite3_column_blob(m_statement, column));
     const int size = sqlite3_column_bytes(m_statement, column);
-    return data == nullptr ? std::string() : std::string(data, static_cast<std::size_t>(size));
+    return data == nullptr ? std::string_view() : std::string_view(data, static_cast<std::size_t>(size));
+}
+
+std::string Row::bytes(int column) const {
+    return std::string(view(column));
 }
 
 Json Row::json(int column) const {
@@ -21,19 +39,10 @@ Json Row::json(int column) const {
         case SQLITE_TEXT:
             return bytes(column);
         case SQLITE_BLOB:
-            return to_hex({static_cast<const unsigned char*>(sqlite3_column_blob(m_statement, column)),
-                           static_cast<std::size_t>(sqlite3_column_bytes(m_statement, column))});
+            return in_hex(view(column));
         default:
             return nullptr;
     }
-}
-
-Hash Row::hash(int column) const {
-    Hash hash{};
-    const void* data = sqlite3_column_blob(m_statement, column);
-    if (data != nullptr && sqlite3_column_bytes(m_statement, column) == static_cast<int>(hash.size()))
-        std::memcpy(hash.data(), data, hash.size());
-    return hash;
 }
 
 namespace {
@@ -126,4 +135,4 @@ Error Connection::trouble(int code) const {
     }
 }
 
-}  // namespace weave::loomlink::sql
+}  // namespace weave::sql

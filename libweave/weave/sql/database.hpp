@@ -3,8 +3,9 @@
 #include <weave/core/json.hpp>
 #include <weave/core/result.hpp>
 
+#include <algorithm>
+#include <array>
 #include <cstdint>
-#include <loomlink/audit/hash.hpp>
 #include <map>
 #include <memory>
 #include <optional>
@@ -14,9 +15,9 @@
 #include <utility>
 #include <vector>
 
-namespace weave::loomlink::sql {
+namespace weave::sql {
 
-/// Bytes to be bound as a BLOB; a plain string is bound as TEXT.
+/// Bytes to be bound as a BLOB, as an array of bytes is; a plain string is bound as TEXT.
 struct Blob {
     std::string_view bytes;
 };
@@ -35,16 +36,25 @@ class Row {
     [[nodiscard]] Json json(int column) const;
     /// TEXT or BLOB as it is.
     [[nodiscard]] std::string bytes(int column) const;
-    /// The 32 bytes of a hash; zeros where the column holds anything else, which verify() tells.
-    [[nodiscard]] Hash hash(int column) const;
+    /// A BLOB of a fixed size, such as a hash: `fixed<std::array<unsigned char, 32>>(0)`; zeros where the
+    /// column holds anything else.
+    template <class Array>
+    [[nodiscard]] Array fixed(int column) const {
+        Array value{};
+        const std::string_view found = view(column);
+        if (found.size() == value.size()) std::copy(found.begin(), found.end(), value.begin());
+        return value;
+    }
 
   private:
+    [[nodiscard]] std::string_view view(int column) const;
+
     sqlite3_stmt* m_statement;
 };
 
 enum class Access : std::uint8_t { create, write, read };
 
-/// One connection with the settings of the store, and its prepared statements. For one thread at a time.
+/// One connection with the settings of a store, and its prepared statements. For one thread at a time.
 class Connection {
   public:
     /// Opens a database; `create` makes it where it is missing, `write` and `read` refuse what is missing. A
@@ -146,7 +156,8 @@ class Connection {
         return sqlite3_bind_blob64(statement, column, value.bytes.empty() ? "" : value.bytes.data(),
                                    value.bytes.size(), SQLITE_STATIC);
     }
-    static int bind(sqlite3_stmt* statement, int column, const Hash& value) {
+    template <std::size_t Size>
+    static int bind(sqlite3_stmt* statement, int column, const std::array<unsigned char, Size>& value) {
         return sqlite3_bind_blob64(statement, column, value.data(), value.size(), SQLITE_STATIC);
     }
     template <class Value>
@@ -159,4 +170,4 @@ class Connection {
     std::map<const char*, sqlite3_stmt*> m_statements;  // by the address of their text, which is a literal
 };
 
-}  // namespace weave::loomlink::sql
+}  // namespace weave::sql
