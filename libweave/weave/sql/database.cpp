@@ -56,7 +56,8 @@ std::string why_not_opened(const std::string& path) {
 
 }  // namespace
 
-Result<std::unique_ptr<Connection>> Connection::open(const std::string& path, Access access) {
+Result<std::unique_ptr<Connection>> Connection::open(const std::string& path, Access access,
+                                                     std::chrono::milliseconds patience) {
     const int flags =
         SQLITE_OPEN_NOMUTEX | SQLITE_OPEN_READWRITE | (access == Access::create ? SQLITE_OPEN_CREATE : 0);
     sqlite3* handle = nullptr;
@@ -64,13 +65,13 @@ Result<std::unique_ptr<Connection>> Connection::open(const std::string& path, Ac
     if (handle == nullptr) return system_fault("there is no memory to open the store", path);
     std::unique_ptr<Connection> connection(new Connection(handle, path));
     if (code != SQLITE_OK) return connection->trouble(code);
-    WEAVE_CHECK_OK(connection->configure(access));
+    WEAVE_CHECK_OK(connection->configure(access, patience));
     return connection;
 }
 
-Status Connection::configure(Access access) {
+Status Connection::configure(Access access, std::chrono::milliseconds patience) {
     sqlite3_extended_result_codes(m_handle, 1);
-    sqlite3_busy_timeout(m_handle, 10000);
+    sqlite3_busy_timeout(m_handle, static_cast<int>(patience.count()));
     sqlite3_db_config(m_handle, SQLITE_DBCONFIG_DEFENSIVE, 1, nullptr);
     sqlite3_db_config(m_handle, SQLITE_DBCONFIG_TRUSTED_SCHEMA, 0, nullptr);
     sqlite3_db_config(m_handle, SQLITE_DBCONFIG_DQS_DML, 0, nullptr);

@@ -5,6 +5,7 @@
 
 #include <algorithm>
 #include <array>
+#include <chrono>
 #include <cstdint>
 #include <map>
 #include <memory>
@@ -59,8 +60,10 @@ class Connection {
   public:
     /// Opens a database; `create` makes it where it is missing, `write` and `read` refuse what is missing. A
     /// database is durable by WAL and synchronous=FULL: with NORMAL a power loss takes acknowledged commits
-    /// back.
-    static Result<std::unique_ptr<Connection>> open(const std::string& path, Access access);
+    /// back. Each statement waits `patience` for other connections that are in its way.
+    static Result<std::unique_ptr<Connection>> open(
+        const std::string& path, Access access,
+        std::chrono::milliseconds patience = std::chrono::seconds(10));
     ~Connection();
     Connection(const Connection&) = delete;
     Connection& operator=(const Connection&) = delete;
@@ -140,7 +143,7 @@ class Connection {
         }
     };
     Connection(sqlite3* handle, std::string path) : m_handle(handle), m_path(std::move(path)) {}
-    Status configure(Access access);
+    Status configure(Access access, std::chrono::milliseconds patience);
     Result<sqlite3_stmt*> prepared(const char* text);
 
     static int bind(sqlite3_stmt* statement, int column, std::int64_t value) {
