@@ -9,7 +9,7 @@ namespace weave::simd {
 
 namespace {
 
-/// Faults of the worker without a checkpoint between them after which a job has failed.
+/// Faults of the worker, none of which got further than the one before, after which a job has failed.
 constexpr std::size_t most_faults = 3;
 constexpr const char* phase_names[]{"waiting", "running", "done", "failed", "cancelled"};
 
@@ -123,9 +123,6 @@ void Job::said(const std::string& what, const Json& message) {
         if (!m_pace) m_pace.emplace(goal);
         m_pace->add(std::chrono::duration<double>(Clock::now() - m_began).count(), m_residual);
     } else if (what == "checkpoint" && !message.contains("error")) {
-        const std::uint64_t step = message.at("step");
-        if (m_checkpoint_step != step) m_faults = 0;
-        m_checkpoint_step = step;
         m_around.store.job_progress(number(), m_step, m_residual);
     } else if (what == "checkpoint") {
         log(LogLevel::warning, "job " + std::to_string(number()) + ": " + error_from(message.at("error")).text());
@@ -157,8 +154,10 @@ void Job::ended(const WorkerEnd& end) {
     log(LogLevel::warning, "job " + std::to_string(number()) + ": " + why.text());
     m_phase = wire::JobPhase::waiting;
     if (end.is_final) return this->end(wire::JobPhase::failed, why, Json::object(), {});
-    if (++m_faults > most_faults)
-        this->end(wire::JobPhase::failed, Error{why.code, why.message + ", " + std::to_string(m_faults) + " times in a row since its last checkpoint", why.where},
+    m_faults = m_step > m_furthest ? 1 : m_faults + 1;
+    m_furthest = std::max(m_furthest, m_step);
+    if (m_faults > most_faults)
+        this->end(wire::JobPhase::failed, Error{why.code, why.message + ", " + std::to_string(m_faults) + " times in a row without getting further", why.where},
                   Json::object(), {});
 }
 

@@ -72,11 +72,10 @@ class Job final : public Task {
     wire::JobPhase m_phase = wire::JobPhase::waiting;
     std::optional<Crew::Id> m_worker;
     std::size_t m_points = 0, m_faults = 0;
-    std::uint64_t m_step = 0;
+    std::uint64_t m_step = 0, m_furthest = 0;
     double m_residual = 0;
     std::optional<sim::Pace> m_pace;
     Clock::time_point m_began{};
-    std::optional<std::uint64_t> m_checkpoint_step;
     bool m_is_cancelled = false, m_is_put_away = false, m_is_done = false, m_is_saved = false;
     Json m_report = Json::object();
     std::optional<Error> m_error;

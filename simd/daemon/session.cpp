@@ -219,7 +219,6 @@ void Session::heard_checkpoint(const Json& message) {
     const bool failed = message.contains("error");
     const std::uint64_t step = message.at("step");
     if (!failed) {
-        if (step > m_checkpoint_step) m_faults = 0;
         m_checkpoint_step = step;
     } else {
         log(LogLevel::warning, "session " + std::to_string(m_number) + ": " + error_from(message.at("error")).text());

@@ -132,7 +132,8 @@ class Session final : public Task {
 
     bool m_takes_up = false, m_is_recovering = false, m_is_closing = false, m_is_put_away = false, m_has_ended = false, m_is_over = false;
     Clock::time_point m_ended_at{};
-    std::size_t m_faults = 0;  ///< since the last checkpoint
+    std::size_t m_faults = 0;     ///< in a row, none of which got further
+    std::uint64_t m_furthest = 0;  ///< step that a worker had reached when it ended
     std::vector<Unsaved> m_unsaved;  ///< events that the disk did not take yet
     std::uint64_t m_last_id = 0;
     std::map<std::uint64_t, std::pair<ClientPtr, std::string>> m_checkpoint_requests;

@@ -12,7 +12,7 @@ namespace {
 
 constexpr std::uint64_t most_unacknowledged = 10'000;
 constexpr std::size_t events_at_once = 1000;
-/// Faults of the worker without a checkpoint between them after which a session is given up.
+/// Faults of the worker, none of which got further than the one before, after which a session is given up.
 constexpr std::size_t most_faults = 3;
 
 Error no_disk(const Error& error) {
@@ -255,11 +255,12 @@ void Session::ended(const WorkerEnd& end) {
     if (!is_accepted()) return refuse_creation(why, {});
     fail_waiting(why);
     if (m_is_closing) return this->end(wire::Why::closed, m_step, {}, Json::object());
-    ++m_faults;
+    m_faults = m_step > m_furthest ? 1 : m_faults + 1;
+    m_furthest = std::max(m_furthest, m_step);
     log(LogLevel::warning, "session " + std::to_string(m_number) + ": " + why.text());
     if (!end.is_final && m_faults <= most_faults) return take_up();
     this->end(wire::Why::failed, m_step,
-              end.is_final ? why : Error{why.code, why.message + ", " + std::to_string(m_faults) + " times in a row since its last checkpoint", why.where},
+              end.is_final ? why : Error{why.code, why.message + ", " + std::to_string(m_faults) + " times in a row without getting further", why.where},
               Json::object());
 }
 
