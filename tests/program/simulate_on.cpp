@@ -25,7 +25,7 @@ using weave::testing::ScriptedSimd;
 namespace {
 
 std::string signed_for(const Json& report) {
-    return wire::write_evidence(wire::sign_evidence(KeyPair::generate(), "mill", canonical_json(report), std::chrono::system_clock::now()).value());
+    return wire::write_evidence(wire::sign_evidence(KeyPair::generate(), "mill", canonical_json(report), std::chrono::floor<std::chrono::milliseconds>(std::chrono::system_clock::now())).value());
 }
 
 /// Relaxes as a server does; `steps` (0: no limit) ends it as a cancelled job is.
@@ -279,7 +279,7 @@ TEST_CASE("what a server gives is believed only so far as it fits together") {
     refused("not one that this program knows", [](JobResult& result) { result.report["fidelity"] = "\x1b[31m"; });
     refused("something else than was asked for", [](JobResult& result) { result.report["flips"] = Json::array({{{"pick", 1}, {"end", 1}, {"done", true}, {"tried", true}, {"flip_seconds", 0}, {"settle_seconds", 0}}}); });
     refused("", [&](JobResult& result) { result.yarns = "no yarns", rehash(result); });
-    refused("canonical", [](JobResult& result) { result.evidence = R"({"format":"weave-signed-evidence"})"; });
+    refused("version: is missing", [](JobResult& result) { result.evidence = R"({"format":"weave-signed-evidence"})"; });
     refused("another than was told", [](JobResult& result) { *result.evidence += "\n"; });
     refused("of other yarns", [](JobResult& result) {
         Json other = result.report;

@@ -9,6 +9,7 @@
 #include <weave/design/document.hpp>
 
 #include <chrono>
+#include <optional>
 #include <utility>
 
 namespace weave::program {
@@ -123,9 +124,12 @@ Status check_yarns(const RemoteYarns& fetched, const wire::JobEnded& ended, cons
 Status keep_files(wire::Follower& follower, const wire::JobEnded& ended, const SimulateTask& task, const SimulateWish& wish) {
     WEAVE_TRY(const RemoteYarns fetched, fetch_yarns(follower, ended));
     WEAVE_CHECK_OK(check_yarns(fetched, ended, task));
+    std::optional<std::string> evidence;
+    if (!wish.evidence.empty() && ended.evidence) {
+        WEAVE_TRY(evidence, fetch_evidence(follower, ended));
+    }
     WEAVE_CHECK_OK(write_file(wish.out, fetched.bytes));
-    if (wish.evidence.empty() || !ended.evidence) return {};
-    return fetch_evidence(follower, ended, wish.evidence);
+    return evidence ? write_file(wish.evidence, *evidence) : Status();
 }
 
 /// The report as a run on this machine tells it.
@@ -169,8 +173,8 @@ Status simulate_on(CommandOutcome& outcome, wire::Follower& follower, const Desi
     answer["server"] = follower.place().name;
     WEAVE_CHECK_OK(tell_ending(outcome, report, std::move(answer), {design, task.flips, wish.save_design}));
     settle(outcome, follower, job);
-    if (!wish.evidence.empty() && !ended->evidence) return fetch_evidence(follower, *ended, wish.evidence);  // says why there is none
-    return {};
+    if (wish.evidence.empty() || ended->evidence) return {};
+    return fetch_evidence(follower, *ended).error();  // why there is none
 }
 
 }  // namespace weave::program
