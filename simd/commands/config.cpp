@@ -71,7 +71,7 @@ Result<ServeConfig> parse_config(std::string_view text) {
     config.sessions_per_person = count_of(reader, "sessions_per_person", 1, 1000, config.sessions_per_person);
     config.jobs_at_once = count_of(reader, "jobs_at_once", 1, 1000, config.jobs_at_once);
     config.jobs_per_person = count_of(reader, "jobs_per_person", 1, 10000, config.jobs_per_person);
-    config.expire_minutes = reader.integer("expire_minutes", 1, week, config.expire_minutes);
+    config.expire_seconds = reader.integer("expire_seconds", 1, week, config.expire_seconds);
     config.stall_seconds = reader.integer("stall_seconds", 1, week, config.stall_seconds);
     config.site = reader.text("site", std::string(), 200);
     config.access_keys = keys_of(reader);

@@ -28,7 +28,7 @@ struct ServeConfig {
     std::size_t sessions_per_person = 16;  ///< `sessions_per_person`
     std::size_t jobs_at_once = 2;        ///< `jobs_at_once`
     std::size_t jobs_per_person = 1000;  ///< `jobs_per_person` that are not acknowledged
-    std::int64_t expire_minutes = 1440;  ///< `expire_minutes`: a session to which nobody is attached for so long is ended
+    std::int64_t expire_seconds = 86400;  ///< `expire_seconds`: a session to which nobody is attached for so long is ended
     std::int64_t stall_seconds = 300;    ///< `stall_seconds`: a worker that does not answer for so long is ended
     std::string site;                    ///< `site`: name of the loomlink whose tokens count
     std::vector<PublicKey> access_keys;  ///< `access_keys`: its public keys for tokens, in hexadecimal

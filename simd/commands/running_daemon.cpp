@@ -82,7 +82,7 @@ DaemonSettings settings_of(const DaemonFolder& folder, const ServeConfig& config
     settings.sessions_per_person = config.sessions_per_person;
     settings.jobs_at_once = config.jobs_at_once;
     settings.jobs_per_person = config.jobs_per_person;
-    settings.expire = std::chrono::minutes(config.expire_minutes);
+    settings.expire = std::chrono::seconds(config.expire_seconds);
     return settings;
 }
 

@@ -72,7 +72,8 @@ void Crew::heard(Id id, LinkMessage message) {
 void Crew::obey(Id id, Member& member, const Json& message) {
     const std::string what = message.at("say");
     if (what == "turn") {
-        m_turns.want(id, Clock::now());
+        if (message.at("again") == true) m_turns.again(id, Clock::now());
+        else m_turns.want(id, Clock::now());
     } else if (what == "turn_over") {
         m_turns.over(id, Clock::now());
     } else if (what == "planned") {

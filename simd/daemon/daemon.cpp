@@ -11,10 +11,6 @@ namespace {
 
 constexpr std::chrono::milliseconds tick_time{10};
 
-std::int64_t utc_seconds() {
-    return std::chrono::duration_cast<std::chrono::seconds>(std::chrono::system_clock::now().time_since_epoch()).count();
-}
-
 Error none_such(const char* what, std::uint64_t number) {
     return {ErrorCode::refused, "there is no such " + std::string(what), std::string(what) + " " + std::to_string(number)};
 }
@@ -62,7 +58,7 @@ Status Daemon::take_up() {
 }
 
 Session::Surroundings Daemon::around_session() {
-    return {*m_store, m_crew, m_settings.folder / "sessions", utc_seconds};
+    return {*m_store, m_crew, m_settings.folder / "sessions"};
 }
 
 Job::Surroundings Daemon::around_job() {

@@ -93,7 +93,6 @@ Status Session::become_accepted() {
         client->tell(net::make_bytes(text(m_number)));
     }
     m_creators.clear();
-    m_seen = m_around.utc_s();
     return {};
 }
 
@@ -148,7 +147,7 @@ void Session::end(wire::Why why, std::uint64_t step, std::optional<Error> error,
 
 Status Session::save_state() {
     return m_around.store.change_session(
-        m_number, {std::string(m_runs ? "running" : "paused"), m_step, m_pause_at, m_frames_promised, m_layout, m_checkpoint_step, m_seen});
+        m_number, {std::string(m_runs ? "running" : "paused"), m_step, m_pause_at, m_frames_promised, m_layout, m_checkpoint_step});
 }
 
 void Session::acknowledge(std::uint64_t seq) {

@@ -29,8 +29,7 @@ class Session final : public Task {
     struct Surroundings {
         Store& store;
         Crew& crew;
-        std::filesystem::path folder;         ///< of this session
-        std::function<std::int64_t()> utc_s;  ///< now
+        std::filesystem::path folder;  ///< of this session
     };
 
     /// One that the store does not know yet: it becomes a session once its worker has planned it and there is room.
@@ -127,7 +126,7 @@ class Session final : public Task {
     std::size_t m_points = 0, m_repeats = 1;
     net::Bytes m_newest;
     std::uint64_t m_newest_number = 0;
-    std::int64_t m_seen = 0;
+    Clock::time_point m_seen = Clock::now();  ///< when somebody was attached last
 
     bool m_takes_up = false, m_is_recovering = false, m_is_closing = false, m_is_put_away = false, m_has_ended = false, m_is_over = false;
     Clock::time_point m_ended_at{};

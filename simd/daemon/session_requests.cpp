@@ -25,7 +25,7 @@ Session::Session(Surroundings around, const StoredSession& stored, std::vector<J
     : m_around(std::move(around)), m_person(stored.person), m_request(stored.request), m_title(stored.title), m_document(stored.document),
       m_number(stored.number), m_changes(std::move(changes)), m_seq(stored.seq), m_frame(stored.state.frame), m_frames_promised(stored.state.frame),
       m_layout(stored.state.layout), m_step(stored.state.step), m_runs(stored.state.phase == "running"), m_pause_at(stored.state.pause_at),
-      m_checkpoint_step(stored.state.checkpoint_step), m_seen(stored.state.seen), m_takes_up(true), m_has_ended(stored.has_ended) {
+      m_checkpoint_step(stored.state.checkpoint_step), m_takes_up(true), m_has_ended(stored.has_ended) {
     m_around.folder /= std::to_string(m_number);
     m_layout_sha256 = stored.layout_sha256;
     if (const auto told = wire::read_server_message(stored.phase_event)) {
@@ -102,8 +102,7 @@ void Session::attach(const ClientPtr& client, const wire::Attach& attach) {
 void Session::leave(const ClientPtr& client) {
     std::erase(m_creators, client);
     if (std::erase(m_clients, client) == 0) return;
-    m_seen = m_around.utc_s();
-    static_cast<void>(save_state());  // at worst it expires a little sooner
+    m_seen = Clock::now();
     tell_rates();
 }
 
@@ -255,7 +254,7 @@ void Session::tick(Clock::time_point now, std::chrono::seconds expire) {
     if (m_has_ended && !m_clients.empty() && now - m_ended_at > to_take_the_end_in) say_goodbye();
     if (!is_accepted() || m_has_ended) return;
     if (!m_worker && !m_is_put_away && m_around.crew.room().left() >= expected_bytes(m_points)) take_up();
-    if (m_clients.empty() && m_around.utc_s() - m_seen > expire.count()) end(wire::Why::expired, m_step, {}, Json::object());
+    if (m_clients.empty() && now - m_seen > expire) end(wire::Why::expired, m_step, {}, Json::object());
 }
 
 }  // namespace weave::simd

@@ -23,13 +23,16 @@ void Turns::add(Id id, const std::string& person, bool is_job) {
 void Turns::want(Id id, Clock::time_point now) {
     const auto found = m_workers.find(id);
     if (found == m_workers.end() || found->second.threads > 0 || found->second.wants) return;
-    catch_up(found->second);
+    catch_up(found->second, now);
     found->second.wants = true;
     hand_out(now);
 }
 
 /// People, and the work of one, begin where the others are that have had least.
-void Turns::catch_up(Worker& worker) {
+void Turns::catch_up(Worker& worker, Clock::time_point now) {
+    for (auto& [id, other] : m_workers) {
+        if (other.threads > 0) charge(other, now);
+    }
     double least_person = -1, least_share = -1;
     for (const auto& [id, other] : m_workers) {
         if (&other == &worker || (!other.wants && other.threads == 0)) continue;
@@ -44,20 +47,31 @@ void Turns::catch_up(Worker& worker) {
 }
 
 void Turns::charge(Worker& worker, Clock::time_point now) {
-    const double had = seconds(now - worker.since) * static_cast<double>(worker.threads);
-    worker.since = now;
+    const double had = seconds(now - worker.charged) * static_cast<double>(worker.threads);
+    worker.charged = now;
     worker.spent += had;
     worker.share += had / (worker.is_job ? job_weight : session_weight);
     m_people[worker.person].spent += had;
 }
 
-void Turns::over(Id id, Clock::time_point now) {
-    const auto found = m_workers.find(id);
-    if (found == m_workers.end()) return;
-    Worker& worker = found->second;
+void Turns::take_back(Worker& worker, Clock::time_point now) {
     if (worker.threads > 0) charge(worker, now);
     worker.threads = 0;
     worker.wants = worker.is_asked_back = worker.is_overdue = false;
+}
+
+void Turns::over(Id id, Clock::time_point now) {
+    const auto found = m_workers.find(id);
+    if (found == m_workers.end()) return;
+    take_back(found->second, now);
+    hand_out(now);
+}
+
+void Turns::again(Id id, Clock::time_point now) {
+    const auto found = m_workers.find(id);
+    if (found == m_workers.end()) return;
+    take_back(found->second, now);
+    found->second.wants = true;
     hand_out(now);
 }
 
@@ -110,7 +124,7 @@ void Turns::hand_out(Clock::time_point now) {
         if (worker == nullptr) return;
         worker->wants = worker->is_asked_back = worker->is_overdue = false;
         worker->threads = threads;
-        worker->since = now;
+        worker->since = worker->charged = now;
         m_tell.give(id, threads);
     }
 }

@@ -38,6 +38,8 @@ class Turns {
     void want(Id id, Clock::time_point now);
     /// It has given its turn back, or wants none any more.
     void over(Id id, Clock::time_point now);
+    /// It has given its turn back and wants another: it may well be the one whose turn it is again.
+    void again(Id id, Clock::time_point now);
     void remove(Id id, Clock::time_point now);
     /// To be called every few milliseconds.
     void tick(Clock::time_point now);
@@ -53,7 +55,7 @@ class Turns {
         std::string person;
         bool is_job = false, wants = false;
         std::size_t threads = 0;  ///< of its turn; 0: it has none
-        Clock::time_point since{}, asked_back{};
+        Clock::time_point since{}, charged{}, asked_back{};  ///< it has its turn; up to which that was counted
         bool is_asked_back = false, is_overdue = false;
         double spent = 0, share = 0;  ///< seconds; the same over its weight
     };
@@ -62,13 +64,14 @@ class Turns {
         std::size_t workers = 0;
     };
 
+    void take_back(Worker& worker, Clock::time_point now);
     void charge(Worker& worker, Clock::time_point now);
     void hand_out(Clock::time_point now);
     [[nodiscard]] Worker* next(Id& id);
     [[nodiscard]] std::size_t threads_in_use() const;
     [[nodiscard]] std::size_t threads_of_a_turn() const;
     /// One that comes back after a while has not saved up for it.
-    void catch_up(Worker& worker);
+    void catch_up(Worker& worker, Clock::time_point now);
 
     Rules m_rules;
     Tell m_tell;

@@ -58,7 +58,7 @@ void Inbox::obey(const Json& message) {
         m_must_yield = true;
     } else if (what == "frames") {
         const double wanted = message.at("per_second");
-        m_newly_watched = m_newly_watched || wanted > 0;
+        m_newly_watched = m_newly_watched || (wanted > 0 && m_frames_per_second <= 0);
         m_frames_per_second = wanted;
     } else if (what == "checkpoint" || what == "yarns") {
         m_requests.push_back(message);

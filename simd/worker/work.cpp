@@ -254,8 +254,7 @@ bool Work::stand_still() {
             if (m_inbox.take_newly_watched()) m_shown_last = false;
             continue;
         }
-        if (m_has_turn && m_inbox.must_yield()) give_turn_back();
-        if (!m_has_turn) {
+        if (!m_has_turn || m_inbox.must_yield()) {
             if (!hold_turn()) return false;
             continue;
         }
@@ -266,9 +265,11 @@ bool Work::stand_still() {
 
 /// Waits for the right to compute; false where the work is to end instead.
 bool Work::hold_turn() {
-    if (m_has_turn && m_inbox.must_yield()) give_turn_back();
-    if (m_has_turn) return true;
-    tell({{"say", "turn"}});
+    const bool again = m_has_turn && m_inbox.must_yield();
+    if (m_has_turn && !again) return true;
+    m_has_turn = false;
+    m_inbox.turn_given_back();
+    tell({{"say", "turn"}, {"again", again}});
     while (true) {
         if (m_inbox.finish() != Finish::no) return false;
         if (m_inbox.turn()) break;
