@@ -192,6 +192,21 @@ TEST_CASE("broken connections and a restarted server change nothing but the time
     CHECK(read_yarns(mill.shop.get("d.yarns")));
 }
 
+TEST_CASE("a job that the server lost is not waited for") {
+    Mill mill;
+    mill.simd.holds_jobs = true;
+    Workshop::Running running = mill.shop.start(mill.on({"simulate", "d.weave", "-o", "d.yarns"}));
+    while (mill.simd.look([](ScriptedSimd& s) { return s.count_of<wire::Submit>(); }) == 0) std::this_thread::sleep_for(std::chrono::milliseconds(5));
+    const bool by_hand = GENERATE(false, true);
+    mill.simd.lose_jobs();
+    if (by_hand) ::kill(running.child, SIGINT);
+    else mill.simd.restart();
+    const Ended ended = running.finish();
+    INFO(ended.err);
+    CHECK(ended.exit == 4);
+    CHECK_THAT(ended.err, Contains("does not have it any more") && !Contains("is kept"));
+}
+
 TEST_CASE("a job that waits tells its place and how long, and Ctrl-C takes it out of the queue") {
     Mill mill;
     mill.simd.holds_queue = true;
