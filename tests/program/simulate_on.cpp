@@ -25,7 +25,7 @@ using weave::testing::ScriptedSimd;
 namespace {
 
 std::string signed_for(const Json& report) {
-    return wire::write_evidence(wire::sign_evidence(KeyPair::generate(), "mill", canonical_json(report), std::chrono::system_clock::now()).value());
+    return wire::write_evidence(wire::sign_evidence(KeyPair::generate(), "mill", canonical_json(report), std::chrono::floor<std::chrono::milliseconds>(std::chrono::system_clock::now())).value());
 }
 
 /// Relaxes as a server does; `steps` (0: no limit) ends it as a cancelled job is.
@@ -192,6 +192,21 @@ TEST_CASE("broken connections and a restarted server change nothing but the time
     CHECK(read_yarns(mill.shop.get("d.yarns")));
 }
 
+TEST_CASE("a job that the server lost is not waited for") {
+    Mill mill;
+    mill.simd.holds_jobs = true;
+    Workshop::Running running = mill.shop.start(mill.on({"simulate", "d.weave", "-o", "d.yarns"}));
+    while (mill.simd.look([](ScriptedSimd& s) { return s.count_of<wire::Submit>(); }) == 0) std::this_thread::sleep_for(std::chrono::milliseconds(5));
+    const bool by_hand = GENERATE(false, true);
+    mill.simd.lose_jobs();
+    if (by_hand) ::kill(running.child, SIGINT);
+    else mill.simd.restart();
+    const Ended ended = running.finish();
+    INFO(ended.err);
+    CHECK(ended.exit == 4);
+    CHECK_THAT(ended.err, Contains("does not have it any more") && !Contains("is kept"));
+}
+
 TEST_CASE("a job that waits tells its place and how long, and Ctrl-C takes it out of the queue") {
     Mill mill;
     mill.simd.holds_queue = true;
@@ -279,7 +294,7 @@ TEST_CASE("what a server gives is believed only so far as it fits together") {
     refused("not one that this program knows", [](JobResult& result) { result.report["fidelity"] = "\x1b[31m"; });
     refused("something else than was asked for", [](JobResult& result) { result.report["flips"] = Json::array({{{"pick", 1}, {"end", 1}, {"done", true}, {"tried", true}, {"flip_seconds", 0}, {"settle_seconds", 0}}}); });
     refused("", [&](JobResult& result) { result.yarns = "no yarns", rehash(result); });
-    refused("canonical", [](JobResult& result) { result.evidence = R"({"format":"weave-signed-evidence"})"; });
+    refused("version: is missing", [](JobResult& result) { result.evidence = R"({"format":"weave-signed-evidence"})"; });
     refused("another than was told", [](JobResult& result) { *result.evidence += "\n"; });
     refused("of other yarns", [](JobResult& result) {
         Json other = result.report;

@@ -12,6 +12,7 @@
 #include <chrono>
 #include <cstdio>
 #include <memory>
+#include <optional>
 #include <utility>
 
 namespace weave::program {
@@ -84,10 +85,12 @@ Status fetch(CommandOutcome& outcome, const Wish& wish) {
     WEAVE_TRY(const wire::JobEnded ended, end_of(follower, wish.job));
     if (has_yarns(ended)) {
         WEAVE_TRY(const RemoteYarns fetched, fetch_yarns(follower, ended));
-        WEAVE_CHECK_OK(write_file(wish.out, fetched.bytes));
+        std::optional<std::string> evidence;
         if (!wish.evidence.empty()) {
-            WEAVE_CHECK_OK(fetch_evidence(follower, ended, wish.evidence));
+            WEAVE_TRY(evidence, fetch_evidence(follower, ended));
         }
+        WEAVE_CHECK_OK(write_file(wish.out, fetched.bytes));
+        if (evidence) WEAVE_CHECK_OK(write_file(wish.evidence, *evidence));
     }
     WEAVE_CHECK_OK(follower.acknowledge_job(wish.job, answer_patience));
     follower.close();

@@ -2,7 +2,6 @@
 
 #include "simulate_ending.hpp"
 
-#include <weave/core/file.hpp>
 #include <weave/core/sha256.hpp>
 #include <weave/core/text.hpp>
 #include <weave/keys/hash.hpp>
@@ -68,17 +67,17 @@ Result<RemoteYarns> fetch_yarns(wire::Follower& follower, const wire::JobEnded& 
     return RemoteYarns{std::move(bytes), std::move(*yarns)};
 }
 
-Status fetch_evidence(wire::Follower& follower, const wire::JobEnded& ended, const std::string& file) {
+Result<std::string> fetch_evidence(wire::Follower& follower, const wire::JobEnded& ended) {
     const std::string where = follower.place().name + ": " + name_of(ended.job);
     if (!ended.evidence)
         return Error{ErrorCode::refused, ended.phase == wire::JobPhase::done ? "the server has no key to sign evidence with" : "only of a job that is done there is evidence", where};
-    WEAVE_TRY(const std::string bytes, follower.download(wire::job_evidence(ended.job), most_evidence_bytes));
+    WEAVE_TRY(std::string bytes, follower.download(wire::job_evidence(ended.job), most_evidence_bytes));
     if (canonical_json(*ended.evidence) != bytes) return bad_input("its evidence is another than was told", where);
     auto evidence = wire::read_evidence(bytes);
     if (!evidence) return std::move(evidence).error().in(where);
     WEAVE_TRY(const wire::SimulationStatement statement, wire::read_simulation(evidence->statement));
     if (hash_hex(statement.result_sha256) != ended.report.at("yarns_sha256")) return bad_input("its evidence is of other yarns", where);
-    return write_file(file, bytes);
+    return bytes;
 }
 
 }  // namespace weave::program

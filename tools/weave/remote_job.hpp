@@ -33,9 +33,10 @@ struct RemoteYarns {
 /// those of the report; those of the download.
 Result<RemoteYarns> fetch_yarns(wire::Follower& follower, const wire::JobEnded& ended);
 
-/// Fetches the evidence that a job's end tells of into a file. Errors: refused where the server signed none; bad_input
-/// where its document is another; those of the download and of the file.
-Status fetch_evidence(wire::Follower& follower, const wire::JobEnded& ended, const std::string& file);
+/// Fetches the evidence that a job's end tells of: a signed document about these yarns; whose key it is, is for those to
+/// check who file it. Errors: refused where the server signed none; bad_input where its document is another; those of
+/// the download.
+Result<std::string> fetch_evidence(wire::Follower& follower, const wire::JobEnded& ended);
 
 /// `job 12`
 std::string name_of(std::uint64_t job);

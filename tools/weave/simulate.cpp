@@ -244,7 +244,8 @@ void add_simulate(CLI::App& app, CommandOutcome& outcome) {
     CLI::Option* on = add_server_options(command, wish->server);
     command->add_option("--evidence", wish->evidence, "the file for what the server signs of the result, for loomlink")->needs(on)->type_name("FILE");
     command->footer("Ctrl-C writes the yarns as they lie (exit 1), for --resume to go on from; again, half a second later or more, ends at "
-                    "once without them.\n" + command->get_footer());
+                    "once without them.\nWith --on the file is written once, at the end; Ctrl-C cancels the job and writes its yarns as they lay. weave jobs "
+                    "lists what is on the server.\n" + command->get_footer());
     on_run(command, outcome, [=, &outcome] {
         wish->no_plan_option = given_of(command, {"--out", "--solver", "--residual", "--backend", "--flip", "--save-design", "--resume", "--start-from", "--starts",
                                                   "--symmetry", "--seed", "--steps", "--seconds", "--threads", "--on"});

@@ -9,6 +9,7 @@
 #include <weave/design/document.hpp>
 
 #include <chrono>
+#include <optional>
 #include <utility>
 
 namespace weave::program {
@@ -64,6 +65,9 @@ class JobWatch {
         }
     }
 
+    /// The server has no such job any more.
+    [[nodiscard]] bool is_lost() const { return m_lost; }
+
   private:
     [[nodiscard]] bool is_end(const wire::ServerMessage& message) const {
         const auto* ended = std::get_if<wire::JobEnded>(&message);
@@ -82,7 +86,8 @@ class JobWatch {
     Status cancel() {
         m_cancelled = true;
         const auto answer = m_follower.ask(wire::Cancel{wire::new_request_id(), m_job}, cancel_patience);
-        return answer ? Status() : Status(answer.error());  // refused: it has just ended
+        if (!answer) return answer.error();
+        return std::holds_alternative<wire::Refused>(*answer) ? look() : Status();  // it has ended, or is not there any more
     }
 
     /// Another client of the same person may have dealt with the end of the job.
@@ -93,20 +98,24 @@ class JobWatch {
         for (const wire::JobState& state : list->jobs) {
             if (state.job == m_job) return hear(state), Status();
         }
-        return Error{ErrorCode::refused, "the server has forgotten it: its end was dealt with elsewhere", name_of(m_job)};
+        m_lost = true;
+        return Error{ErrorCode::refused, "the server does not have it any more: it lost it, or the end was dealt with elsewhere", name_of(m_job)};
     }
 
     void tell_trouble() {
         const bool troubled = m_follower.trouble().has_value();
         if (troubled && !m_troubled) m_teller.note(m_follower.trouble()->text() + "; trying again");
-        if (!troubled && m_troubled) m_teller.note(m_follower.place().name + ": connected again");
+        if (!troubled && m_troubled) {
+            m_teller.note(m_follower.place().name + ": connected again");
+            m_heard = {};  // see whether the job is still there
+        }
         m_troubled = troubled;
     }
 
     wire::Follower& m_follower;
     std::uint64_t m_job;
     Teller& m_teller;
-    bool m_cancelled = false, m_troubled = false;
+    bool m_cancelled = false, m_troubled = false, m_lost = false;
     Clock::time_point m_heard = Clock::now();
 };
 
@@ -123,9 +132,12 @@ Status check_yarns(const RemoteYarns& fetched, const wire::JobEnded& ended, cons
 Status keep_files(wire::Follower& follower, const wire::JobEnded& ended, const SimulateTask& task, const SimulateWish& wish) {
     WEAVE_TRY(const RemoteYarns fetched, fetch_yarns(follower, ended));
     WEAVE_CHECK_OK(check_yarns(fetched, ended, task));
+    std::optional<std::string> evidence;
+    if (!wish.evidence.empty() && ended.evidence) {
+        WEAVE_TRY(evidence, fetch_evidence(follower, ended));
+    }
     WEAVE_CHECK_OK(write_file(wish.out, fetched.bytes));
-    if (wish.evidence.empty() || !ended.evidence) return {};
-    return fetch_evidence(follower, ended, wish.evidence);
+    return evidence ? write_file(wish.evidence, *evidence) : Status();
 }
 
 /// The report as a run on this machine tells it.
@@ -154,9 +166,10 @@ Status simulate_on(CommandOutcome& outcome, wire::Follower& follower, const Desi
     WEAVE_TRY(const wire::Accepted accepted, wire::answer_of<wire::Accepted>(follower.ask(order, answer_patience)));
     if (!accepted.job) return bad_input("the server gives the job no number", follower.place().name);
     const std::uint64_t job = *accepted.job;
-    const Result<wire::JobEnded> ended = JobWatch(follower, job, teller).to_its_end();
+    JobWatch watch(follower, job, teller);
+    const Result<wire::JobEnded> ended = watch.to_its_end();
     teller.end();
-    if (!ended) return kept(ended.error(), job, wish);
+    if (!ended) return watch.is_lost() ? ended.error() : kept(ended.error(), job, wish);
     if (!has_yarns(*ended)) {
         settle(outcome, follower, job);
         return reason_of(*ended).in(wish.file);
@@ -169,8 +182,8 @@ Status simulate_on(CommandOutcome& outcome, wire::Follower& follower, const Desi
     answer["server"] = follower.place().name;
     WEAVE_CHECK_OK(tell_ending(outcome, report, std::move(answer), {design, task.flips, wish.save_design}));
     settle(outcome, follower, job);
-    if (!wish.evidence.empty() && !ended->evidence) return fetch_evidence(follower, *ended, wish.evidence);  // says why there is none
-    return {};
+    if (wish.evidence.empty() || ended->evidence) return {};
+    return fetch_evidence(follower, *ended).error();  // why there is none
 }
 
 }  // namespace weave::program

@@ -203,9 +203,7 @@ Result<Accepted> Follower::create(std::string document, const Simulation& simula
     auto accepted = answer_of<Accepted>(ask(Create{new_request_id(), std::move(document), simulation}, patience, times));
     if (!accepted) return accepted;
     if (!accepted->session) return breach("a new session has no number");
-    m_followed.emplace();
-    m_followed->session = *accepted->session;
-    m_followed->whole = true;
+    m_followed = Followed{.session = *accepted->session, .whole = true};
     if (times > 1) {  // an answer that was only given again attaches nobody
         m_client.reset();
         m_next_try = Clock::now();
@@ -221,7 +219,7 @@ Status Follower::attach(std::uint64_t session, std::uint64_t seq, std::uint64_t 
         if (!m_client) {
             WEAVE_CHECK_OK(reconnect(end));
         } else {
-            m_followed = Followed{session, seq, frame, seq, seq, {}};
+            m_followed = Followed{.session = session, .seq = seq, .frame = frame, .given = seq, .acknowledged = seq};
             Status taken = take_up();
             if (taken) return {};
             m_followed.reset();

@@ -55,7 +55,7 @@ class Follower {
         std::uint64_t session = 0;
         std::uint64_t seq = 0, frame = 0;           ///< came last
         std::uint64_t given = 0, acknowledged = 0;  ///< events that the caller has; those of them that the server knows of
-        std::optional<double> most_per_second;  ///< frames that were asked for
+        std::optional<double> most_per_second = {};  ///< frames that were asked for
         bool whole = false;  ///< nobody can have acknowledged events that are still to come
         bool ended = false, settled = false;  ///< its last event came; and was acknowledged
     };
