@@ -1,9 +1,8 @@
+#include <weave/command/serving.hpp>
 #include <weave/core/log.hpp>
 #include <weave/core/text.hpp>
 #include <weave/net/server.hpp>
 
-#include <csignal>
-#include <iostream>
 #include <loomlink/commands/command.hpp>
 #include <loomlink/commands/running_site.hpp>
 #include <memory>
@@ -11,23 +10,6 @@
 namespace weave::loomlink {
 
 namespace {
-
-/// The signals that end the service; blocked in every thread, and waited for in one.
-sigset_t ending_signals() {
-    sigset_t signals;
-    sigemptyset(&signals);
-    for (const int signal : {SIGINT, SIGTERM}) sigaddset(&signals, signal);
-    return signals;
-}
-
-/// One line an event, with the time it happened.
-void log_to_stderr() {
-    set_log_sink([](LogLevel level, std::string_view message) {
-        if (level == LogLevel::debug) return;
-        const char* const word = level == LogLevel::warning ? " warning: " : " ";
-        std::cerr << utc_text(system_clock()()) + word + on_one_line(message) + '\n';
-    });
-}
 
 struct ServeOptions {
     std::string folder = ".";
@@ -82,15 +64,13 @@ Status serve(const ServeOptions& options, CommandOutcome& outcome) {
         outcome.answer({{"valid", true}}, "The configuration is valid.\n");
         return {};
     }
-    const sigset_t signals = ending_signals();
-    pthread_sigmask(SIG_BLOCK, &signals, nullptr);
+    const EndingSignals signals;
     log_to_stderr();
     WEAVE_TRY(const auto site, RunningSite::start({options.folder}, config));
     WEAVE_TRY(const Json started, site->introduction());
     outcome.answer(started, words_of(started));
     log(LogLevel::info, "serving on port " + std::to_string(site->port()));
-    int signal = 0;
-    sigwait(&signals, &signal);
+    signals.wait();
     log(LogLevel::info, "ending, asked to by a signal");
     site->stop();
     log(LogLevel::info, "ended");

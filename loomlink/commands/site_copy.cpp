@@ -174,7 +174,7 @@ Status restore_site(const SiteFolder& backup, const SiteFolder& to) {
     if (!fs::exists(to.path, code) && ::mkdir(to.path.c_str(), 0700) != 0)
         return file_fault(to.path, "make the folder");
     WEAVE_CHECK_OK(check_site_folder(to));
-    WEAVE_TRY(const FolderLock lock, FolderLock::take(to.path));
+    WEAVE_TRY(const FolderLock lock, FolderLock::take(to.path, "loomlink"));
     WEAVE_CHECK_OK(restore_store(backup.store(), to.store()));
     return copy_keys(backup, to);
 }

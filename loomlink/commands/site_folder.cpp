@@ -3,12 +3,9 @@
 
 #include <cerrno>
 #include <cstring>
-#include <fcntl.h>
 #include <loomlink/commands/site_folder.hpp>
 #include <loomlink/workflow/retelling.hpp>
-#include <sys/file.h>
 #include <sys/stat.h>
-#include <unistd.h>
 #include <utility>
 
 namespace weave::loomlink {
@@ -21,16 +18,6 @@ constexpr const char* lock_name = ".lock";
 
 Error fault(const fs::path& path, const std::string& action) {
     return system_fault("cannot " + action + ": " + std::strerror(errno), path.string());
-}
-
-/// Makes the folder of a site where it is missing. Not those above it: a name that was mistyped would make a
-/// site where nobody looks for one.
-Status make_folder(const fs::path& folder) {
-    if (::mkdir(folder.c_str(), 0700) == 0 || errno == EEXIST) return {};
-    if (errno != ENOENT) return fault(folder, "make the folder");
-    return bad_input(
-        "cannot be made, since the folder above it is missing; make that first, or mend the name",
-        folder.string());
 }
 
 /// Whether a folder holds nothing but, perhaps, our lock.
@@ -94,33 +81,11 @@ Status check_site_folder(const SiteFolder& folder) {
     return Error{ErrorCode::refused, "holds no store of loomlink, and is not empty", folder.path.string()};
 }
 
-Result<FolderLock> FolderLock::take(const fs::path& folder) {
-    const fs::path path = folder / lock_name;
-    const int file = ::open(path.c_str(), O_RDWR | O_CREAT | O_CLOEXEC | O_NOFOLLOW, 0600);
-    if (file < 0) return fault(path, "open it");
-    FolderLock lock(file);
-    if (::flock(file, LOCK_EX | LOCK_NB) == 0) return lock;
-    if (errno == EWOULDBLOCK)
-        return Error{ErrorCode::refused, "another loomlink is using this folder", folder.string()};
-    return fault(path, "lock it");
-}
-
-FolderLock::~FolderLock() {
-    if (m_file >= 0) ::close(m_file);
-}
-
-FolderLock::FolderLock(FolderLock&& other) noexcept : m_file(std::exchange(other.m_file, -1)) {}
-
-FolderLock& FolderLock::operator=(FolderLock&& other) noexcept {
-    std::swap(m_file, other.m_file);
-    return *this;
-}
-
 Result<OpenSite> open_site(const SiteFolder& folder, const ServeConfig& config) {
-    WEAVE_CHECK_OK(make_folder(folder.path));
+    WEAVE_CHECK_OK(make_service_folder(folder.path));
     WEAVE_CHECK_OK(check_site_folder(folder));
     std::error_code trouble;
-    WEAVE_TRY(FolderLock lock, FolderLock::take(folder.path));
+    WEAVE_TRY(FolderLock lock, FolderLock::take(folder.path, "loomlink"));
     if (fs::exists(folder.store(), trouble)) return open_old_site(std::move(lock), folder);
     if (::chmod(folder.path.c_str(), 0700) != 0) return fault(folder.path, "close it to others");
     return make_site(std::move(lock), folder, config.site);

@@ -1,5 +1,6 @@
 #pragma once
 
+#include <weave/command/serving.hpp>
 #include <weave/net/certificate.hpp>
 
 #include <filesystem>
@@ -11,20 +12,6 @@
 #include <string>
 
 namespace weave::loomlink {
-
-/// Keeps other programs from serving the same folder, for as long as it lives.
-class FolderLock {
-  public:
-    /// Refused: another one has it.
-    static Result<FolderLock> take(const std::filesystem::path& folder);
-    ~FolderLock();
-    FolderLock(FolderLock&& other) noexcept;
-    FolderLock& operator=(FolderLock&& other) noexcept;
-
-  private:
-    explicit FolderLock(int file) : m_file(file) {}
-    int m_file = -1;
-};
 
 /// Where things lie in the folder of a site.
 struct SiteFolder {

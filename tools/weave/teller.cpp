@@ -5,7 +5,6 @@
 #include <weave/core/text.hpp>
 
 #include <algorithm>
-#include <cmath>
 #include <cstdio>
 #include <unistd.h>
 #include <utility>
@@ -34,16 +33,17 @@ std::string so_far(double seconds) {
 
 }  // namespace
 
-Teller::Teller(double goal) : m_goal(goal), m_terminal(::isatty(STDERR_FILENO) == 1) {}
+Teller::Teller(double goal) : m_goal(goal), m_terminal(::isatty(STDERR_FILENO) == 1), m_pace(goal) {}
 
 void Teller::turn_to(std::string what, std::optional<double> goal) {
     m_what = std::move(what);
     m_goal = goal.value_or(m_goal);
+    m_pace = sim::Pace(m_goal);
     m_next = std::min(m_next, seconds() + first_after);
 }
 
 bool Teller::operator()(const sim::Progress& progress) {
-    if (is_due(progress.residual, progress.iteration)) tell_residual(progress.residual, progress.iteration, order_of(progress), seconds_left());
+    if (is_due(progress.residual, progress.iteration)) tell_residual(progress.residual, progress.iteration, order_of(progress), m_pace.seconds_left());
     return !interrupted();
 }
 
@@ -54,7 +54,7 @@ void Teller::operator()(const wire::JobState& job) {
         const std::string wait = job.wait_s ? "begins in " + some_seconds(*job.wait_s) + ", " : "";
         return tell("waiting" + m_what + " ... " + place + wait + so_far(seconds()));
     }
-    if (is_due(job.residual.value_or(0), job.step)) tell_residual(*job.residual, job.step, "", job.left_s ? job.left_s : seconds_left());
+    if (is_due(job.residual.value_or(0), job.step)) tell_residual(*job.residual, job.step, "", job.left_s ? job.left_s : m_pace.seconds_left());
 }
 
 void Teller::note(const std::string& line) {
@@ -72,11 +72,11 @@ double Teller::seconds() const {
 }
 
 bool Teller::is_due(double residual, std::size_t iteration) {
-    if (iteration < m_iteration) m_past.clear();  // another run
+    if (iteration < m_iteration) m_pace = sim::Pace(m_goal);  // another run
     m_iteration = iteration;
     if (!(residual > 0)) return false;
     const double now = seconds();
-    m_past.push_back({now, std::log(residual)});
+    m_pace.add(now, residual);
     return now >= m_next;
 }
 
@@ -90,15 +90,6 @@ void Teller::tell_residual(double residual, std::size_t iteration, const std::st
     char line[160];
     std::snprintf(line, sizeof line, " ... residual %.2e (goal %.0e) after %zu steps, ", residual, m_goal, iteration);
     tell("relaxing" + m_what + line + order + (left ? "to go " + some_seconds(*left) + ", " : "") + so_far(seconds()));
-}
-
-/// By how fast the residual fell in the last third of the time; nothing while it does not fall.
-std::optional<double> Teller::seconds_left() const {
-    const Past& now = m_past.back();
-    const auto then = std::find_if(m_past.begin(), m_past.end(), [&](const Past& past) { return past.seconds >= now.seconds * 2 / 3; });
-    const double fell = then->log_residual - now.log_residual;
-    if (!(fell > 0.1)) return {};
-    return std::max(0.0, (now.log_residual - std::log(m_goal)) / fell * (now.seconds - then->seconds));
 }
 
 }  // namespace weave::program

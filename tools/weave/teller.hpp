@@ -1,5 +1,6 @@
 #pragma once
 
+#include <weave/sim/pace.hpp>
 #include <weave/sim/relax.hpp>
 #include <weave/wire/message.hpp>
 
@@ -7,7 +8,6 @@
 #include <cstddef>
 #include <optional>
 #include <string>
-#include <vector>
 
 namespace weave::program {
 
@@ -34,11 +34,6 @@ class Teller {
     bool is_due(double residual, std::size_t iteration);
     void tell(const std::string& line);
     void tell_residual(double residual, std::size_t iteration, const std::string& order, std::optional<double> left);
-    [[nodiscard]] std::optional<double> seconds_left() const;
-
-    struct Past {
-        double seconds, log_residual;
-    };
 
     static constexpr double first_after = 1;
 
@@ -47,7 +42,7 @@ class Teller {
     bool m_terminal, m_open = false;
     double m_next = first_after;
     std::size_t m_iteration = 0;
-    std::vector<Past> m_past;
+    sim::Pace m_pace;
     std::chrono::steady_clock::time_point m_start = std::chrono::steady_clock::now();
 };
 
