@@ -237,4 +237,12 @@ Json coverage_of(const Plan& plan) {
     return coverage;
 }
 
+Json told_of_coarser(const Json& report) {
+    Json coarser{{"taken", false}};
+    for (const char* name : {"fidelity", "points_per_key", "points", "goal", "residual", "ending", "iterations", "seconds",
+                             "energy_N_mm", "lost_crossings"})
+        coarser[name] = report.at(name);
+    return coarser;
+}
+
 }  // namespace weave::sim

@@ -29,6 +29,9 @@ struct Contacts {
 };
 Contacts contacts_of(Energy<double>& energy, const std::vector<double>& state);
 
+/// What the report of a run says of the coarser yarns that it began in, `report` being theirs; `taken`: not yet.
+Json told_of_coarser(const Json& report);
+
 /// The process's greatest memory so far in bytes; 0 where the system does not say.
 std::uint64_t peak_bytes();
 

@@ -1,4 +1,5 @@
 #include <weave/design/edit.hpp>
+#include <weave/sim/result.hpp>
 #include <weave/sim/run.hpp>
 
 #include <algorithm>
@@ -99,18 +100,9 @@ bool Run::is_over() const {
     return m_now->cut_short() || (!is_coarse() && m_next_flip == m_request.flips.size());
 }
 
-/// What a report says of the coarser yarns that it began in.
-Json Run::coarser_json(const Yarns& yarns) const {
-    Json coarser{{"taken", false}};
-    for (const char* name : {"fidelity", "points_per_key", "points", "goal", "residual", "ending", "iterations", "seconds",
-                             "energy_N_mm", "lost_crossings"})
-        coarser[name] = yarns.report.at(name);
-    return coarser;
-}
-
 /// The yarns go on in the points asked for; with crossings that lie wrong in so few, these begin anew as planned.
 void Run::refine() {
-    m_coarser = coarser_json(m_now->yarns());
+    m_coarser = told_of_coarser(m_now->yarns().report);
     const std::unique_ptr<PlanRun> coarser = std::move(m_now);
     const std::optional<StartState> start =
         refined_start(*m_finer, coarser->plan(), {coarser->control(), coarser->scene().period_mm});
@@ -234,7 +226,7 @@ Yarns Run::yarns() {
     const std::string_view ending = name_of(m_now->cut_short().value_or(m_now->last().ending));
     if (is_coarse()) {
         yarns.report["goes_on"] = std::string(name_of(m_finer->fidelity));
-        Json coarser = coarser_json(yarns);
+        Json coarser = told_of_coarser(yarns.report);
         yarns.report.update({{"converged", false},
                              {"ending", std::string(ending)},
                              {"goal", m_request.goal.residual.value_or(m_finer->goal)},

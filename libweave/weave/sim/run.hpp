@@ -79,7 +79,6 @@ class Run {
     [[nodiscard]] bool is_reduced() const;
     Status unfold();
     Status restore(const Json& state);
-    Json coarser_json(const Yarns& yarns) const;
 
     Design m_design;  ///< whose scene the plan is of
     BlockPtr m_block;

@@ -1,3 +1,4 @@
+#include <weave/sim/result.hpp>
 #include <weave/sim/simulate.hpp>
 
 #include <utility>
@@ -8,15 +9,6 @@ namespace {
 
 RunGoal goal_of(const SimulationOptions& options) {
     return {options.solver, options.residual, options.most_iterations, options.most_seconds};
-}
-
-/// What the report of a run says of the coarser yarns that it began in.
-Json coarser_json(const Json& report) {
-    Json coarser{{"taken", false}};
-    for (const char* name : {"fidelity", "points_per_key", "points", "goal", "residual", "ending", "iterations", "seconds",
-                             "energy_N_mm", "lost_crossings"})
-        coarser[name] = report.at(name);
-    return coarser;
 }
 
 /// The coarser yarns as the end of a run: whether or not they are at rest, what was asked for is not.
@@ -38,7 +30,7 @@ std::optional<Yarns> begin_coarser(const Design& design, const SimulationOptions
     Yarns yarns = coarser.yarns();
     yarns.report["goes_on"] = std::string(sim::name_of(run.plan().fidelity));
     run.add_cost(coarser.cost());
-    told = coarser_json(yarns.report);
+    told = told_of_coarser(yarns.report);
     if (const std::optional<Ending> over = coarser.cut_short()) return cut_off(std::move(yarns), told, *over, run, options.flips);
     if (options.after_coarser && !options.after_coarser(yarns))
         return cut_off(std::move(yarns), told, Ending::stopped, run, options.flips);
