@@ -86,6 +86,7 @@ class Daemon {
     [[nodiscard]] std::optional<double> wait_for_job(std::size_t place) const;
     Session* session_of(const std::string& person, std::uint64_t number);
     Job* job_of(const std::string& person, std::uint64_t number);
+    [[nodiscard]] bool serves_a_session(const ClientPtr& client) const;
     bool answered_before(const ClientPtr& client, const std::string& request);
 
     void create(const ClientPtr& client, const wire::Create& create);

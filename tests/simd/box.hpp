@@ -77,7 +77,8 @@ class Box {
     }
     /// The worker of a session (or, with `job`, of a job); nothing while it has none.
     [[nodiscard]] std::optional<pid_t> worker(const char* what, std::uint64_t number) const {
-        for (const Json& one : status().at(std::string(what) + "s")) {
+        const Json now = status();
+        for (const Json& one : now.at(std::string(what) + "s")) {
             if (one.at(what) == number && one.contains("worker")) return one.at("worker").get<pid_t>();
         }
         return {};
@@ -98,7 +99,8 @@ inline std::string document_of(const std::string& sample) {
 /// A session that somebody follows, with all that was told of it.
 class Followed {
   public:
-    Followed(const Box& box, const std::string& document, const wire::Simulation& simulation) : m_follower(box.follower()) {
+    Followed(const Box& box, const std::string& document, const wire::Simulation& simulation) : Followed(box.follower(), document, simulation) {}
+    Followed(wire::Follower follower, const std::string& document, const wire::Simulation& simulation) : m_follower(std::move(follower)) {
         auto accepted = m_follower.create(document, simulation, 60s);
         INFO((accepted ? "" : accepted.error().text()));
         REQUIRE(accepted);
