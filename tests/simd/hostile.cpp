@@ -130,6 +130,21 @@ std::size_t descriptors(pid_t process) {
     return static_cast<std::size_t>(std::distance(begin, end));
 }
 
+/// The processes that one has started, once there are so many (or after a minute, those that there are).
+std::vector<pid_t> children(pid_t process, std::size_t number) {
+    std::vector<pid_t> found;
+    for (int k = 0; k < 6000; ++k) {
+        found.clear();
+        for (const auto& thread : std::filesystem::directory_iterator("/proc/" + std::to_string(process) + "/task")) {
+            std::ifstream list(thread.path() / "children");
+            for (pid_t child = 0; list >> child;) found.push_back(child);
+        }
+        if (found.size() >= number) break;
+        std::this_thread::sleep_for(10ms);
+    }
+    return found;
+}
+
 std::string list_jobs(const std::string& request) {
     return wire::write_message(wire::ClientMessage(wire::ListJobs{request}));
 }
@@ -392,7 +407,7 @@ TEST_CASE("who waits for files of a session that does not answer keeps nobody el
     Followed stuck(people.follower("dora"), document_of("plain"), at(sim::Fidelity::draft)), other(people.follower("abel"), document_of("plain"), at(sim::Fidelity::draft));
     const pid_t worker = people.box().worker("session", stuck.number).value();
     REQUIRE(::kill(worker, SIGSTOP) == 0);
-    std::vector<std::thread> askers;
+    std::vector<std::jthread> askers;
     for (int k = 0; k < 20; ++k) {
         askers.emplace_back([&, place = people.place("dora")] { static_cast<void>(wire::download(place, wire::session_yarns(stuck.number), 1 << 24)); });
     }
@@ -405,7 +420,35 @@ TEST_CASE("who waits for files of a session that does not answer keeps nobody el
     CHECK(other.yarns().size() > 100);
     CHECK(std::chrono::steady_clock::now() - begin < 30s);  // they wait for a minute
     REQUIRE(::kill(worker, SIGCONT) == 0);
-    for (std::thread& asker : askers) asker.join();
+}
+
+TEST_CASE("designs that are planned for ever keep others waiting for seconds, and are given up") {
+    const People people(Json{{"stall_seconds", 20}});
+    const std::string large = document_of("shoe-adult");
+    std::vector<wire::Client> hostile;
+    for (int k = 0; k < 6; ++k) {
+        hostile.push_back(wire::Client::connect(people.place("dora"), "test").value());
+        REQUIRE(hostile.back().send(wire::Create{wire::new_request_id(), large, at(sim::Fidelity::standard)}));
+    }
+    const std::vector<pid_t> workers = children(people.box().process(), 2);
+    for (const pid_t worker : workers) REQUIRE(::kill(worker, SIGSTOP) == 0);
+    REQUIRE(workers.size() == 2);  // so many plan at once
+    auto abel = wire::Client::connect(people.place("abel"), "test").value();
+    CHECK(wire::answer_of<wire::Accepted>(abel.ask(wire::Create{wire::new_request_id(), document_of("plain"), at(sim::Fidelity::draft)}, 120s)));
+    CHECK(children(people.box().process(), 3).size() == 3);  // dora's others wait for her first two
+    for (std::size_t k = 0; k < 2; ++k) {
+        bool refused = false;
+        for (int tries = 0; tries < 60 && !refused; ++tries) {
+            const auto received = hostile[k].receive(1s);
+            REQUIRE(received);
+            const auto* message = *received ? std::get_if<wire::ServerMessage>(&**received) : nullptr;
+            const auto* no = message == nullptr ? nullptr : std::get_if<wire::Refused>(message);
+            refused = no != nullptr && no->error.message.find("planned for 20 s") != std::string::npos;
+        }
+        CHECK(refused);
+    }
+    abel = wire::Client::connect(people.place("abel"), "test").value();
+    CHECK(wire::answer_of<wire::Accepted>(abel.ask(wire::Create{wire::new_request_id(), document_of("plain"), at(sim::Fidelity::draft)}, 120s)));
 }
 
 TEST_CASE("thousands of connections, one after another and at once, leave nothing behind") {
