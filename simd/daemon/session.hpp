@@ -36,7 +36,7 @@ class Session final : public Task {
     /// One that the store does not know yet: it becomes a session once its worker has planned it and there is room.
     Session(Surroundings around, const wire::Create& create, const ClientPtr& client);
     /// One that the store had.
-    Session(Surroundings around, const StoredSession& stored, std::vector<JournaledChange> changes);
+    Session(Surroundings around, const KeptSession& kept, const SessionTask& task, std::vector<JournaledChange> changes);
     ~Session() override;
 
     [[nodiscard]] std::uint64_t number() const { return m_number; }
@@ -69,6 +69,8 @@ class Session final : public Task {
 
     // ---- What the daemon does with it ----
 
+    /// Of a session that the store had, first: where its events stand.
+    Status remember_events();
     void take_up();
     /// The worker writes its checkpoint and ends.
     void put_away();
@@ -86,13 +88,13 @@ class Session final : public Task {
   private:
     struct Unsaved {
         Event event;
-        std::optional<ChangeNews> news;
+        std::optional<Dated> dated;
     };
 
     void refuse_creation(Error error, std::optional<double> wait_s);
     Status become_accepted();
     [[nodiscard]] Error gone() const;
-    void emit(wire::ServerMessage event, EventKind kind, std::optional<ChangeNews> news = {});
+    void emit(wire::ServerMessage event, EventKind kind, std::optional<Dated> dated = {});
     void deliver(const Unsaved& unsaved);
     void save_unsaved();
     void say_goodbye();
@@ -123,7 +125,7 @@ class Session final : public Task {
     wire::Phase m_phase = wire::Phase::paused;
     bool m_runs = false;
     std::optional<std::uint64_t> m_pause_at;
-    std::optional<std::uint64_t> m_checkpoint_step;
+    std::uint64_t m_checkpoint_step = 0;
     double m_residual = 0, m_pace = 0;  ///< steps a second
     std::optional<std::uint64_t> m_lost;
     std::size_t m_points = 0, m_repeats = 1;

@@ -16,7 +16,7 @@ namespace {
 /// A cloth that takes some seconds and several legs to come to rest.
 wire::Simulation long_run() {
     wire::Simulation simulation = at(sim::Fidelity::standard);
-    simulation.residual = 1e-6;
+    simulation.residual = 1e-5;
     return simulation;
 }
 const char* const long_cloth = "hexagon-tubes";
@@ -134,7 +134,7 @@ TEST_CASE("asked to end, the daemon puts everything away, and takes it up at its
     CHECK(box.stop() == 0);
     box.start();
     const wire::State state = session.state();
-    CHECK(state.residual <= 1e-6);
+    CHECK(state.residual <= 1e-5);
     check_events(session);
 }
 

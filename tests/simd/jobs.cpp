@@ -15,7 +15,7 @@ namespace {
 
 wire::Simulation long_run() {
     wire::Simulation simulation = at(sim::Fidelity::standard);
-    simulation.residual = 1e-6;
+    simulation.residual = 1e-5;
     return simulation;
 }
 const char* const long_cloth = "hexagon-tubes";
