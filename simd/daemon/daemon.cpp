@@ -112,9 +112,8 @@ void Daemon::forget_what_is_over() {
 /// Those whose right has ended, and those that came and say nothing.
 void Daemon::send_away(Clock::time_point now) {
     constexpr std::chrono::seconds until_hello{10};
-    const auto time = std::chrono::system_clock::now();
     for (const ClientPtr& client : m_clients) {
-        if (client->until() && *client->until() <= time) client->close(1008, "the token has ended");
+        if (!client->may_stay()) client->close(1008, "the token has ended");
         else if (!client->is_greeted && now - client->opened() > until_hello) client->close(1002, "no hello came");
     }
 }
