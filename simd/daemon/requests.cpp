@@ -140,7 +140,8 @@ void Daemon::submit(const ClientPtr& client, const wire::Submit& submit, const s
     const auto own = [&](const auto& job) { return job->person() == client->person(); };
     if (static_cast<std::size_t>(std::ranges::count_if(m_jobs, own)) >= m_settings.jobs_per_person)
         return refuse({ErrorCode::refused, "you have " + std::to_string(m_settings.jobs_per_person) + " jobs here, as many as one person may", "submit"});
-    const std::optional<double> wait_s = wait_for_job(queue().size() + 1);
+    const Outlook outlook = this->outlook();
+    const std::optional<double> wait_s = outlook.wait_s(outlook.places.size() + 1);
     const auto text = [&](std::uint64_t number) { return wire::write_message(wire::Accepted{submit.request, {}, number, wait_s}); };
     const NewJob fresh{client->person(), submit.request, title, submit.document, simulation_text(submit.simulation, submit.flips)};
     const auto made = m_store->add_job(fresh, text);
@@ -152,8 +153,9 @@ void Daemon::submit(const ClientPtr& client, const wire::Submit& submit, const s
 
 void Daemon::list_jobs(const ClientPtr& client, const std::string& request) {
     wire::JobList list{request, {}};
+    const Outlook outlook = this->outlook();
     for (const auto& job : m_jobs) {
-        if (job->person() == client->person()) list.jobs.push_back(told_state(*job));
+        if (job->person() == client->person()) list.jobs.push_back(told_state(*job, outlook));
     }
     client->tell(list);
 }

@@ -66,7 +66,9 @@ void Doorkeeper::read_file() {
     auto people = read_local_tokens(m_rules.file);
     if (!people) log(LogLevel::warning, people.error().text());
     m_people = people ? std::move(*people) : std::map<std::string, std::string>{};
-    m_read = written;
+    // What was written just now may be written again within the same tick of the clock.
+    const bool has_settled = std::filesystem::file_time_type::clock::now() - written > std::chrono::seconds(1);
+    m_read = has_settled ? written : std::filesystem::file_time_type{};
 }
 
 }  // namespace weave::simd

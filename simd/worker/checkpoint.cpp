@@ -39,7 +39,7 @@ Status write_checkpoint(const std::filesystem::path& folder, const Checkpoint& c
     return write_file(checkpoint_path(folder), std::string(heading) + sha256_hex(body) + "\n" + body);
 }
 
-Result<Checkpoint> parse_checkpoint(std::string_view bytes) {
+Result<Checkpoint> parse_checkpoint(std::string_view bytes) try {
     const std::size_t begin = heading.size() + hash_bytes + 1;
     if (!bytes.starts_with(heading) || bytes.size() < begin || bytes[begin - 1] != '\n') return bad_input("is no checkpoint of this version");
     const std::string_view body = bytes.substr(begin);
@@ -55,6 +55,8 @@ Result<Checkpoint> parse_checkpoint(std::string_view bytes) {
     if (!json.contains("run")) return bad_input("was damaged", "run");
     checkpoint.run = json.at("run");
     return checkpoint;
+} catch (const Json::exception&) {  // sizes that no memory has are thrown, whatever is asked for
+    return bad_input("was damaged");
 }
 
 Result<std::optional<Checkpoint>> read_checkpoint(const std::filesystem::path& folder) {

@@ -374,34 +374,6 @@ TEST_CASE("who reads nothing loses frames and nothing else, and is closed only f
     CHECK(watcher.state().phase == wire::Phase::at_rest);
 }
 
-TEST_CASE("what piled up while nobody was there is all told to who comes back, and can be acknowledged") {
-    const Box box;
-    Followed session(box, document_of("plain"), at(sim::Fidelity::draft));
-    auto other = wire::Client::connect(box.place(), "test").value();
-    for (int k = 0; k < 700; ++k) {  // two events each: running, paused
-        session.ask(wire::Checkpoint{wire::new_request_id(), session.number});
-        session.ask(wire::Checkpoint{wire::new_request_id(), session.number});
-    }
-    const std::uint64_t last = session.state().seq;
-    CHECK(last > 1400);
-    auto client = wire::Client::connect(box.place(), "test").value();
-    REQUIRE(wire::answer_of<wire::Accepted>(client.ask(wire::Attach{wire::new_request_id(), session.number, 0, 0}, 10s)));
-    std::uint64_t seq = 0;
-    while (seq < last) {
-        const auto received = client.receive(10s);
-        INFO((received ? "" : received.error().text()) << " after event " << seq);
-        REQUIRE(received);
-        REQUIRE(*received);
-        const auto* message = std::get_if<wire::ServerMessage>(&**received);
-        if (message == nullptr) continue;
-        std::visit(
-            [&](const auto& one) {
-                if constexpr (requires { one.seq; }) seq = one.seq;
-            },
-            *message);
-    }
-}
-
 TEST_CASE("who waits for files of a session that does not answer keeps nobody else waiting") {
     const People people(Json{{"workers", 4}});
     Followed stuck(people.follower("dora"), document_of("plain"), at(sim::Fidelity::draft)), other(people.follower("abel"), document_of("plain"), at(sim::Fidelity::draft));
