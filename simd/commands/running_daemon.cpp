@@ -104,7 +104,7 @@ Result<std::unique_ptr<RunningDaemon>> RunningDaemon::start(const DaemonFolder& 
     WEAVE_TRY(auto store, Store::open(folder.store()));
     WEAVE_TRY(parts->daemon, Daemon::start(std::move(store), settings));
     parts->doorkeeper = std::make_unique<Doorkeeper>(TokenRules{config.site, config.access_keys, folder.tokens()});
-    WEAVE_TRY(net::Router routes, service_routes({*parts->daemon, *parts->doorkeeper, parts->metrics, WEAVE_VERSION}));
+    WEAVE_TRY(net::Router routes, service_routes({*parts->daemon, *parts->doorkeeper, parts->metrics, WEAVE_VERSION, config.workers}));
     net::ServerOptions options;
     options.address = config.address;
     options.port = config.port;

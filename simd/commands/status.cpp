@@ -2,8 +2,10 @@
 
 #include <weave/command/serving.hpp>
 #include <weave/core/file.hpp>
+#include <weave/core/text.hpp>
 #include <weave/wire/client.hpp>
 
+#include <algorithm>
 #include <cstdlib>
 #include <iostream>
 #include <limits>
@@ -76,10 +78,11 @@ Status top(const StatusWords& words, CommandOutcome& outcome) {
     std::string trouble;
     while (true) {
         const auto [columns, lines] = size_of_terminal();
-        std::cout << "\033[H\033[J" << status_table(seen, columns, lines - 1) << trouble << std::flush;
+        const std::size_t room = std::max<std::size_t>(lines, 2) - 1;
+        std::cout << "\033[H\033[J" << status_table(seen, columns, trouble.empty() ? room : room - 1) << clipped(trouble, columns) << std::flush;
         if (signals.wait(std::chrono::seconds(1))) return {};
         auto next = status_from(place);
-        trouble = next ? "" : "\n" + next.error().text() + "; trying again\n";
+        trouble = next ? "" : "trying again: " + on_one_line(next.error().text());
         if (next) seen = std::move(*next);
     }
 }

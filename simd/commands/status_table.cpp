@@ -31,17 +31,28 @@ constexpr std::array<Column, 11> columns_of_table{{{"", 4, true},
                                                    {"LEFT", 11, false},
                                                    {"TITLE", 30, true}}};
 
+/// Columns that the character at the beginning takes at most: those of East Asia take two.
+std::size_t columns_of(std::string_view text) {
+    return static_cast<unsigned char>(text.front()) >= 0xe1 ? 2 : 1;
+}
+
+std::size_t width_of(std::string_view text) {
+    std::size_t width = 0;
+    for (; !text.empty(); text.remove_prefix(std::max<std::size_t>(1, utf8_length(text)))) width += columns_of(text);
+    return width;
+}
+
 std::string cell(std::string text, const Column& column) {
     text = on_one_line(text);
-    if (text.size() > column.width) text = text.substr(0, column.width - 1) + "~";
-    const std::string blanks(column.width - text.size(), ' ');
+    if (width_of(text) > column.width) text = clipped(text, column.width - 1) + "~";
+    const std::string blanks(column.width - width_of(text), ' ');
     return (column.is_text ? text + blanks : blanks + text) + " ";
 }
 
 std::string row(const std::array<std::string, 11>& texts, std::size_t width) {
     std::string line;
     for (std::size_t k = 0; k < texts.size(); ++k) line += cell(texts[k], columns_of_table[k]);
-    if (line.size() > width) line.resize(width);
+    line = clipped(line, width);
     while (!line.empty() && line.back() == ' ') line.pop_back();
     return line + "\n";
 }
@@ -81,25 +92,39 @@ int rank(const Json& work) {
 
 }  // namespace
 
+std::string clipped(std::string_view text, std::size_t columns) {
+    std::size_t end = 0, width = 0;
+    while (end < text.size()) {
+        width += columns_of(text.substr(end));
+        if (width > columns) break;
+        end += std::max<std::size_t>(1, utf8_length(text.substr(end)));
+    }
+    return std::string(text.substr(0, end));
+}
+
 std::string status_table(const Json& status, std::size_t columns, std::size_t lines) {
     const Json& memory = status.at("memory");
-    std::string text = "simd, up " + time_text(status.at("up_s")) + ": " + counted(status.at("sessions").size(), "session") + ", " +
-                       counted(status.at("jobs").size(), "job") + ", " + counted(status.at("clients").get<std::size_t>(), "connection") + "; " +
-                       counted(status.at("threads").get<std::size_t>(), "thread") + ", " + std::to_string(status.at("turns_waiting").get<std::size_t>()) +
-                       " waiting to compute; memory promised " + memory_text(memory.at("promised_bytes")) + " of " + memory_text(memory.at("bytes"));
-    if (text.size() > columns) text.resize(columns);
-    text += "\n\n";
+    std::vector<std::string> told;
+    const std::string head = "simd, up " + time_text(status.at("up_s")) + ": " + counted(status.at("sessions").size(), "session") + ", " +
+                             counted(status.at("jobs").size(), "job") + "; " + memory_text(memory.at("promised_bytes")) + " of " + memory_text(memory.at("bytes")) +
+                             " promised; " + counted(status.at("threads").get<std::size_t>(), "thread") + ", " +
+                             std::to_string(status.at("turns_waiting").get<std::size_t>()) + " waiting to compute; " +
+                             counted(status.at("clients").get<std::size_t>(), "connection");
+    told.push_back(clipped(head, columns) + "\n");
+    told.emplace_back("\n");
     std::array<std::string, 11> titles;
     for (std::size_t k = 0; k < titles.size(); ++k) titles[k] = columns_of_table[k].title;
-    text += row(titles, columns);
+    told.push_back(row(titles, columns));
     std::vector<std::pair<int, std::array<std::string, 11>>> rows;
     for (const Json& session : status.at("sessions")) rows.emplace_back(rank(session), texts_of(session, false));
     for (const Json& job : status.at("jobs")) rows.emplace_back(rank(job), texts_of(job, true));
     std::ranges::stable_sort(rows, {}, [](const auto& entry) { return entry.first; });
-    const std::size_t shown = std::min(rows.size(), lines > 4 ? lines - 4 : 1);
-    for (std::size_t k = 0; k < shown; ++k) text += row(rows[k].second, columns);
-    if (rows.empty()) text += "nothing is simulated\n";
-    if (shown < rows.size()) text += "and " + std::to_string(rows.size() - shown) + " more\n";
+    const std::size_t room = lines - std::min(lines, told.size()), shown = rows.size() <= room ? rows.size() : room - std::min<std::size_t>(room, 1);
+    for (std::size_t k = 0; k < shown; ++k) told.push_back(row(rows[k].second, columns));
+    if (rows.empty()) told.push_back(clipped("nothing is simulated", columns) + "\n");
+    if (shown < rows.size()) told.push_back(clipped("and " + std::to_string(rows.size() - shown) + " more", columns) + "\n");
+    std::string text;
+    for (std::size_t k = 0; k < std::min(told.size(), lines); ++k) text += told[k];
     return text;
 }
 

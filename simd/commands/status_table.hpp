@@ -4,8 +4,12 @@
 
 #include <cstddef>
 #include <string>
+#include <string_view>
 
 namespace weave::simd {
+
+/// As much of a text of one line as fits these columns, no character cut in two.
+std::string clipped(std::string_view text, std::size_t columns);
 
 /// The status of a daemon (Daemon::status()) as lines of a terminal, none wider than `columns`; at most `lines` of them, the
 /// busiest first, and how many were left out.

@@ -5,9 +5,9 @@
 
 #include <chrono>
 #include <cstdint>
+#include <functional>
 #include <memory>
 #include <mutex>
-#include <optional>
 #include <string>
 
 namespace weave::simd {
@@ -17,12 +17,12 @@ class Client {
   public:
     using Clock = std::chrono::steady_clock;
 
-    /// `until`: when its right to be here ends; nothing: not by itself.
-    Client(std::string person, std::optional<std::chrono::system_clock::time_point> until, std::shared_ptr<net::WebSocket> socket)
-        : m_person(std::move(person)), m_until(until), m_socket(std::move(socket)) {}
+    /// `may_stay`: whether its right to be here lasts; null: it does not end. Asked under the daemon's lock.
+    Client(std::string person, std::function<bool()> may_stay, std::shared_ptr<net::WebSocket> socket)
+        : m_person(std::move(person)), m_may_stay(std::move(may_stay)), m_socket(std::move(socket)) {}
 
     [[nodiscard]] const std::string& person() const { return m_person; }
-    [[nodiscard]] std::optional<std::chrono::system_clock::time_point> until() const { return m_until; }
+    [[nodiscard]] bool may_stay() const { return !m_may_stay || m_may_stay(); }
     [[nodiscard]] Clock::time_point opened() const { return m_opened; }
 
     /// Queues a message that must arrive.
@@ -44,7 +44,7 @@ class Client {
 
   private:
     const std::string m_person;
-    const std::optional<std::chrono::system_clock::time_point> m_until;
+    const std::function<bool()> m_may_stay;
     const Clock::time_point m_opened = Clock::now();
     const std::shared_ptr<net::WebSocket> m_socket;
     mutable std::mutex m_mutex;

@@ -2,6 +2,7 @@
 
 #include <algorithm>
 #include <simd/daemon/crew.hpp>
+#include <set>
 #include <simd/link/error_form.hpp>
 #include <utility>
 
@@ -35,9 +36,33 @@ Crew::Id Crew::hire(Task& task, const std::string& person, bool is_job) {
     return m_last;
 }
 
-std::size_t Crew::planning() const {
-    return static_cast<std::size_t>(
-        std::ranges::count_if(m_members, [](const auto& entry) { return entry.second.process && !entry.second.is_admitted; }));
+/// How long it has been planning; nothing where it is not.
+std::optional<Crew::Clock::duration> Crew::planning_for(const Member& member, Clock::time_point now) const {
+    if (!member.process || member.is_admitted) return {};
+    return now - member.started;
+}
+
+/// Those that wait to be started, the first first, but for people who have one that plans for long already.
+void Crew::start_some(Clock::time_point now) {
+    std::size_t planning = 0;
+    std::set<std::string> slow;
+    for (const auto& [id, member] : m_members) {
+        const auto time = planning_for(member, now);
+        if (time && *time > m_rules.planning_patience) slow.insert(member.person);
+        else if (time) ++planning;
+    }
+    for (auto next = m_to_start.begin(); next != m_to_start.end() && planning < m_rules.planning_at_once;) {
+        const auto found = m_members.find(*next);
+        if (found != m_members.end() && slow.contains(found->second.person)) {
+            ++next;
+            continue;
+        }
+        const Id id = *next;
+        next = m_to_start.erase(next);
+        if (found == m_members.end()) continue;
+        ++planning;
+        start(id, found->second);
+    }
 }
 
 void Crew::start(Id id, Member& member) {
@@ -48,6 +73,7 @@ void Crew::start(Id id, Member& member) {
                                          [this, id](std::string how) { lost(id, std::move(how)); }});
     if (process) {
         member.process = std::move(*process);
+        member.started = Clock::now();
         m_turns.add(id, member.person, member.is_job);
         return;
     }
@@ -132,16 +158,21 @@ void Crew::dismiss(Id id) {
 }
 
 void Crew::tick(Clock::time_point now) {
-    while (!m_to_start.empty() && planning() < m_rules.planning_at_once) {
-        const Id id = m_to_start.front();
-        m_to_start.pop_front();
-        if (const auto found = m_members.find(id); found != m_members.end()) start(id, found->second);
-    }
+    start_some(now);
     m_turns.tick(now);
+    end_stuck(now);
+}
+
+void Crew::end_stuck(Clock::time_point now) {
+    const std::string time = " for " + std::to_string(m_rules.stall.count()) + " s";
     for (auto& [id, member] : m_members) {
-        const auto kept = m_turns.kept_since_asked(id, now);
-        if (!kept || *kept < m_rules.stall || member.end.failure) continue;
-        member.end.failure = system_fault("it no longer answered for " + std::to_string(m_rules.stall.count()) + " s");
+        if (member.end.failure) continue;
+        const auto kept = m_turns.kept_since_asked(id, now), planning = planning_for(member, now);
+        const bool plans_too_long = planning && *planning >= m_rules.stall;
+        if (!plans_too_long && (!kept || *kept < m_rules.stall)) continue;
+        member.end.failure = plans_too_long ? Error{ErrorCode::refused, "it was being planned" + time + ", as long as anything may: simulate a part of it", "simulation"}
+                                            : system_fault("it no longer answered" + time);
+        member.end.is_final = plans_too_long;
         kill(id);
     }
 }

@@ -30,7 +30,9 @@ class Crew {
         std::uint64_t memory_bytes = 0;     ///< for all workers together
         std::uint64_t planning_bytes = std::uint64_t{2} << 30;  ///< for one that still plans
         std::size_t planning_at_once = 2;
-        std::chrono::seconds stall{300};    ///< a worker that keeps a turn so long after it was asked back is ended
+        /// One that plans for longer no longer keeps others waiting; its person's next ones wait for it.
+        std::chrono::seconds planning_patience{10};
+        std::chrono::seconds stall{300};    ///< a worker that keeps a turn so long after it was asked back, or plans so long, is ended
     };
 
     Crew(std::mutex& lock, const Rules& rules);
@@ -63,6 +65,7 @@ class Crew {
         std::string person;
         bool is_job = false, is_admitted = false;
         std::unique_ptr<WorkerProcess> process;
+        Clock::time_point started{};
         WorkerEnd end;
     };
 
@@ -70,7 +73,9 @@ class Crew {
     void heard(Id id, LinkMessage message);
     void obey(Id id, Member& member, const Json& message);
     void lost(Id id, std::string how);
-    [[nodiscard]] std::size_t planning() const;
+    void start_some(Clock::time_point now);
+    void end_stuck(Clock::time_point now);
+    [[nodiscard]] std::optional<Clock::duration> planning_for(const Member& member, Clock::time_point now) const;
 
     std::mutex& m_lock;
     Rules m_rules;

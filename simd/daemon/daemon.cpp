@@ -112,17 +112,17 @@ void Daemon::forget_what_is_over() {
 /// Those whose right has ended, and those that came and say nothing.
 void Daemon::send_away(Clock::time_point now) {
     constexpr std::chrono::seconds until_hello{10};
-    const auto time = std::chrono::system_clock::now();
     for (const ClientPtr& client : m_clients) {
-        if (client->until() && *client->until() <= time) client->close(1008, "the token has ended");
+        if (!client->may_stay()) client->close(1008, "the token has ended");
         else if (!client->is_greeted && now - client->opened() > until_hello) client->close(1002, "no hello came");
     }
 }
 
 void Daemon::tell_jobs() {
+    const Outlook outlook = this->outlook();
     for (const auto& job : m_jobs) {
         if (job->is_over()) continue;
-        const wire::JobState state = told_state(*job);
+        const wire::JobState state = told_state(*job, outlook);
         for (const ClientPtr& client : m_clients) {
             if (client->is_greeted && client->person() == job->person()) client->tell(wire::JobProgress{state});
         }
@@ -172,27 +172,32 @@ void Daemon::begin_jobs() {
     }
 }
 
-std::optional<double> Daemon::wait_for_job(std::size_t place) const {
-    double left = 0;
-    std::size_t known = 0;
+/// Found out once for all jobs that are told of: there may be thousands.
+Daemon::Outlook Daemon::outlook() {
+    Outlook outlook;
+    for (const Job* const job : queue()) outlook.places.emplace(job, outlook.places.size() + 1);
     for (const auto& job : m_jobs) {
-        const auto left_s = job->state().left_s;
-        if (!left_s) continue;
-        left = known++ == 0 ? *left_s : std::min(left, *left_s);
+        const auto left_s = job->left_s();
+        if (left_s) outlook.first_s = std::min(outlook.first_s.value_or(*left_s), *left_s);
     }
-    if (known == 0 && m_job_seconds.empty()) return {};
+    if (!outlook.first_s && !m_job_seconds.empty()) outlook.first_s = 0;
     double usual = 0;
     for (const double seconds : m_job_seconds) usual += seconds / static_cast<double>(m_job_seconds.size());
-    return left + usual * static_cast<double>(place - 1) / static_cast<double>(std::max<std::size_t>(1, m_settings.jobs_at_once));
+    outlook.each_s = usual / static_cast<double>(std::max<std::size_t>(1, m_settings.jobs_at_once));
+    return outlook;
 }
 
-wire::JobState Daemon::told_state(const Job& job) {
+std::optional<double> Daemon::Outlook::wait_s(std::size_t place) const {
+    if (!first_s) return {};
+    return *first_s + each_s * static_cast<double>(place - 1);
+}
+
+wire::JobState Daemon::told_state(const Job& job, const Outlook& outlook) {
     wire::JobState state = job.state();
-    if (!job.waits()) return state;
-    const std::vector<Job*> waiting = queue();
-    const auto place = static_cast<std::size_t>(std::ranges::find(waiting, &job) - waiting.begin()) + 1;
-    state.place = place;
-    state.wait_s = wait_for_job(place);
+    const auto place = outlook.places.find(&job);
+    if (place == outlook.places.end()) return state;
+    state.place = place->second;
+    state.wait_s = outlook.wait_s(place->second);
     return state;
 }
 

@@ -82,10 +82,18 @@ class Daemon {
     [[nodiscard]] Session::Surroundings around_session();
     [[nodiscard]] Job::Surroundings around_job();
     [[nodiscard]] std::vector<Job*> queue();
-    [[nodiscard]] wire::JobState told_state(const Job& job);
-    [[nodiscard]] std::optional<double> wait_for_job(std::size_t place) const;
+    /// What can be said of the queue.
+    struct Outlook {
+        std::map<const Job*, std::size_t> places;  ///< of those that wait, from 1
+        std::optional<double> first_s;             ///< expected until the next one begins
+        double each_s = 0;                         ///< the same from one to the next
+        [[nodiscard]] std::optional<double> wait_s(std::size_t place) const;
+    };
+    [[nodiscard]] Outlook outlook();
+    [[nodiscard]] static wire::JobState told_state(const Job& job, const Outlook& outlook);
     Session* session_of(const std::string& person, std::uint64_t number);
     Job* job_of(const std::string& person, std::uint64_t number);
+    [[nodiscard]] bool serves_a_session(const ClientPtr& client) const;
     bool answered_before(const ClientPtr& client, const std::string& request);
 
     void create(const ClientPtr& client, const wire::Create& create);

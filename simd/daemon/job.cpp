@@ -39,8 +39,13 @@ wire::JobState Job::state() const {
     state.title = m_kept.title;
     state.step = m_step;
     if (m_step > 0) state.residual = m_residual;
-    if (m_pace && m_phase == wire::JobPhase::running) state.left_s = m_pace->seconds_left();
+    state.left_s = left_s();
     return state;
+}
+
+std::optional<double> Job::left_s() const {
+    if (!m_pace || m_phase != wire::JobPhase::running) return {};
+    return m_pace->seconds_left();
 }
 
 wire::JobEnded Job::ending() const {

@@ -43,6 +43,8 @@ class Job final : public Task {
     /// Memory that it will take, where that is known already.
     [[nodiscard]] std::uint64_t expected() const { return m_points > 0 ? expected_bytes(m_points) : 0; }
     [[nodiscard]] wire::JobState state() const;
+    /// Estimated until its end, seconds.
+    [[nodiscard]] std::optional<double> left_s() const;
     [[nodiscard]] wire::JobEnded ending() const;
     [[nodiscard]] std::optional<std::filesystem::path> yarns() const;
     [[nodiscard]] const std::optional<std::string>& evidence() const { return m_end.evidence; }

@@ -93,6 +93,11 @@ void Daemon::obey_one(const ClientPtr& client, const Message& message) {
 
 // ---- Sessions ----
 
+/// Or will, once what it asked for is planned.
+bool Daemon::serves_a_session(const ClientPtr& client) const {
+    return client->session != 0 || std::ranges::any_of(m_sessions, [&](const auto& session) { return session->is_awaited_by(client); });
+}
+
 void Daemon::create(const ClientPtr& client, const wire::Create& create) {
     const auto refuse = [&](std::string message, std::optional<double> wait_s = {}) {
         client->tell(wire::Refused{create.request, {ErrorCode::refused, std::move(message), "create"}, wait_s});
@@ -101,7 +106,7 @@ void Daemon::create(const ClientPtr& client, const wire::Create& create) {
         if (!session->is_accepted() && session->person() == client->person() && session->request() == create.request)
             return session->wait_for_creation(client);
     }
-    if (client->session != 0) return refuse("this connection serves a session already: use another one");
+    if (serves_a_session(client)) return refuse("this connection serves a session already: use another one");
     if (m_is_stopping) return refuse("the server is being stopped");
     const auto lives = [](const auto& session) { return !session->has_ended(); };
     const auto own = [&](const auto& session) { return !session->has_ended() && session->person() == client->person(); };
@@ -113,7 +118,7 @@ void Daemon::create(const ClientPtr& client, const wire::Create& create) {
 }
 
 void Daemon::attach(const ClientPtr& client, const wire::Attach& attach) {
-    if (client->session != 0)
+    if (serves_a_session(client))
         return client->tell(wire::Refused{attach.request, {ErrorCode::refused, "this connection serves a session already: use another one", "attach"}, {}});
     with_session(client, attach, [&](Session& session) { session.attach(client, attach); });
 }
@@ -135,7 +140,8 @@ void Daemon::submit(const ClientPtr& client, const wire::Submit& submit, const s
     const auto own = [&](const auto& job) { return job->person() == client->person(); };
     if (static_cast<std::size_t>(std::ranges::count_if(m_jobs, own)) >= m_settings.jobs_per_person)
         return refuse({ErrorCode::refused, "you have " + std::to_string(m_settings.jobs_per_person) + " jobs here, as many as one person may", "submit"});
-    const std::optional<double> wait_s = wait_for_job(queue().size() + 1);
+    const Outlook outlook = this->outlook();
+    const std::optional<double> wait_s = outlook.wait_s(outlook.places.size() + 1);
     const auto text = [&](std::uint64_t number) { return wire::write_message(wire::Accepted{submit.request, {}, number, wait_s}); };
     const NewJob fresh{client->person(), submit.request, title, submit.document, simulation_text(submit.simulation, submit.flips)};
     const auto made = m_store->add_job(fresh, text);
@@ -147,8 +153,9 @@ void Daemon::submit(const ClientPtr& client, const wire::Submit& submit, const s
 
 void Daemon::list_jobs(const ClientPtr& client, const std::string& request) {
     wire::JobList list{request, {}};
+    const Outlook outlook = this->outlook();
     for (const auto& job : m_jobs) {
-        if (job->person() == client->person()) list.jobs.push_back(told_state(*job));
+        if (job->person() == client->person()) list.jobs.push_back(told_state(*job, outlook));
     }
     client->tell(list);
 }

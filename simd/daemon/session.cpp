@@ -89,8 +89,7 @@ Status Session::become_accepted() {
         return system_fault("cannot make a folder for the session: " + code.message());
     }
     for (const ClientPtr& client : m_creators) {
-        client->session = m_number;
-        m_clients.push_back(client);
+        if (std::exchange(client->session, m_number) == 0) m_clients.push_back(client);  // once, however often it asked
         client->tell(net::make_bytes(text(m_number)));
     }
     m_creators.clear();

@@ -3,6 +3,7 @@
 #include <weave/net/message.hpp>
 #include <weave/wire/message.hpp>
 
+#include <algorithm>
 #include <chrono>
 #include <cstdint>
 #include <filesystem>
@@ -51,6 +52,8 @@ class Session final : public Task {
     // ---- What clients ask; each answers ----
 
     void wait_for_creation(const ClientPtr& client) { m_creators.push_back(client); }
+    /// Is one of those that asked for this session, which is still being planned.
+    [[nodiscard]] bool is_awaited_by(const ClientPtr& client) const { return std::ranges::find(m_creators, client) != m_creators.end(); }
     void attach(const ClientPtr& client, const wire::Attach& attach);
     void leave(const ClientPtr& client);
     void go_on(const ClientPtr& client, const std::string& request, std::optional<std::uint64_t> steps);

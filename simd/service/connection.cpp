@@ -17,7 +17,7 @@ Connection::~Connection() {
 }
 
 void Connection::opened(std::shared_ptr<net::WebSocket> socket) {
-    m_client = std::make_shared<Client>(m_visitor.person, m_visitor.until, std::move(socket));
+    m_client = std::make_shared<Client>(m_visitor.person, m_visitor.may_stay, std::move(socket));
     m_daemon.enter(m_client);
 }
 

@@ -1,5 +1,6 @@
 #include <weave/core/text.hpp>
 #include <weave/keys/codes.hpp>
+#include <weave/keys/hex.hpp>
 #include <weave/keys/private_file.hpp>
 
 #include <algorithm>
@@ -28,21 +29,27 @@ Status save(const std::filesystem::path& file, const std::map<std::string, std::
 
 }  // namespace
 
-Result<std::map<std::string, std::string>> read_local_tokens(const std::filesystem::path& file) {
+Result<std::map<std::string, std::string>> parse_local_tokens(std::string_view text) {
     std::map<std::string, std::string> people;
-    std::error_code missing;
-    if (file.empty() || !std::filesystem::exists(file, missing)) return people;
-    WEAVE_TRY(const SecretBytes bytes, read_private_file(file, most_bytes));
-    std::istringstream lines(std::string(bytes.data(), bytes.data() + bytes.size()));
+    std::istringstream lines{std::string(text)};
     std::size_t number = 0;
     for (std::string line; std::getline(lines, line);) {
         ++number;
         const std::size_t space = line.find(' ');
         const std::string person = line.substr(0, space), hash = space == std::string::npos ? "" : line.substr(space + 1);
-        if (hash.size() != hash_characters || !check_name(person))
-            return bad_input("must be a name and the SHA-256 of a token", file.string() + ": line " + std::to_string(number));
+        if (!is_hex(hash, hash_characters) || !check_name(person))
+            return bad_input("must be a name and the SHA-256 of a token", "line " + std::to_string(number));
         people[hash] = person;
     }
+    return people;
+}
+
+Result<std::map<std::string, std::string>> read_local_tokens(const std::filesystem::path& file) {
+    std::error_code missing;
+    if (file.empty() || !std::filesystem::exists(file, missing)) return std::map<std::string, std::string>();
+    WEAVE_TRY(const SecretBytes bytes, read_private_file(file, most_bytes));
+    auto people = parse_local_tokens({reinterpret_cast<const char*>(bytes.data()), bytes.size()});
+    if (!people) return std::move(people).error().in(file.string());
     return people;
 }
 

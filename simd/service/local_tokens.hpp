@@ -5,6 +5,7 @@
 #include <filesystem>
 #include <map>
 #include <string>
+#include <string_view>
 
 namespace weave::simd {
 
@@ -15,6 +16,8 @@ namespace weave::simd {
 Result<std::string> add_local_token(const std::filesystem::path& file, const std::string& person);
 /// Refused: there is none of this name.
 Status remove_local_token(const std::filesystem::path& file, const std::string& person);
+/// The same of the text of such a file. Errors name the line.
+Result<std::map<std::string, std::string>> parse_local_tokens(std::string_view text);
 /// Names by the hashes of their tokens; none where there is no file. Errors: a file that others may read, a broken line.
 Result<std::map<std::string, std::string>> read_local_tokens(const std::filesystem::path& file);
 

@@ -40,7 +40,7 @@ std::string residual_text(const Json& residual) {
 
 std::string sessions_table(const Json& sessions) {
     if (sessions.empty()) return "<p>No session is open.</p>\n";
-    std::string table = "<div class=\"wide\"><table><tr><th>Session</th><th>State</th><th>Steps</th><th>a second</th><th>Residual</th>"
+    std::string table = "<div class=\"wide\"><table><tr><th>Session</th><th>State</th><th>Steps</th><th>Steps a second</th><th>Residual</th>"
                         "<th>Points</th><th>Memory</th><th>Computed</th><th>Watched by</th></tr>\n";
     for (const Json& session : sessions) {
         table += "<tr>" + cell(std::to_string(session.at("session").get<std::uint64_t>())) + cell(session.at("phase")) +
@@ -58,10 +58,11 @@ std::string jobs_table(const Json& jobs) {
                         "<th>Computed</th><th>Still takes</th></tr>\n";
     for (const Json& job : jobs) {
         const Json& left = job.at("left_s");
+        const bool has_begun = job.at("points") > 0;
         table += "<tr>" + cell(std::to_string(job.at("job").get<std::uint64_t>())) + cell(job.at("phase")) +
                  cell(std::to_string(job.at("step").get<std::uint64_t>())) + cell(residual_text(job.at("residual"))) +
-                 cell(std::to_string(job.at("points").get<std::uint64_t>())) + cell(memory_text(job.at("memory_bytes"))) +
-                 cell(time_text(job.at("computed_s"))) + cell(left.is_null() ? "–" : "some " + time_text(left)) + "</tr>\n";
+                 cell(has_begun ? std::to_string(job.at("points").get<std::uint64_t>()) : "–") + cell(has_begun ? memory_text(job.at("memory_bytes")) : "–") +
+                 cell(has_begun ? time_text(job.at("computed_s")) : "–") + cell(left.is_null() ? "–" : "about " + time_text(left)) + "</tr>\n";
     }
     return table + "</table></div>\n";
 }
@@ -83,7 +84,7 @@ std::string status_page(const Json& status, const std::string& version) {
     const auto whole = memory.at("bytes").get<std::uint64_t>(), promised = memory.at("promised_bytes").get<std::uint64_t>();
     const double share = whole == 0 ? 0 : 100 * static_cast<double>(promised) / static_cast<double>(whole);
     std::string page = head;
-    page += "<h1>simd " + version + "</h1><p>serves for " + time_text(status.at("up_s")) + " with " +
+    page += "<h1>simd " + version + "</h1><p>has served for " + time_text(status.at("up_s")) + " with " +
             std::to_string(status.at("threads").get<std::uint64_t>()) + " threads; " + std::to_string(status.at("turns_waiting").get<std::uint64_t>()) +
             " wait to compute; " + std::to_string(status.at("clients").get<std::uint64_t>()) + " connections</p>\n";
     page += "<h2>Memory</h2><div class=\"bar\"><i style=\"width:" + number_text(share, "%.1f") + "%\"></i></div><p>" + memory_text(promised) + " of " +

@@ -3,7 +3,10 @@
 #include <weave/net/health.hpp>
 #include <weave/wire/message.hpp>
 
+#include <algorithm>
 #include <functional>
+#include <map>
+#include <mutex>
 #include <simd/service/connection.hpp>
 #include <simd/service/page.hpp>
 #include <simd/service/routes.hpp>
@@ -48,7 +51,42 @@ Response file_answer(const std::filesystem::path& path) {
     return net::answer(200, "application/octet-stream", net::make_bytes(std::move(*bytes)));
 }
 
-Response session_yarns(Daemon& daemon, const Visitor& visitor, const Request& request) {
+/// Bounds how many threads that answer wait for sessions to write files, so that there are always some for everybody else.
+class WaitingRoom {
+  public:
+    explicit WaitingRoom(std::size_t workers) : m_most(std::max<std::size_t>(1, workers / 2)), m_most_of_one(std::max<std::size_t>(1, workers / 4)) {}
+
+    /// A seat, as long as it lives; null where there is none.
+    std::shared_ptr<void> seat(const std::string& person) {
+        const std::lock_guard lock(m_mutex);
+        if (m_taken == m_most || m_taken_by[person] == m_most_of_one) return nullptr;
+        ++m_taken;
+        ++m_taken_by[person];
+        return {this, [person](WaitingRoom* room) { room->leave(person); }};
+    }
+
+  private:
+    void leave(const std::string& person) {
+        const std::lock_guard lock(m_mutex);
+        --m_taken;
+        if (--m_taken_by[person] == 0) m_taken_by.erase(person);
+    }
+
+    const std::size_t m_most, m_most_of_one;
+    std::mutex m_mutex;
+    std::size_t m_taken = 0;
+    std::map<std::string, std::size_t> m_taken_by;
+};
+
+Response come_again() {
+    Response response = net::error_answer(Error{ErrorCode::refused, "too many wait for files of sessions: try again", "yarns"}, 503);
+    response.headers.set("Retry-After", "1");
+    return response;
+}
+
+Response session_yarns(Daemon& daemon, WaitingRoom& waiting, const Visitor& visitor, const Request& request) {
+    const auto seat = waiting.seat(visitor.person);
+    if (!seat) return come_again();
     const auto path = daemon.session_yarns(visitor.person, number_in(request, "session"));
     if (!path) return not_there(path.error());
     Response response = file_answer(*path);
@@ -84,7 +122,9 @@ Result<net::Router> service_routes(const ServiceParts& parts) {
     WEAVE_CHECK_OK(router.add({"wire", "GET", "/api/v1/wire", "The protocol, over a WebSocket.", wire::most_client_bytes, {},
                                [parts](const Request& request) { return open_wire(parts, request); }}));
     WEAVE_CHECK_OK(get("session.yarns", "/api/v1/sessions/{session}/yarns", "The yarns of a session as they lie.",
-                       for_visitors(parts.doorkeeper, [&daemon](const Visitor& visitor, const Request& request) { return session_yarns(daemon, visitor, request); })));
+                       for_visitors(parts.doorkeeper, [&daemon, waiting = std::make_shared<WaitingRoom>(parts.workers)](const Visitor& visitor, const Request& request) {
+                           return session_yarns(daemon, *waiting, visitor, request);
+                       })));
     WEAVE_CHECK_OK(get("job.yarns", "/api/v1/jobs/{job}/yarns", "The yarns of a job that has ended.",
                        for_visitors(parts.doorkeeper, [&daemon](const Visitor& visitor, const Request& request) { return job_yarns(daemon, visitor, request); })));
     WEAVE_CHECK_OK(get("job.evidence", "/api/v1/jobs/{job}/evidence", "The signed evidence of a job that is done.",

@@ -3,6 +3,7 @@
 #include <weave/net/metrics.hpp>
 #include <weave/net/router.hpp>
 
+#include <cstddef>
 #include <memory>
 #include <simd/daemon/daemon.hpp>
 #include <simd/service/visitors.hpp>
@@ -16,6 +17,7 @@ struct ServiceParts {
     Doorkeeper& doorkeeper;
     std::shared_ptr<net::Metrics> metrics;
     std::string version;  ///< of the program
+    std::size_t workers;  ///< threads that answer
 };
 
 Result<net::Router> service_routes(const ServiceParts& parts);

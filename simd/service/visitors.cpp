@@ -37,17 +37,18 @@ Result<Visitor> Doorkeeper::let_in(const net::Request& request) {
 }
 
 std::optional<Visitor> Doorkeeper::visitor_of(const std::string& token) {
-    if (auto person = local_person(token)) return Visitor{std::move(*person), {}, false};
+    if (const auto person = local_person(token_hash(token)))
+        return Visitor{*person, [this, hash = token_hash(token), person = *person] { return local_person(hash) == person; }, false};
     const auto read = read_access_token(token, m_rules.keys, std::chrono::floor<std::chrono::seconds>(std::chrono::system_clock::now()));
     if (!read || read->person == local_person_name) return {};
     if (!m_rules.site.empty() && read->site != m_rules.site) return {};
-    return Visitor{read->person, read->expires, false};
+    return Visitor{read->person, [until = read->expires] { return std::chrono::system_clock::now() < until; }, false};
 }
 
-std::optional<std::string> Doorkeeper::local_person(const std::string& token) {
+std::optional<std::string> Doorkeeper::local_person(const std::string& hash) {
     const std::lock_guard lock(m_mutex);
     read_file();
-    const auto found = m_people.find(token_hash(token));  // of a hash, so how long it takes tells nothing of a token
+    const auto found = m_people.find(hash);  // of a hash, so how long it takes tells nothing of a token
     if (found == m_people.end()) return {};
     return found->second;
 }
@@ -65,7 +66,9 @@ void Doorkeeper::read_file() {
     auto people = read_local_tokens(m_rules.file);
     if (!people) log(LogLevel::warning, people.error().text());
     m_people = people ? std::move(*people) : std::map<std::string, std::string>{};
-    m_read = written;
+    // What was written just now may be written again within the same tick of the clock.
+    const bool has_settled = std::filesystem::file_time_type::clock::now() - written > std::chrono::seconds(1);
+    m_read = has_settled ? written : std::filesystem::file_time_type{};
 }
 
 }  // namespace weave::simd

@@ -7,6 +7,7 @@
 
 #include <chrono>
 #include <filesystem>
+#include <functional>
 #include <map>
 #include <mutex>
 #include <optional>
@@ -18,7 +19,7 @@ namespace weave::simd {
 /// Who sent a request.
 struct Visitor {
     std::string person;
-    std::optional<std::chrono::system_clock::time_point> until;  ///< as long as the token counts
+    std::function<bool()> may_stay;  ///< whether the token counts still; null: it needs none. No longer than the doorkeeper lives
     bool is_local = false;  ///< over the Unix socket: the owner of the machine
 };
 
@@ -39,7 +40,7 @@ class Doorkeeper {
 
   private:
     std::optional<Visitor> visitor_of(const std::string& token);
-    std::optional<std::string> local_person(const std::string& token);
+    std::optional<std::string> local_person(const std::string& hash);
     void read_file();
 
     TokenRules m_rules;

@@ -4,7 +4,7 @@
 #include <simd/worker/checkpoint.hpp>
 #include <string>
 #include <string_view>
-#include <vector>
+#include <utility>
 
 namespace weave::simd {
 
@@ -13,6 +13,11 @@ namespace {
 constexpr std::string_view heading = "weave checkpoint 1\n";
 constexpr std::size_t hash_bytes = 64;
 constexpr std::uint64_t most_bytes = std::uint64_t{16} << 30;
+
+Result<std::uint64_t> number_of(const Json& json, const char* member) {
+    if (!json.contains(member) || !json.at(member).is_number_unsigned()) return bad_input("was damaged", member);
+    return json.at(member).get<std::uint64_t>();
+}
 
 Json optional_json(const std::optional<std::uint64_t>& number) {
     return number ? Json(*number) : Json();
@@ -34,24 +39,34 @@ Status write_checkpoint(const std::filesystem::path& folder, const Checkpoint& c
     return write_file(checkpoint_path(folder), std::string(heading) + sha256_hex(body) + "\n" + body);
 }
 
+Result<Checkpoint> parse_checkpoint(std::string_view bytes) try {
+    const std::size_t begin = heading.size() + hash_bytes + 1;
+    if (!bytes.starts_with(heading) || bytes.size() < begin || bytes[begin - 1] != '\n') return bad_input("is no checkpoint of this version");
+    const std::string_view body = bytes.substr(begin);
+    if (sha256_hex(body) != bytes.substr(heading.size(), hash_bytes)) return bad_input("was damaged");
+    const Json json = Json::from_cbor(body, true, false);
+    if (!json.is_object()) return bad_input("was damaged");
+    Checkpoint checkpoint;
+    WEAVE_TRY(checkpoint.step, number_of(json, "step"));
+    WEAVE_TRY(checkpoint.changes, number_of(json, "changes"));
+    if (!json.contains("flip") || !json.at("flip").is_null()) {
+        WEAVE_TRY(checkpoint.flip, number_of(json, "flip"));
+    }
+    if (!json.contains("run")) return bad_input("was damaged", "run");
+    checkpoint.run = json.at("run");
+    return checkpoint;
+} catch (const Json::exception&) {  // sizes that no memory has are thrown, whatever is asked for
+    return bad_input("was damaged");
+}
+
 Result<std::optional<Checkpoint>> read_checkpoint(const std::filesystem::path& folder) {
     const std::filesystem::path path = checkpoint_path(folder);
     std::error_code missing;
     if (!std::filesystem::exists(path, missing)) return std::optional<Checkpoint>();
     WEAVE_TRY(const std::string bytes, read_file(path, most_bytes));
-    const std::string_view text(bytes);
-    const std::size_t begin = heading.size() + hash_bytes + 1;
-    if (!text.starts_with(heading) || text.size() < begin) return bad_input("is no checkpoint of this version", path.string());
-    const std::string_view body = text.substr(begin);
-    if (sha256_hex(body) != text.substr(heading.size(), hash_bytes)) return bad_input("was damaged", path.string());
-    try {
-        const Json json = Json::from_cbor(body);
-        Checkpoint checkpoint{json.at("step"), json.at("changes"), {}, json.at("run")};
-        if (!json.at("flip").is_null()) checkpoint.flip = json.at("flip").get<std::uint64_t>();
-        return std::optional<Checkpoint>(std::move(checkpoint));
-    } catch (const Json::exception& broken) {
-        return bad_input(std::string("was damaged: ") + broken.what(), path.string());
-    }
+    auto checkpoint = parse_checkpoint(bytes);
+    if (!checkpoint) return Error{checkpoint.error().code, checkpoint.error().message, path.string()};
+    return std::optional<Checkpoint>(std::move(*checkpoint));
 }
 
 }  // namespace weave::simd

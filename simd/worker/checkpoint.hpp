@@ -6,6 +6,7 @@
 #include <cstdint>
 #include <filesystem>
 #include <optional>
+#include <string_view>
 
 namespace weave::simd {
 
@@ -22,6 +23,9 @@ std::filesystem::path checkpoint_path(const std::filesystem::path& folder);
 
 /// Writes it, whole or not at all: a line that names the format, the SHA-256 of the rest, the rest as CBOR (RFC 8949).
 Status write_checkpoint(const std::filesystem::path& folder, const Checkpoint& checkpoint);
+
+/// The checkpoint that these bytes of a file are. Errors: bytes that were damaged, or are of another version.
+Result<Checkpoint> parse_checkpoint(std::string_view bytes);
 
 /// The checkpoint of a folder; nothing where there is none. Errors: one that was damaged, or is of another version.
 Result<std::optional<Checkpoint>> read_checkpoint(const std::filesystem::path& folder);

@@ -99,7 +99,8 @@ inline std::string document_of(const std::string& sample) {
 /// A session that somebody follows, with all that was told of it.
 class Followed {
   public:
-    Followed(const Box& box, const std::string& document, const wire::Simulation& simulation) : m_follower(box.follower()) {
+    Followed(const Box& box, const std::string& document, const wire::Simulation& simulation) : Followed(box.follower(), document, simulation) {}
+    Followed(wire::Follower follower, const std::string& document, const wire::Simulation& simulation) : m_follower(std::move(follower)) {
         auto accepted = m_follower.create(document, simulation, 60s);
         INFO((accepted ? "" : accepted.error().text()));
         REQUIRE(accepted);

@@ -49,6 +49,12 @@ class Program {
         for (char c = 0; ::read(m_answer, &c, 1) == 1 && c != '\n';) text += c;
         return text;
     }
+    /// All that is left of its answer, until it ends.
+    [[nodiscard]] std::string rest() const {
+        std::string text;
+        for (char c = 0; ::read(m_answer, &c, 1) == 1;) text += c;
+        return text;
+    }
     void end(int signal) const { ::kill(m_process, signal); }
     [[nodiscard]] pid_t process() const { return m_process; }
     /// Waits for its end.
