@@ -2,7 +2,6 @@
 
 #include <weave/core/json.hpp>
 #include <weave/core/result.hpp>
-#include <weave/keys/hash.hpp>
 
 #include <algorithm>
 #include <array>
