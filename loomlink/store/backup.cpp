@@ -1,8 +1,9 @@
+#include <weave/sql/database.hpp>
+
 #include <cerrno>
 #include <cstring>
 #include <fcntl.h>
 #include <loomlink/store/backup.hpp>
-#include <loomlink/store/database.hpp>
 #include <loomlink/store/store.hpp>
 #include <unistd.h>
 

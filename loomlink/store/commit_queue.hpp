@@ -1,11 +1,11 @@
 #pragma once
 
 #include <weave/core/result.hpp>
+#include <weave/sql/database.hpp>
 
 #include <condition_variable>
 #include <deque>
 #include <functional>
-#include <loomlink/store/database.hpp>
 #include <loomlink/store/writer.hpp>
 #include <memory>
 #include <mutex>

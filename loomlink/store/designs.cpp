@@ -1,6 +1,6 @@
 #include <weave/core/json.hpp>
+#include <weave/sql/database.hpp>
 
-#include <loomlink/store/database.hpp>
 #include <loomlink/store/reader.hpp>
 #include <loomlink/store/words.hpp>
 #include <loomlink/store/writer.hpp>
@@ -26,16 +26,16 @@ std::int64_t number_of(Seq seq) {
 Revision revision_of(const sql::Row& row) {
     Revision revision;
     revision.id = row.integer(0);
-    revision.hash = row.hash(1);
+    revision.hash = row.fixed<Hash>(1);
     revision.design = row.integer(2);
     revision.number = row.integer(3);
     revision.author = row.integer(4);
     revision.at = row.bytes(5);
     revision.message = row.bytes(6);
-    revision.document = row.hash(7);
-    revision.design_sha256 = row.hash(8);
-    revision.scene_sha256 = row.hash(9);
-    revision.card_sha256 = row.hash(10);
+    revision.document = row.fixed<Hash>(7);
+    revision.design_sha256 = row.fixed<Hash>(8);
+    revision.scene_sha256 = row.fixed<Hash>(9);
+    revision.card_sha256 = row.fixed<Hash>(10);
     revision.picks = row.integer(11);
     revision.ends = row.integer(12);
     revision.event = seq_of(row, 13);
@@ -170,9 +170,9 @@ Reader::List<Evidence> Reader::evidence(const Hash& design_sha256, const Hash& s
         "e.converged, o.hash, e.signer, e.event FROM evidence e JOIN object o ON o.id = e.report "
         "WHERE e.design_sha256 = ? AND e.scene_sha256 = ? ORDER BY e.id",
         [](const sql::Row& row) {
-            Evidence evidence{row.integer(0), row.hash(1),  row.hash(2),   row.real(3),
+            Evidence evidence{row.integer(0), row.fixed<Hash>(1),  row.fixed<Hash>(2),   row.real(3),
                               row.bytes(4),   row.bytes(5), row.bytes(6),  std::nullopt,
-                              false,          row.hash(9),  row.bytes(10), seq_of(row, 11)};
+                              false,          row.fixed<Hash>(9),  row.bytes(10), seq_of(row, 11)};
             if (!row.is_null(7)) evidence.residual = row.real(7);
             evidence.converged = row.integer(8) != 0;
             return evidence;
@@ -204,7 +204,7 @@ Result<Revision> Writer::add_revision(const Revision& given) {
     for (const Id parent : given.parents) {
         WEAVE_TRY(const auto hash, connection().one(
                                        "SELECT hash FROM revision WHERE id = ?",
-                                       [](const sql::Row& row) { return row.hash(0); }, parent));
+                                       [](const sql::Row& row) { return row.fixed<Hash>(0); }, parent));
         if (!hash) return no_such("revision");
         parents.push_back(*hash);
     }

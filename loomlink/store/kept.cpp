@@ -1,6 +1,7 @@
+#include <weave/sql/database.hpp>
+
 #include <algorithm>
 #include <loomlink/keys/trust.hpp>
-#include <loomlink/store/database.hpp>
 #include <loomlink/store/reader.hpp>
 #include <utility>
 

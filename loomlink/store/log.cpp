@@ -1,4 +1,5 @@
-#include <loomlink/store/database.hpp>
+#include <weave/sql/database.hpp>
+
 #include <loomlink/store/reader.hpp>
 #include <loomlink/store/writer.hpp>
 
@@ -55,7 +56,7 @@ Result<EventRecord> Reader::record(Seq seq) const {
 
 NodeReader Reader::nodes() const {
     return [database = m_connection](NodePlace place) -> Result<Hash> {
-        const auto make = [](const sql::Row& row) { return row.hash(0); };
+        const auto make = [](const sql::Row& row) { return row.fixed<Hash>(0); };
         const std::int64_t index = signed_of(place.index);
         WEAVE_TRY(const auto hash,
                   place.level == 0
@@ -100,7 +101,7 @@ Reader::Maybe<AuditBundle> Reader::bundle() const {
     WEAVE_CHECK_OK(connection().each(
         "SELECT leaf, record FROM event WHERE seq < ? ORDER BY seq",
         [&](const sql::Row& row) {
-            bundle.leaves.push_back(row.hash(0));
+            bundle.leaves.push_back(row.fixed<Hash>(0));
             bundle.records.push_back(row.bytes(1));
         },
         signed_of(bundle.head.head.size)));

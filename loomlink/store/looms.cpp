@@ -1,4 +1,5 @@
-#include <loomlink/store/database.hpp>
+#include <weave/sql/database.hpp>
+
 #include <loomlink/store/reader.hpp>
 #include <loomlink/store/words.hpp>
 #include <loomlink/store/writer.hpp>
@@ -32,7 +33,7 @@ Release release_of(const sql::Row& row) {
     release.revision = row.integer(3);
     release.profile_version = row.integer(4);
     release.feeders = row.bytes(5);
-    release.manifest = row.hash(6);
+    release.manifest = row.fixed<Hash>(6);
     release.event = seq_of(row, 7);
     release.state = words::value_of<ReleaseStage>(words::release_states, row.bytes(8));
     return release;
@@ -44,7 +45,7 @@ Status fill(sql::Connection& connection, Release& release) {
         "= ? "
         "ORDER BY f.name",
         [&](const sql::Row& row) {
-            release.files.push_back({row.bytes(0), row.hash(1), row.integer(2)});
+            release.files.push_back({row.bytes(0), row.fixed<Hash>(1), row.integer(2)});
         },
         release.id));
     return connection.each(
@@ -76,7 +77,7 @@ Reader::List<LoomProfileVersion> Reader::profiles(Id loom) const {
         "SELECT p.loom, p.version, o.hash, p.event FROM loom_profile p JOIN object o ON o.id = p.object "
         "WHERE p.loom = ? ORDER BY p.version",
         [](const sql::Row& row) {
-            return LoomProfileVersion{row.integer(0), row.integer(1), row.hash(2), seq_of(row, 3)};
+            return LoomProfileVersion{row.integer(0), row.integer(1), row.fixed<Hash>(2), seq_of(row, 3)};
         },
         loom);
 }

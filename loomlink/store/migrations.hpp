@@ -1,26 +1,15 @@
 #pragma once
 
-#include <loomlink/store/database.hpp>
+#include <weave/sql/migrations.hpp>
+
 #include <span>
-#include <string_view>
 
-namespace weave::loomlink::sql {
-
-/// What brings a database from the version before to `version`.
-struct Migration {
-    int version;
-    std::string_view script;
-};
+namespace weave::loomlink {
 
 /// `db/migrations/*.sql`, built in, from version 1 on.
-std::span<const Migration> migrations();
+std::span<const sql::Migration> migrations();
 
 /// Marks the file as a store of loomlink ("WvLL").
-inline constexpr int application_id = 0x57764c4c;
+inline constexpr sql::Owner store_owner{0x57764c4c, "loomlink"};
 
-/// Brings a database to the last version, each step in a transaction of its own with its foreign keys
-/// checked. An empty database becomes a store. Refused: a version newer than the last one, and another
-/// program's database.
-Status migrate(Connection& connection, std::span<const Migration> steps);
-
-}  // namespace weave::loomlink::sql
+}  // namespace weave::loomlink

@@ -1,5 +1,6 @@
+#include <weave/sql/database.hpp>
+
 #include <loomlink/store/chunks.hpp>
-#include <loomlink/store/database.hpp>
 #include <loomlink/store/reader.hpp>
 #include <loomlink/store/unpack.hpp>
 #include <loomlink/store/writer.hpp>

@@ -1,4 +1,5 @@
-#include <loomlink/store/database.hpp>
+#include <weave/sql/database.hpp>
+
 #include <loomlink/store/reader.hpp>
 #include <loomlink/store/words.hpp>
 #include <loomlink/store/writer.hpp>
@@ -18,7 +19,8 @@ Person person_of(const sql::Row& row) {
 }
 
 PersonKey key_of(const sql::Row& row) {
-    PersonKey key{row.bytes(0), {}, row.bytes(2), row.hash(3), {}, static_cast<Seq>(row.integer(5)), {}};
+    PersonKey key{
+        row.bytes(0), {}, row.bytes(2), row.fixed<Hash>(3), {}, static_cast<Seq>(row.integer(5)), {}};
     if (!row.is_null(1)) key.person = row.integer(1);
     if (!row.is_null(4)) key.sealed = row.bytes(4);
     if (!row.is_null(6)) key.revoked = static_cast<Seq>(row.integer(6));
@@ -95,7 +97,7 @@ Reader::Maybe<Session> Reader::session(const Hash& token, const std::string& now
     return connection().one(
         "SELECT token, person, expires, csrf FROM session WHERE token = ? AND expires > ?",
         [](const sql::Row& row) {
-            return Session{row.hash(0), row.integer(1), row.bytes(2), row.bytes(3)};
+            return Session{row.fixed<Hash>(0), row.integer(1), row.bytes(2), row.bytes(3)};
         },
         token, now);
 }

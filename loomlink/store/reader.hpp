@@ -11,11 +11,11 @@
 #include <utility>
 #include <vector>
 
-namespace weave::loomlink {
-
-namespace sql {
+namespace weave::sql {
 class Connection;
 }
+
+namespace weave::loomlink {
 
 /// Which records of the log are asked for.
 struct EventFilter {

@@ -1,4 +1,5 @@
-#include <loomlink/store/database.hpp>
+#include <weave/sql/database.hpp>
+
 #include <loomlink/store/reader.hpp>
 #include <loomlink/store/writer.hpp>
 
@@ -8,7 +9,9 @@ namespace {
 
 Invitation invitation_of(const sql::Row& row) {
     Invitation invitation{
-        row.hash(0), row.bytes(1), {}, row.bytes(3), row.bytes(4), static_cast<Seq>(row.integer(5)), {}};
+        row.fixed<Hash>(0), row.bytes(1), {}, row.bytes(3),
+        row.bytes(4),       static_cast<Seq>(row.integer(5)),
+        {}};
     if (!row.is_null(2)) invitation.name = row.bytes(2);
     if (!row.is_null(6)) invitation.used = static_cast<Seq>(row.integer(6));
     return invitation;
@@ -22,7 +25,7 @@ std::int64_t number_of(Seq seq) {
 using TrustRow = std::pair<SitePaper, Hash>;
 
 TrustRow trust_row(const sql::Row& row) {
-    return {{row.integer(0), {}, static_cast<Seq>(row.integer(2))}, row.hash(1)};
+    return {{row.integer(0), {}, static_cast<Seq>(row.integer(2))}, row.fixed<Hash>(1)};
 }
 
 Result<SitePaper> with_text(const Reader& reader, TrustRow row) {

@@ -1,7 +1,8 @@
+#include <weave/sql/database.hpp>
+
 #include <condition_variable>
 #include <loomlink/store/backup.hpp>
 #include <loomlink/store/commit_queue.hpp>
-#include <loomlink/store/database.hpp>
 #include <loomlink/store/migrations.hpp>
 #include <loomlink/store/store.hpp>
 #include <mutex>
@@ -105,7 +106,7 @@ Store& Store::operator=(Store&&) noexcept = default;
 Result<Store> Store::create(const fs::path& path, const std::string& site) {
     const auto fill = [&](const std::string& temporary) -> Status {
         WEAVE_TRY(auto connection, sql::Connection::open(temporary, sql::Access::create));
-        WEAVE_CHECK_OK(sql::migrate(*connection, sql::migrations()));
+        WEAVE_CHECK_OK(sql::migrate(*connection, migrations(), store_owner));
         return connection->run("INSERT INTO site (one, name) VALUES (1, ?)", site);
     };
     WEAVE_CHECK_OK(make_database(path, fill));
@@ -114,7 +115,7 @@ Result<Store> Store::create(const fs::path& path, const std::string& site) {
 
 Result<Store> Store::open(const fs::path& path) {
     WEAVE_TRY(auto connection, sql::Connection::open(path.string(), sql::Access::write));
-    Status status = sql::migrate(*connection, sql::migrations());
+    Status status = sql::migrate(*connection, migrations(), store_owner);
     if (!status) return std::move(status).error().in(path.string());
     WEAVE_CHECK_OK(Reader(*connection).site());
     return Store(std::make_unique<Core>(path.string(), std::move(connection)));

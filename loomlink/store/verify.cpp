@@ -33,7 +33,7 @@ Result<std::set<std::string>> rules_of(sql::Connection& connection) {
 /// The rules that keep history are part of the schema: a store that lacks one was opened by something else.
 Status inspect_schema(Inspection& inspection) {
     WEAVE_TRY(auto fresh, sql::Connection::open(":memory:", sql::Access::create));
-    WEAVE_CHECK_OK(sql::migrate(*fresh, sql::migrations()));
+    WEAVE_CHECK_OK(sql::migrate(*fresh, migrations(), store_owner));
     WEAVE_TRY(const auto expected, rules_of(*fresh));
     WEAVE_TRY(const auto found, rules_of(inspection.connection));
     const auto name_of = [](const std::string& entry) { return entry.substr(0, entry.find(':')); };
@@ -48,7 +48,7 @@ Status inspect_chunks(Inspection& inspection) {
     return inspection.connection.each(
         "SELECT id, hash, size, packed, bytes FROM chunk ORDER BY id", [&](const sql::Row& row) {
             const auto plain = unpack_chunk(row.bytes(4), row.integer(3) != 0, row.integer(2));
-            if (!plain || sha256(*plain) != row.hash(1))
+            if (!plain || sha256(*plain) != row.fixed<Hash>(1))
                 inspection.find("chunk " + std::to_string(row.integer(0)), "is not what its hash says");
         });
 }
@@ -75,7 +75,7 @@ Status inspect_objects(Inspection& inspection) {
     WEAVE_TRY(
         const auto objects,
         inspection.connection.all("SELECT id, hash, size FROM object ORDER BY id", [](const sql::Row& row) {
-            return std::tuple(row.integer(0), row.hash(1), row.integer(2));
+            return std::tuple(row.integer(0), row.fixed<Hash>(1), row.integer(2));
         }));
     for (const auto& [id, hash, size] : objects) WEAVE_CHECK_OK(inspect_object(inspection, id, hash, size));
     return {};
@@ -138,8 +138,8 @@ Status inspect_rules(Inspection& inspection) {
 Status inspect_version(sql::Connection& connection) {
     WEAVE_TRY(const std::int64_t id, connection.number("PRAGMA application_id"));
     WEAVE_TRY(const std::int64_t version, connection.number("PRAGMA user_version"));
-    if (id != sql::application_id) return Error{ErrorCode::refused, "is no store of loomlink", {}};
-    if (version != sql::migrations().back().version)
+    if (id != store_owner.application_id) return Error{ErrorCode::refused, "is no store of loomlink", {}};
+    if (version != migrations().back().version)
         return Error{
             ErrorCode::refused,
             "is a store of version " + std::to_string(version) + "; open it with a program of that version",

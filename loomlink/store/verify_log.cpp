@@ -19,7 +19,7 @@ struct EventRow {
 EventRow event_row(const sql::Row& row) {
     return {static_cast<Seq>(row.integer(0)),
             row.bytes(1),
-            row.hash(2),
+            row.fixed<Hash>(2),
             row.bytes(3),
             row.bytes(4),
             row.is_null(5) ? std::nullopt : std::optional(row.bytes(5))};
@@ -88,7 +88,7 @@ Status inspect_tree(Inspection& inspection, const Leaves& leaves) {
             const auto known = expected.find(place);
             if (known == expected.end())
                 inspection.find_in(leaves.hashes.size(), "is missing: the tree reaches beyond it");
-            else if (known->second != row.hash(2))
+            else if (known->second != row.fixed<Hash>(2))
                 inspection.find(below(place), "is not made of these records");
             if (known != expected.end()) expected.erase(known);
         }));

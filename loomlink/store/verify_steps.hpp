@@ -1,6 +1,7 @@
 #pragma once
 
-#include <loomlink/store/database.hpp>
+#include <weave/sql/database.hpp>
+
 #include <loomlink/store/store.hpp>
 #include <string>
 #include <vector>

@@ -40,20 +40,25 @@ Daemon::~Daemon() {
 
 Status Daemon::take_up() {
     const std::lock_guard lock(m_lock);
-    WEAVE_TRY(const std::vector<StoredSession> sessions, m_store->sessions());
-    for (const StoredSession& stored : sessions) {
-        WEAVE_TRY(const std::vector<StoredChange> kept, m_store->changes(stored.number));
+    WEAVE_TRY(const std::vector<KeptSession> sessions, m_store->sessions());
+    for (const KeptSession& kept : sessions) {
+        WEAVE_TRY(const SessionTask task, m_store->task_of_session(kept.number));
+        WEAVE_TRY(const std::vector<KeptChange> journal, m_store->changes(kept.number));
         std::vector<JournaledChange> changes;
-        for (const StoredChange& change : kept) {
+        for (const KeptChange& change : journal) {
             auto read = change_from(change.text);
-            if (!read) return std::move(read).error().in("the journal of session " + std::to_string(stored.number));
+            if (!read) return std::move(read).error().in("the journal of session " + std::to_string(kept.number));
             changes.push_back({change.number, change.request, std::move(*read), change.step, change.flip_told});
         }
-        m_sessions.push_back(std::make_unique<Session>(around_session(), stored, std::move(changes)));
+        m_sessions.push_back(std::make_unique<Session>(around_session(), kept, task, std::move(changes)));
+        WEAVE_CHECK_OK(m_sessions.back()->remember_events());
         m_sessions.back()->take_up();
     }
-    WEAVE_TRY(const std::vector<StoredJob> jobs, m_store->jobs());
-    for (const StoredJob& stored : jobs) m_jobs.push_back(std::make_unique<Job>(around_job(), stored));
+    WEAVE_TRY(const std::vector<KeptJob> jobs, m_store->jobs());
+    for (const KeptJob& kept : jobs) {
+        WEAVE_TRY(const JobTask task, m_store->task_of_job(kept.number));
+        m_jobs.push_back(std::make_unique<Job>(around_job(), kept, task));
+    }
     return {};
 }
 

@@ -9,31 +9,23 @@ namespace weave::simd {
 
 namespace {
 
-/// Faults of the worker without a checkpoint between them after which a job has failed.
+/// Faults of the worker, none of which got further than the one before, after which a job has failed.
 constexpr std::size_t most_faults = 3;
 constexpr const char* phase_names[]{"waiting", "running", "done", "failed", "cancelled"};
 
-wire::JobPhase phase_of(const std::string& name) {
-    for (std::size_t k = 0; k < std::size(phase_names); ++k) {
-        if (name == phase_names[k]) return static_cast<wire::JobPhase>(k);
-    }
-    return wire::JobPhase::waiting;
-}
-
 }  // namespace
 
-Job::Job(Surroundings around, const StoredJob& stored) : m_around(std::move(around)), m_stored(stored), m_phase(phase_of(stored.phase)) {
+Job::Job(Surroundings around, KeptJob kept, JobTask task) : m_around(std::move(around)), m_kept(std::move(kept)), m_task(std::move(task)) {
     m_around.folder /= std::to_string(number());
-    m_step = stored.step;
-    if (!is_over()) {
-        m_phase = wire::JobPhase::waiting;
-        return;
-    }
+    if (!m_kept.end) return;
+    m_end = *m_kept.end;
+    m_phase = static_cast<wire::JobPhase>(m_end.phase);
+    m_step = m_kept.step;
+    m_residual = m_kept.residual.value_or(0);
     m_is_saved = true;
-    if (auto report = parse_json(stored.report)) m_report = std::move(*report);
-    if (stored.error) {
-        if (const auto error = parse_json(*stored.error)) m_error = error_from(*error);
-    }
+    if (auto report = parse_json(m_end.report)) m_report = std::move(*report);
+    if (!m_end.error) return;
+    if (const auto error = parse_json(*m_end.error)) m_error = error_from(*error);
 }
 
 Job::~Job() {
@@ -44,7 +36,7 @@ wire::JobState Job::state() const {
     wire::JobState state;
     state.job = number();
     state.phase = m_phase;
-    state.title = m_stored.title;
+    state.title = m_kept.title;
     state.step = m_step;
     if (m_step > 0) state.residual = m_residual;
     if (m_pace && m_phase == wire::JobPhase::running) state.left_s = m_pace->seconds_left();
@@ -53,15 +45,15 @@ wire::JobState Job::state() const {
 
 wire::JobEnded Job::ending() const {
     wire::JobEnded ending{number(), m_phase, m_error, m_report, {}};
-    if (m_stored.evidence) {
-        if (auto evidence = parse_json(*m_stored.evidence)) ending.evidence = std::move(*evidence);
+    if (m_end.evidence) {
+        if (auto evidence = parse_json(*m_end.evidence)) ending.evidence = std::move(*evidence);
     }
     return ending;
 }
 
 std::optional<std::filesystem::path> Job::yarns() const {
-    if (!is_over() || !m_stored.yarns) return {};
-    return m_around.folder / *m_stored.yarns;
+    if (!is_over() || !m_end.yarns) return {};
+    return m_around.folder / *m_end.yarns;
 }
 
 Json Job::status(bool with_names) const {
@@ -76,7 +68,7 @@ Json Job::status(bool with_names) const {
               {"computed_s", m_worker ? m_around.crew.turns().spent_s(*m_worker) : 0.0}};
     if (!with_names) return told;
     told["person"] = person();
-    told["title"] = m_stored.title;
+    told["title"] = m_kept.title;
     if (m_worker) {
         if (const auto process = m_around.crew.process(*m_worker)) told["worker"] = *process;
     }
@@ -93,8 +85,8 @@ WorkOrder Job::order() {
     WorkOrder order;
     order.is_job = true;
     order.number = number();
-    order.document = m_stored.document;
-    if (auto work = simulation_from(m_stored.simulation)) {
+    order.document = m_task.document;
+    if (auto work = simulation_from(m_task.simulation)) {
         order.simulation = std::move(work->simulation);
         order.flips = std::move(work->flips);
     }
@@ -104,7 +96,7 @@ WorkOrder Job::order() {
 }
 
 void Job::planned(const Json& plan) {
-    m_points = plan.at("points").get<std::size_t>() * (simulation_from(m_stored.simulation)->flips.empty() ? 1 : plan.at("repeats").get<std::size_t>());
+    m_points = plan.at("points").get<std::size_t>() * (simulation_from(m_task.simulation)->flips.empty() ? 1 : plan.at("repeats").get<std::size_t>());
     const std::uint64_t bytes = expected(), whole = m_around.crew.room().whole();
     if (bytes > whole) {
         const Error error{ErrorCode::refused, "the cloth needs " + memory_text(bytes) + ", and " + memory_text(whole) + " is all that there is: simulate a part of it, or fewer points", "simulation"};
@@ -131,10 +123,7 @@ void Job::said(const std::string& what, const Json& message) {
         if (!m_pace) m_pace.emplace(goal);
         m_pace->add(std::chrono::duration<double>(Clock::now() - m_began).count(), m_residual);
     } else if (what == "checkpoint" && !message.contains("error")) {
-        const std::uint64_t step = message.at("step");
-        if (m_checkpoint_step != step) m_faults = 0;
-        m_checkpoint_step = step;
-        static_cast<void>(m_around.store.job_progress(number(), m_step, m_residual));  // told to people, no more
+        m_around.store.job_progress(number(), m_step, m_residual);
     } else if (what == "checkpoint") {
         log(LogLevel::warning, "job " + std::to_string(number()) + ": " + error_from(message.at("error")).text());
     } else if (what == "done") {
@@ -165,8 +154,10 @@ void Job::ended(const WorkerEnd& end) {
     log(LogLevel::warning, "job " + std::to_string(number()) + ": " + why.text());
     m_phase = wire::JobPhase::waiting;
     if (end.is_final) return this->end(wire::JobPhase::failed, why, Json::object(), {});
-    if (++m_faults > most_faults)
-        this->end(wire::JobPhase::failed, Error{why.code, why.message + ", " + std::to_string(m_faults) + " times in a row since its last checkpoint", why.where},
+    m_faults = m_step > m_furthest ? 1 : m_faults + 1;
+    m_furthest = std::max(m_furthest, m_step);
+    if (m_faults > most_faults)
+        this->end(wire::JobPhase::failed, Error{why.code, why.message + ", " + std::to_string(m_faults) + " times in a row without getting further", why.where},
                   Json::object(), {});
 }
 
@@ -177,16 +168,18 @@ void Job::end(wire::JobPhase phase, std::optional<Error> error, Json report, std
     m_phase = phase;
     m_error = std::move(error);
     m_report = std::move(report);
-    if (!yarns.empty()) m_stored.yarns = std::move(yarns);
-    if (phase == wire::JobPhase::done && m_around.sign) m_stored.evidence = m_around.sign(m_report);
+    if (!yarns.empty()) m_end.yarns = std::move(yarns);
+    if (phase == wire::JobPhase::done && m_around.sign) m_end.evidence = m_around.sign(m_report);
     save_end();
 }
 
 /// The end is told once the disk has it.
 void Job::save_end() {
-    const Status saved = m_around.store.end_job(number(), phase_names[static_cast<int>(m_phase)],
-                                                m_error ? std::optional(canonical_json(to_json(*m_error))) : std::nullopt,
-                                                canonical_json(m_report), m_stored.evidence, m_stored.yarns);
+    m_end.phase = static_cast<JobPhase>(m_phase);
+    m_end.error.reset();
+    if (m_error) m_end.error = canonical_json(to_json(*m_error));
+    m_end.report = canonical_json(m_report);
+    const Status saved = m_around.store.end_job(number(), m_end);
     if (!saved) return log(LogLevel::warning, "job " + std::to_string(number()) + ": " + saved.error().text());
     m_is_saved = true;
     m_around.has_ended(*this);

@@ -30,11 +30,11 @@ class Job final : public Task {
         std::function<void(const Job&)> has_ended;
     };
 
-    Job(Surroundings around, const StoredJob& stored);
+    Job(Surroundings around, KeptJob kept, JobTask task);
     ~Job() override;
 
-    [[nodiscard]] std::uint64_t number() const { return m_stored.number; }
-    [[nodiscard]] const std::string& person() const { return m_stored.person; }
+    [[nodiscard]] std::uint64_t number() const { return m_kept.number; }
+    [[nodiscard]] const std::string& person() const { return m_kept.person; }
     [[nodiscard]] wire::JobPhase phase() const { return m_phase; }
     [[nodiscard]] bool is_over() const { return m_phase >= wire::JobPhase::done; }
     /// Has a worker, or waits for one of the crew.
@@ -45,7 +45,7 @@ class Job final : public Task {
     [[nodiscard]] wire::JobState state() const;
     [[nodiscard]] wire::JobEnded ending() const;
     [[nodiscard]] std::optional<std::filesystem::path> yarns() const;
-    [[nodiscard]] const std::optional<std::string>& evidence() const { return m_stored.evidence; }
+    [[nodiscard]] const std::optional<std::string>& evidence() const { return m_end.evidence; }
     [[nodiscard]] Json status(bool with_names) const;
 
     void begin();
@@ -66,15 +66,16 @@ class Job final : public Task {
     void save_end();
 
     Surroundings m_around;
-    StoredJob m_stored;
+    KeptJob m_kept;
+    JobTask m_task;
+    JobEnd m_end;  ///< once it is over
     wire::JobPhase m_phase = wire::JobPhase::waiting;
     std::optional<Crew::Id> m_worker;
     std::size_t m_points = 0, m_faults = 0;
-    std::uint64_t m_step = 0;
+    std::uint64_t m_step = 0, m_furthest = 0;
     double m_residual = 0;
     std::optional<sim::Pace> m_pace;
     Clock::time_point m_began{};
-    std::optional<std::uint64_t> m_checkpoint_step;
     bool m_is_cancelled = false, m_is_put_away = false, m_is_done = false, m_is_saved = false;
     Json m_report = Json::object();
     std::optional<Error> m_error;

@@ -138,10 +138,11 @@ void Daemon::submit(const ClientPtr& client, const wire::Submit& submit, const s
     const std::optional<double> wait_s = wait_for_job(queue().size() + 1);
     const auto text = [&](std::uint64_t number) { return wire::write_message(wire::Accepted{submit.request, {}, number, wait_s}); };
     const NewJob fresh{client->person(), submit.request, title, submit.document, simulation_text(submit.simulation, submit.flips)};
-    const auto stored = m_store->add_job(fresh, text);
-    if (!stored) return refuse({ErrorCode::system, "the disk does not take it: " + stored.error().message, "submit"});
-    m_jobs.push_back(std::make_unique<Job>(around_job(), *stored));
-    client->tell(net::make_bytes(text(stored->number)));
+    const auto made = m_store->add_job(fresh, text);
+    if (!made) return refuse({ErrorCode::system, "the disk does not take it: " + made.error().message, "submit"});
+    const KeptJob kept{.number = made->number, .person = fresh.person, .request = fresh.request, .title = fresh.title, .residual = {}, .end = {}};
+    m_jobs.push_back(std::make_unique<Job>(around_job(), kept, JobTask{fresh.document, fresh.simulation}));
+    client->tell(net::make_bytes(made->answer));
 }
 
 void Daemon::list_jobs(const ClientPtr& client, const std::string& request) {

@@ -77,8 +77,9 @@ Status Session::become_accepted() {
     const auto text = [this](std::uint64_t number) {
         return wire::write_message(wire::Accepted{m_request, number, {}, {}});
     };
-    NewSession fresh{m_person, m_request, m_title, m_document, simulation_text(m_simulation)};
-    WEAVE_TRY(m_number, m_around.store.add_session(fresh, text));
+    const NewSession fresh{m_person, m_request, m_title, m_document, simulation_text(m_simulation)};
+    WEAVE_TRY(const Made made, m_around.store.add_session(fresh, text));
+    m_number = made.number;
     m_around.folder /= std::to_string(m_number);
     std::error_code code;
     std::filesystem::create_directories(m_around.folder, code);
@@ -98,7 +99,7 @@ Status Session::become_accepted() {
 
 // ---- Events ----
 
-void Session::emit(wire::ServerMessage event, EventKind kind, std::optional<ChangeNews> news) {
+void Session::emit(wire::ServerMessage event, EventKind kind, std::optional<Dated> dated) {
     const std::uint64_t seq = ++m_seq;
     std::visit(
         [&](auto& message) {
@@ -108,7 +109,7 @@ void Session::emit(wire::ServerMessage event, EventKind kind, std::optional<Chan
             }
         },
         event);
-    m_unsaved.push_back({{seq, kind, wire::write_message(event), kind == EventKind::layout ? m_layout_sha256 : std::string()}, news});
+    m_unsaved.push_back({{seq, kind, wire::write_message(event)}, dated});
     save_unsaved();
 }
 
@@ -116,7 +117,7 @@ void Session::emit(wire::ServerMessage event, EventKind kind, std::optional<Chan
 void Session::save_unsaved() {
     while (!m_unsaved.empty()) {
         const Unsaved& first = m_unsaved.front();
-        const Status saved = m_around.store.add_events(m_number, {first.event}, first.news ? std::vector{*first.news} : std::vector<ChangeNews>{});
+        const Status saved = m_around.store.add_events(m_number, {first.event}, first.dated ? std::vector{*first.dated} : std::vector<Dated>{});
         if (!saved) {
             log(LogLevel::warning, "session " + std::to_string(m_number) + ": " + saved.error().text());
             return;
@@ -147,7 +148,7 @@ void Session::end(wire::Why why, std::uint64_t step, std::optional<Error> error,
 
 Status Session::save_state() {
     return m_around.store.change_session(
-        m_number, {std::string(m_runs ? "running" : "paused"), m_step, m_pause_at, m_frames_promised, m_layout, m_checkpoint_step});
+        m_number, {m_runs ? "running" : "paused", m_step, m_pause_at, m_frames_promised, m_layout, m_checkpoint_step});
 }
 
 void Session::acknowledge(std::uint64_t seq) {
@@ -211,14 +212,13 @@ void Session::heard_event(const Json& message) {
     JournaledChange& change = m_changes[number - 1];
     if (is_flip) change.flip_told = true;
     else change.step = message.at("step").get<std::uint64_t>();
-    emit(std::move(*read), EventKind::other, ChangeNews{number, change.step.value_or(0), change.flip_told});
+    emit(std::move(*read), EventKind::other, Dated{number, change.step.value_or(0), change.flip_told});
 }
 
 void Session::heard_checkpoint(const Json& message) {
     const bool failed = message.contains("error");
     const std::uint64_t step = message.at("step");
     if (!failed) {
-        if (m_checkpoint_step != step) m_faults = 0;
         m_checkpoint_step = step;
     } else {
         log(LogLevel::warning, "session " + std::to_string(m_number) + ": " + error_from(message.at("error")).text());

@@ -35,7 +35,7 @@ class Session final : public Task {
     /// One that the store does not know yet: it becomes a session once its worker has planned it and there is room.
     Session(Surroundings around, const wire::Create& create, const ClientPtr& client);
     /// One that the store had.
-    Session(Surroundings around, const StoredSession& stored, std::vector<JournaledChange> changes);
+    Session(Surroundings around, const KeptSession& kept, const SessionTask& task, std::vector<JournaledChange> changes);
     ~Session() override;
 
     [[nodiscard]] std::uint64_t number() const { return m_number; }
@@ -66,6 +66,8 @@ class Session final : public Task {
 
     // ---- What the daemon does with it ----
 
+    /// Of a session that the store had, first: where its events stand.
+    Status remember_events();
     void take_up();
     /// The worker writes its checkpoint and ends.
     void put_away();
@@ -83,13 +85,13 @@ class Session final : public Task {
   private:
     struct Unsaved {
         Event event;
-        std::optional<ChangeNews> news;
+        std::optional<Dated> dated;
     };
 
     void refuse_creation(Error error, std::optional<double> wait_s);
     Status become_accepted();
     [[nodiscard]] Error gone() const;
-    void emit(wire::ServerMessage event, EventKind kind, std::optional<ChangeNews> news = {});
+    void emit(wire::ServerMessage event, EventKind kind, std::optional<Dated> dated = {});
     void deliver(const Unsaved& unsaved);
     void save_unsaved();
     void say_goodbye();
@@ -120,7 +122,7 @@ class Session final : public Task {
     wire::Phase m_phase = wire::Phase::paused;
     bool m_runs = false;
     std::optional<std::uint64_t> m_pause_at;
-    std::optional<std::uint64_t> m_checkpoint_step;
+    std::uint64_t m_checkpoint_step = 0;
     double m_residual = 0, m_pace = 0;  ///< steps a second
     std::optional<std::uint64_t> m_lost;
     std::size_t m_points = 0, m_repeats = 1;
@@ -130,7 +132,8 @@ class Session final : public Task {
 
     bool m_takes_up = false, m_is_recovering = false, m_is_closing = false, m_is_put_away = false, m_has_ended = false, m_is_over = false;
     Clock::time_point m_ended_at{};
-    std::size_t m_faults = 0;  ///< since the last checkpoint
+    std::size_t m_faults = 0;     ///< in a row, none of which got further
+    std::uint64_t m_furthest = 0;  ///< step that a worker had reached when it ended
     std::vector<Unsaved> m_unsaved;  ///< events that the disk did not take yet
     std::uint64_t m_last_id = 0;
     std::map<std::uint64_t, std::pair<ClientPtr, std::string>> m_checkpoint_requests;

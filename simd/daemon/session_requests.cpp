@@ -12,7 +12,7 @@ namespace {
 
 constexpr std::uint64_t most_unacknowledged = 10'000;
 constexpr std::size_t events_at_once = 1000;
-/// Faults of the worker without a checkpoint between them after which a session is given up.
+/// Faults of the worker, none of which got further than the one before, after which a session is given up.
 constexpr std::size_t most_faults = 3;
 
 Error no_disk(const Error& error) {
@@ -21,17 +21,32 @@ Error no_disk(const Error& error) {
 
 }  // namespace
 
-Session::Session(Surroundings around, const StoredSession& stored, std::vector<JournaledChange> changes)
-    : m_around(std::move(around)), m_person(stored.person), m_request(stored.request), m_title(stored.title), m_document(stored.document),
-      m_number(stored.number), m_changes(std::move(changes)), m_seq(stored.seq), m_frame(stored.state.frame), m_frames_promised(stored.state.frame),
-      m_layout(stored.state.layout), m_step(stored.state.step), m_runs(stored.state.phase == "running"), m_pause_at(stored.state.pause_at),
-      m_checkpoint_step(stored.state.checkpoint_step), m_takes_up(true), m_has_ended(stored.has_ended) {
+Session::Session(Surroundings around, const KeptSession& kept, const SessionTask& task, std::vector<JournaledChange> changes)
+    : m_around(std::move(around)), m_person(kept.person), m_request(kept.request), m_title(kept.title), m_document(task.document),
+      m_number(kept.number), m_changes(std::move(changes)), m_seq(kept.last_seq), m_frame(kept.state.frame), m_frames_promised(kept.state.frame),
+      m_layout(kept.state.layout), m_step(kept.state.step), m_runs(kept.state.phase == "running"), m_pause_at(kept.state.pause_at),
+      m_checkpoint_step(kept.state.checkpoint_step), m_takes_up(true), m_has_ended(kept.ended) {
     m_around.folder /= std::to_string(m_number);
-    m_layout_sha256 = stored.layout_sha256;
-    if (const auto told = wire::read_server_message(stored.phase_event)) {
-        if (const auto* changed = std::get_if<wire::PhaseChanged>(&*told)) m_phase = changed->phase;
+    if (auto work = simulation_from(task.simulation)) m_simulation = std::move(work->simulation);
+}
+
+/// What the newest layout and the newest phase say, which the store keeps even when they are acknowledged.
+Status Session::remember_events() {
+    for (std::uint64_t after = 0;;) {
+        WEAVE_TRY(const std::vector<Event> events, m_around.store.events_after(m_number, after, events_at_once));
+        for (const Event& event : events) {
+            if (event.kind != EventKind::layout && event.kind != EventKind::phase) continue;
+            auto read = wire::read_server_message(event.text);
+            if (!read) return std::move(read).error().in("the events of session " + std::to_string(m_number));
+            if (const auto* changed = std::get_if<wire::PhaseChanged>(&*read)) m_phase = changed->phase;
+            if (const auto* layout = std::get_if<wire::Layout>(&*read)) {
+                m_layout = layout->layout;
+                m_layout_sha256 = layout_sha256(*layout);
+            }
+        }
+        if (events.size() < events_at_once) return {};
+        after = events.back().seq;
     }
-    if (auto work = simulation_from(stored.simulation)) m_simulation = std::move(work->simulation);
 }
 
 wire::SessionSummary Session::summary() const {
@@ -49,7 +64,7 @@ Json Session::status(bool with_names) const {
               {"clients", m_clients.size()},
               {"memory_bytes", m_worker ? m_around.crew.memory_bytes(*m_worker) : 0},
               {"computed_s", m_worker ? m_around.crew.turns().spent_s(*m_worker) : 0.0},
-              {"checkpoint_step", m_checkpoint_step ? Json(*m_checkpoint_step) : Json()},
+              {"checkpoint_step", m_checkpoint_step},
               {"frames", m_frame}};
     if (!with_names) return told;
     told["person"] = m_person;
@@ -168,9 +183,9 @@ std::optional<Error> Session::why_no_change(const wire::Change& change) const {
 void Session::change(const ClientPtr& client, const wire::MakeChange& make) {
     if (auto error = why_no_change(make.change)) return refuse(client, make.request, std::move(*error));
     const std::string text = wire::write_message(wire::Accepted{make.request, {}, {}, {}});
-    const auto number = m_around.store.add_change(m_number, client->person(), make.request, change_text(make.change), text);
-    if (!number) return refuse(client, make.request, no_disk(number.error()));
-    m_changes.push_back({*number, make.request, make.change, {}, false});
+    const auto made = m_around.store.add_change(m_number, make.request, change_text(make.change), [&](std::uint64_t) { return text; });
+    if (!made) return refuse(client, make.request, no_disk(made.error()));
+    m_changes.push_back({made->number, make.request, make.change, {}, false});
     client->tell(net::make_bytes(text));
     if (m_worker && unfolds_for(make.change)) {
         m_around.crew.admit(*m_worker, m_points * m_repeats, {{"number", m_number}, {"folder", m_around.folder.string()}});
@@ -240,11 +255,12 @@ void Session::ended(const WorkerEnd& end) {
     if (!is_accepted()) return refuse_creation(why, {});
     fail_waiting(why);
     if (m_is_closing) return this->end(wire::Why::closed, m_step, {}, Json::object());
-    ++m_faults;
+    m_faults = m_step > m_furthest ? 1 : m_faults + 1;
+    m_furthest = std::max(m_furthest, m_step);
     log(LogLevel::warning, "session " + std::to_string(m_number) + ": " + why.text());
     if (!end.is_final && m_faults <= most_faults) return take_up();
     this->end(wire::Why::failed, m_step,
-              end.is_final ? why : Error{why.code, why.message + ", " + std::to_string(m_faults) + " times in a row since its last checkpoint", why.where},
+              end.is_final ? why : Error{why.code, why.message + ", " + std::to_string(m_faults) + " times in a row without getting further", why.where},
               Json::object());
 }
 

@@ -1,3 +1,5 @@
+#include <weave/core/sha256.hpp>
+
 #include <simd/link/work_order.hpp>
 
 #include <utility>
@@ -35,6 +37,11 @@ std::string simulation_text(const wire::Simulation& simulation, const std::vecto
 Result<SimulationWork> simulation_from(std::string_view text) {
     WEAVE_TRY(wire::Submit work, message_of<wire::Submit>(text));
     return SimulationWork{std::move(work.simulation), std::move(work.flips)};
+}
+
+std::string layout_sha256(wire::Layout layout) {
+    layout.session = layout.seq = layout.layout = 1;
+    return sha256_hex(wire::write_message(wire::ServerMessage(std::move(layout))));
 }
 
 Json to_json(const JournaledChange& change) {

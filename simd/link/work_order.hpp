@@ -34,7 +34,7 @@ struct WorkOrder {
     bool runs = false;                     ///< a session that is not paused
     std::optional<std::uint64_t> pause_at; ///< a step; else it runs to rest
     std::uint64_t frame = 0, layout = 0;   ///< numbers of the last that were given
-    std::string layout_sha256;             ///< of the last one (layout.hpp)
+    std::string layout_sha256;             ///< of the last one
 };
 
 Json to_json(const WorkOrder& order);
@@ -51,6 +51,9 @@ struct SimulationWork {
     std::vector<Flip> flips;
 };
 Result<SimulationWork> simulation_from(std::string_view text);
+
+/// Hash of what a layout says of its yarns, whatever its numbers.
+std::string layout_sha256(wire::Layout layout);
 
 /// A change as JSON, with the members that a `change` message has.
 std::string change_text(const wire::Change& change);

@@ -1,109 +1,126 @@
 #pragma once
 
-
 #include <weave/core/result.hpp>
 
-#include <cstdint>
 #include <filesystem>
 #include <functional>
+#include <map>
 #include <memory>
+#include <mutex>
 #include <optional>
+#include <simd/store/records.hpp>
 #include <string>
 #include <vector>
 
+namespace weave::sql {
+class Connection;
+}
+
 namespace weave::simd {
 
-struct NewSession {
-    std::string person, request, title, document, simulation;
-};
-/// What changes of a session and must outlive the daemon.
-struct SessionState {
-    std::string phase = "paused";  ///< running or paused: what was asked for
-    std::uint64_t step = 0;
-    std::optional<std::uint64_t> pause_at;
-    std::uint64_t frame = 0;   ///< no frame up to this number may be given again
-    std::uint64_t layout = 0;  ///< number of the newest
-    std::optional<std::uint64_t> checkpoint_step;
-    std::int64_t seen = 0;  ///< seconds of UTC when somebody was attached last
-};
-struct StoredSession {
-    std::uint64_t number = 0;
-    std::string person, request, title, document, simulation;
-    SessionState state;
-    std::uint64_t seq = 0;       ///< of the last event
-    bool has_ended = false;      ///< has an event of the kind `ended`
-    std::string layout_sha256;   ///< of the newest layout event, as it was given with it; empty: none
-    std::string phase_event;     ///< text of the newest event of the kind `phase`; empty: none
-};
+/// The text of an answer that tells the number of what was made.
+using AnswerOf = std::function<std::string(Number made)>;
 
-enum class EventKind : std::uint8_t { layout, phase, other, ended };
-struct Event {
-    std::uint64_t seq = 0;
-    EventKind kind = EventKind::other;
-    std::string text;
-    std::string layout_sha256 = {};  ///< of a layout
-};
-/// What became of a change of the journal.
-struct ChangeNews {
-    std::uint64_t number = 0;  ///< in its session, from 1
-    std::uint64_t step = 0;    ///< before which it was made
-    bool flip_told = false;    ///< how the flip ended was told
-};
-struct StoredChange {
-    std::uint64_t number = 0;
-    std::string request, text;
-    std::optional<std::uint64_t> step;
-    bool flip_told = false;
-};
-
-struct NewJob {
-    std::string person, request, title, document, simulation;
-};
-struct StoredJob {
-    std::uint64_t number = 0;
-    std::string person, request, title, document, simulation;
-    std::string phase = "waiting";  ///< waiting, running, done, failed, cancelled; one that ran when the daemon died waits again at open
-    std::uint64_t attempts = 0, step = 0;
-    std::optional<std::string> error, evidence, yarns;  ///< yarns: a file name
-    std::string report = "{}";
-};
-
-/// Makes the text of an answer once the number of what was made is known.
-using AnswerText = std::function<std::string(std::uint64_t number)>;
-
+/// What must outlive the daemon, in one SQLite file. Safe from any thread. Each call is one transaction and
+/// durable when it returns, power loss included.
+///
+/// Errors: system where the disk or the file fails; usage for what does not exist, or cannot follow on what
+/// is there. A call that failed has changed nothing, or (the disk failed while it flushed) all of it: so each
+/// call may be made again, and what is there already is not done twice. The next call after a failure of the
+/// disk opens the file anew.
 class Store {
   public:
-    /// Opens or makes the database. Errors: system; refused: another program's or a newer version's.
-    static Result<std::unique_ptr<Store>> open(const std::filesystem::path& file);
+    /// Opens the store, or makes it where there is none. Jobs that ran when the daemon died are waiting
+    /// again. Refused: a file of another program or of a newer version; system: another daemon has it open.
+    static Result<std::unique_ptr<Store>> open(const std::filesystem::path& path);
     ~Store();
+    Store(const Store&) = delete;
+    Store& operator=(const Store&) = delete;
 
-    Result<std::uint64_t> add_session(const NewSession& session, const AnswerText& answer);
-    Status change_session(std::uint64_t session, const SessionState& state);
-    Result<std::vector<StoredSession>> sessions();
-    Status forget_session(std::uint64_t session);
-
-    Status add_events(std::uint64_t session, const std::vector<Event>& events, const std::vector<ChangeNews>& news);
-    Result<std::vector<Event>> events_after(std::uint64_t session, std::uint64_t seq, std::size_t most);
-    Status acknowledge(std::uint64_t session, std::uint64_t seq);
-    Result<std::uint64_t> unacknowledged(std::uint64_t session);
-
-    Result<std::uint64_t> add_change(std::uint64_t session, const std::string& person, const std::string& request, const std::string& text,
-                                     const std::string& answer);
-    Result<std::vector<StoredChange>> changes(std::uint64_t session);
-
+    /// @name Answers. The first to a request of a person stays; of each person the newest 1,000 are kept.
+    /// @{
     Status remember(const std::string& person, const std::string& request, const std::string& answer);
     Result<std::optional<std::string>> answer_of(const std::string& person, const std::string& request);
+    /// @}
 
-    Result<StoredJob> add_job(const NewJob& job, const AnswerText& answer);
-    Status start_job(std::uint64_t job);
-    Status job_progress(std::uint64_t job, std::uint64_t step, double residual);
-    Status end_job(std::uint64_t job, const std::string& phase, const std::optional<std::string>& error, const std::string& report,
-                   const std::optional<std::string>& evidence, const std::optional<std::string>& yarns);
-    Result<std::vector<StoredJob>> jobs();  ///< all that are not forgotten, by number
-    Status forget_job(std::uint64_t job);
+    /// @name Sessions
+    /// @{
+    /// Makes a session, numbered from 1 on, and remembers the answer with it. A request that was answered
+    /// before makes nothing.
+    Result<Made> add_session(const NewSession& session, const AnswerOf& answer);
+    Status change_session(Number session, const SessionState& state);
+    /// All that are not forgotten, in the order of their numbers.
+    Result<std::vector<KeptSession>> sessions();
+    Result<SessionTask> task_of_session(Number session);
+    /// Forgets it with its events and its journal. Its number is not given again.
+    Status forget_session(Number session);
+    /// @}
 
-    /// How the last write ended, for health.
+    /// @name Events. Their `seq` is 1, 2, 3 … within a session; after one that is `ended` comes no other.
+    /// @{
+    /// Adds events, and the steps at which changes of the journal took effect. Those of them that are kept
+    /// already, with the same text, are passed over; a change keeps its step for good, and that its flip was told.
+    Status add_events(Number session, const std::vector<Event>& events, const std::vector<Dated>& dated);
+    /// Those after `seq` that are kept, in order, `most` at most.
+    Result<std::vector<Event>> events_after(Number session, Number seq, std::size_t most);
+    /// Up to `seq` all is dealt with: drops it, but for the newest layout, the newest phase, and `ended`.
+    Status acknowledge(Number session, Number seq);
+    /// How many events nobody has acknowledged.
+    Result<Number> unacknowledged(Number session);
+    /// @}
+
+    /// @name The journal of a session
+    /// @{
+    /// Adds a change of which it is not known yet when it takes effect, numbered from 1 on within its
+    /// session, and remembers the answer with it for the session's person. A request that was answered before
+    /// adds nothing.
+    Result<Made> add_change(Number session, const std::string& request, const std::string& change,
+                            const AnswerOf& answer);
+    Result<std::vector<KeptChange>> changes(Number session);
+    /// @}
+
+    /// @name Jobs
+    /// @{
+    /// Makes a job that waits, numbered from 1 on, and remembers the answer with it. A request that was
+    /// answered before makes nothing.
+    Result<Made> add_job(const NewJob& job, const AnswerOf& answer);
+    /// A job that waits runs now, and has one attempt more.
+    Status start_job(Number job);
+    /// How far a job that runs is. Kept in memory alone until it ends: after a crash it begins with nothing.
+    void job_progress(Number job, Number step, std::optional<double> residual);
+    /// Ends a job that waits or runs, for good.
+    Status end_job(Number job, const JobEnd& end);
+    Result<JobTask> task_of_job(Number job);
+    /// All that are not forgotten, in the order of their numbers.
+    Result<std::vector<KeptJob>> jobs();
+    /// Forgets a job that has ended. Its number is not given again.
+    Status forget_job(Number job);
+    /// @}
+
+    /// How the last call that wrote ended, for who watches over the machine.
     Status last_write();
+
+  private:
+    struct Progress {
+        Number step = 0;
+        std::optional<double> residual;
+    };
+    using Change = std::function<Status(sql::Connection&)>;
+
+    explicit Store(std::filesystem::path path);
+    /// One transaction that writes; none of it stays if `change` fails.
+    Status write(const Change& change);
+    /// Something that only reads.
+    Status read(const Change& ask);
+    Status connect(bool may_make);
+    Result<sql::Connection*> connection();
+    Status settled(Status outcome);
+
+    const std::filesystem::path m_path;
+    std::mutex m_mutex;
+    std::unique_ptr<sql::Connection> m_connection;  ///< none after the disk failed
+    std::map<Number, Progress> m_progress;          ///< of jobs that run
+    std::optional<Error> m_trouble;                 ///< of the disk, at the last call that wrote
 };
 
 }  // namespace weave::simd

@@ -24,6 +24,7 @@ void renounce(pid_t daemon) {
     ::signal(SIGINT, SIG_IGN);  // of a terminal, that means the daemon
     ::signal(SIGTERM, SIG_IGN);
     ::signal(SIGPIPE, SIG_IGN);
+    ::signal(SIGXFSZ, SIG_IGN);  // a file that grows too large is an error like a full disk
 }
 
 /// What went wrong, and whether it would go wrong again.

@@ -1,4 +1,3 @@
-#include <weave/core/sha256.hpp>
 #include <weave/loom/pick_table.hpp>
 
 #include <algorithm>
@@ -30,11 +29,6 @@ wire::Layout layout_of(const sim::Run& run) {
         layout.yarns.push_back(shown);
     }
     return layout;
-}
-
-std::string layout_sha256(wire::Layout layout) {
-    layout.session = layout.seq = layout.layout = 1;
-    return sha256_hex(wire::write_message(wire::ServerMessage(std::move(layout))));
 }
 
 wire::Frame frame_of(const sim::Run& run) {

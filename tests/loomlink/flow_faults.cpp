@@ -1,14 +1,16 @@
 // A disk that fails at every write of a whole story: a clean error each time, and the same request goes
 // through afterwards, once.
 
-#include "fault_vfs.hpp"
 #include "flow_case.hpp"
 
 #include <functional>
+#include <support/fault_vfs.hpp>
 #include <support/random.hpp>
 
 namespace weave::loomlink::testing {
 
+using weave::testing::DiskFault;
+using weave::testing::FaultDisk;
 using weave::testing::Random;
 
 namespace {

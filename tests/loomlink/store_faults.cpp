@@ -1,9 +1,9 @@
-#include "fault_vfs.hpp"
 #include "store_case.hpp"
 
 #include <csignal>
 #include <cstdio>
 #include <mutex>
+#include <support/fault_vfs.hpp>
 #include <support/random.hpp>
 #include <sys/wait.h>
 #include <thread>
@@ -11,6 +11,8 @@
 using namespace weave;
 using namespace weave::loomlink;
 using namespace weave::loomlink::testing;
+using weave::testing::DiskFault;
+using weave::testing::FaultDisk;
 using weave::testing::Random;
 
 namespace {

@@ -259,17 +259,19 @@ TEST_CASE("a server whose queue is full lives, and a client waits for it") {
 TEST_CASE("of servers that start at once where a dead one was, one serves and the others say why not") {
     const Folder folder;
     const auto path = folder.path / "s";
-    for (int round = 0; round < 20; ++round) {
+    for (int round = 0; round < 400; ++round) {
         { const Bound dead(path, SOCK_STREAM, 5); }
         std::mutex mutex;
         std::vector<Server> serving;
         std::vector<Error> errors;
         std::vector<std::thread> starters;
-        for (int k = 0; k < 6; ++k)
+        std::atomic<bool> go{false};
+        for (int k = 0; k < 3; ++k)
             starters.emplace_back([&] {
                 Router router;
                 const auto greet = [](const Request&) { return text("hello"); };
                 const Status added = router.add({"hello", "GET", "/hello", "Greets", 0, greet, {}});
+                while (!go) continue;
                 auto server = Server::start(std::move(router), on(path));
                 const std::lock_guard lock(mutex);
                 if (server && added)
@@ -277,6 +279,7 @@ TEST_CASE("of servers that start at once where a dead one was, one serves and th
                 else
                     errors.push_back(server.error());
             });
+        go = true;
         for (std::thread& starter : starters) starter.join();
         REQUIRE(serving.size() == 1);
         for (const Error& error : errors) REQUIRE(error.message == "another server listens there");
@@ -299,8 +302,9 @@ TEST_CASE("places that no socket can have are refused in words") {
     const Error long_one = refused_start(on("/tmp/" + std::string(103, 'a')));
     REQUIRE(long_one.code == ErrorCode::usage);
     REQUIRE(long_one.message == "the path of a socket may have 107 bytes, this one has 108");
-    REQUIRE(HttpClient(client_at("/tmp/" + std::string(103, 'a'))).send({"GET", "/", {}, {}}).error().message ==
-            long_one.message);
+    REQUIRE(
+        HttpClient(client_at("/tmp/" + std::string(103, 'a'))).send({"GET", "/", {}, {}}).error().message ==
+        long_one.message);
     REQUIRE(refused_start(on(std::string("/tmp/a\0b", 8))).code == ErrorCode::usage);
     REQUIRE(refused_start(on(folder.path / "none" / "s")).code == ErrorCode::system);
     REQUIRE(refused_start(on({})).code == ErrorCode::usage);  // neither TCP nor a socket

@@ -77,7 +77,8 @@ class Box {
     }
     /// The worker of a session (or, with `job`, of a job); nothing while it has none.
     [[nodiscard]] std::optional<pid_t> worker(const char* what, std::uint64_t number) const {
-        for (const Json& one : status().at(std::string(what) + "s")) {
+        const Json now = status();
+        for (const Json& one : now.at(std::string(what) + "s")) {
             if (one.at(what) == number && one.contains("worker")) return one.at("worker").get<pid_t>();
         }
         return {};

@@ -1,27 +1,12 @@
 // Sessions as people have them: a daemon is started, and clients speak with it over its socket.
 
 #include "box.hpp"
-
-#include <weave/sim/yarns_file.hpp>
+#include "results.hpp"
 
 using namespace weave;
 using namespace weave::simd::testing;
 
 namespace {
-
-/// What must be the same of two results of one run: the yarns to the last bit, and how they came to rest.
-void check_same_yarns(const std::string& one_bytes, const std::string& other_bytes) {
-    const Yarns one = read_yarns(one_bytes).value(), other = read_yarns(other_bytes).value();
-    REQUIRE(one.yarns.size() == other.yarns.size());
-    for (std::size_t y = 0; y < one.yarns.size(); ++y) {
-        CHECK(one.yarns[y].spline.control == other.yarns[y].spline.control);
-        CHECK(one.yarns[y].radius_mm == other.yarns[y].radius_mm);
-    }
-    for (const char* member : {"iterations", "residual", "energy_N_mm", "converged"}) {
-        INFO(member);
-        CHECK(one.report.at(member) == other.report.at(member));
-    }
-}
 
 const wire::Parameters tighter{{.strain = 1.04, .stiffness_scale = {}, .radius_scale = 1.15}, {}};
 

@@ -25,7 +25,7 @@ struct ClientOptions {
     std::string host = "127.0.0.1";  ///< name or address, without brackets
     std::uint16_t port = 0;
     std::optional<Trust> tls;                        ///< none: plain
-    std::filesystem::path unix_socket;               ///< where the service is, in place of host and port; plain
+    std::filesystem::path unix_socket;               ///< in place of host and port; plain
     std::chrono::milliseconds connect_time{10'000};  ///< to reach the server, TLS included
     std::chrono::milliseconds answer_time{60'000};   ///< from a request to the head of its answer
     std::chrono::milliseconds stall_time{30'000};    ///< without a byte of a body coming or going

@@ -101,8 +101,8 @@ asio::awaitable<Status> connect(Dialled& dialled, const ClientOptions& options) 
     co_return Status();
 }
 
-/// Connects to a Unix socket. The system says EAGAIN where a TCP socket would wait, while the server's queue is
-/// full, and Asio takes a later look at such a socket for success: so it is asked here, again and again.
+/// Connects to a Unix socket. The system says EAGAIN where a TCP socket would wait, while the server's queue
+/// is full, and Asio takes a later look at such a socket for success: so it is asked here, again and again.
 asio::awaitable<Status> connect_local(Dialled& dialled, const ClientOptions& options) {
     const auto address = unix_address(options.unix_socket);
     if (!address) co_return address.error();

@@ -167,7 +167,8 @@ class Server::Running {
     asio::awaitable<void> accept(Door& door) {
         while (door.acceptor.is_open()) {
             Endpoint peer;
-            auto [error, socket] = co_await door.acceptor.async_accept(asio::make_strand(m_io), peer, as_result);
+            auto [error, socket] =
+                co_await door.acceptor.async_accept(asio::make_strand(m_io), peer, as_result);
             if (!error) {
                 take(std::move(socket), peer);
             } else if (door.acceptor.is_open()) {

@@ -24,8 +24,8 @@ using Milliseconds = std::chrono::milliseconds;
 /// A coroutine's way to wait: the outcome comes as a tuple, nothing is thrown.
 inline constexpr auto as_result = asio::as_tuple(asio::use_awaitable);
 
-/// A connection over TCP, with or without TLS, or over a Unix socket: one type for all, so that what stands on
-/// it is compiled once. All calls must come from its executor.
+/// A connection over TCP, with or without TLS, or over a Unix socket: one type for all, so that what stands
+/// on it is compiled once. All calls must come from its executor.
 class Stream {
   public:
     using executor_type = asio::any_io_executor;

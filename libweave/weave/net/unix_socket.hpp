@@ -14,9 +14,9 @@ Result<sockaddr_un> unix_address(const std::filesystem::path& path);
 /// A Unix socket that listens, and its file, which goes away with it.
 class UnixListener {
   public:
-    /// Makes the socket, open to its owner alone (0600) before anybody can connect, and listens. The socket of
-    /// a server that is dead is replaced. Errors: usage for a path that is none; refused where another server
-    /// listens, or something else lies there; system.
+    /// Makes the socket, open to its owner alone (0600) before anybody can connect, and listens. The socket
+    /// of a server that is dead is replaced. Errors: usage for a path that is none; refused where another
+    /// server listens, or something else lies there; system.
     static Result<UnixListener> open(const std::filesystem::path& path);
 
     UnixListener(UnixListener&& other) noexcept;

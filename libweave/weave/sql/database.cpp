@@ -1,16 +1,33 @@
-#include <weave/keys/hex.hpp>
+#include <weave/sql/database.hpp>
 
-#include <cstring>
 #include <filesystem>
-#include <loomlink/store/database.hpp>
 #include <unistd.h>
 
-namespace weave::loomlink::sql {
+namespace weave::sql {
 
-std::string Row::bytes(int column) const {
+namespace {
+
+std::string in_hex(std::string_view bytes) {
+    constexpr std::string_view digits = "0123456789abcdef";
+    std::string text;
+    for (const char c : bytes) {
+        const auto byte = static_cast<unsigned char>(c);
+        text += digits[byte >> 4];
+        text += digits[byte & 15];
+    }
+    return text;
+}
+
+}  // namespace
+
+std::string_view Row::view(int column) const {
     const auto* data = static_cast<const char*>(sqlite3_column_blob(m_statement, column));
     const int size = sqlite3_column_bytes(m_statement, column);
-    return data == nullptr ? std::string() : std::string(data, static_cast<std::size_t>(size));
+    return data == nullptr ? std::string_view() : std::string_view(data, static_cast<std::size_t>(size));
+}
+
+std::string Row::bytes(int column) const {
+    return std::string(view(column));
 }
 
 Json Row::json(int column) const {
@@ -22,19 +39,10 @@ Json Row::json(int column) const {
         case SQLITE_TEXT:
             return bytes(column);
         case SQLITE_BLOB:
-            return to_hex({static_cast<const unsigned char*>(sqlite3_column_blob(m_statement, column)),
-                           static_cast<std::size_t>(sqlite3_column_bytes(m_statement, column))});
+            return in_hex(view(column));
         default:
             return nullptr;
     }
-}
-
-Hash Row::hash(int column) const {
-    Hash hash{};
-    const void* data = sqlite3_column_blob(m_statement, column);
-    if (data != nullptr && sqlite3_column_bytes(m_statement, column) == static_cast<int>(hash.size()))
-        std::memcpy(hash.data(), data, hash.size());
-    return hash;
 }
 
 namespace {
@@ -48,7 +56,8 @@ std::string why_not_opened(const std::string& path) {
 
 }  // namespace
 
-Result<std::unique_ptr<Connection>> Connection::open(const std::string& path, Access access) {
+Result<std::unique_ptr<Connection>> Connection::open(const std::string& path, Access access,
+                                                     std::chrono::milliseconds patience) {
     const int flags =
         SQLITE_OPEN_NOMUTEX | SQLITE_OPEN_READWRITE | (access == Access::create ? SQLITE_OPEN_CREATE : 0);
     sqlite3* handle = nullptr;
@@ -56,13 +65,13 @@ Result<std::unique_ptr<Connection>> Connection::open(const std::string& path, Ac
     if (handle == nullptr) return system_fault("there is no memory to open the store", path);
     std::unique_ptr<Connection> connection(new Connection(handle, path));
     if (code != SQLITE_OK) return connection->trouble(code);
-    WEAVE_CHECK_OK(connection->configure(access));
+    WEAVE_CHECK_OK(connection->configure(access, patience));
     return connection;
 }
 
-Status Connection::configure(Access access) {
+Status Connection::configure(Access access, std::chrono::milliseconds patience) {
     sqlite3_extended_result_codes(m_handle, 1);
-    sqlite3_busy_timeout(m_handle, 10000);
+    sqlite3_busy_timeout(m_handle, static_cast<int>(patience.count()));
     sqlite3_db_config(m_handle, SQLITE_DBCONFIG_DEFENSIVE, 1, nullptr);
     sqlite3_db_config(m_handle, SQLITE_DBCONFIG_TRUSTED_SCHEMA, 0, nullptr);
     sqlite3_db_config(m_handle, SQLITE_DBCONFIG_DQS_DML, 0, nullptr);
@@ -127,4 +136,4 @@ Error Connection::trouble(int code) const {
     }
 }
 
-}  // namespace weave::loomlink::sql
+}  // namespace weave::sql

@@ -1,4 +1,4 @@
-#include "fault_vfs.hpp"
+#include <support/fault_vfs.hpp>
 
 #include <algorithm>
 #include <cstring>
@@ -6,7 +6,7 @@
 #include <fstream>
 #include <stdexcept>
 
-namespace weave::loomlink::testing {
+namespace weave::testing {
 
 namespace {
 
@@ -263,4 +263,4 @@ int FaultDisk::remove(const std::string& path, int flags, sqlite3_vfs* real) {
     return real->xDelete(real, path.c_str(), flags);
 }
 
-}  // namespace weave::loomlink::testing
+}  // namespace weave::testing

@@ -4,6 +4,9 @@
 #include <weave/core/result.hpp>
 #include <weave/keys/hash.hpp>
 
+#include <algorithm>
+#include <array>
+#include <chrono>
 #include <cstdint>
 #include <map>
 #include <memory>
@@ -14,9 +17,9 @@
 #include <utility>
 #include <vector>
 
-namespace weave::loomlink::sql {
+namespace weave::sql {
 
-/// Bytes to be bound as a BLOB; a plain string is bound as TEXT.
+/// Bytes to be bound as a BLOB, as an array of bytes is; a plain string is bound as TEXT.
 struct Blob {
     std::string_view bytes;
 };
@@ -35,22 +38,33 @@ class Row {
     [[nodiscard]] Json json(int column) const;
     /// TEXT or BLOB as it is.
     [[nodiscard]] std::string bytes(int column) const;
-    /// The 32 bytes of a hash; zeros where the column holds anything else, which verify() tells.
-    [[nodiscard]] Hash hash(int column) const;
+    /// A BLOB of a fixed size, such as a hash: `fixed<std::array<unsigned char, 32>>(0)`; zeros where the
+    /// column holds anything else.
+    template <class Array>
+    [[nodiscard]] Array fixed(int column) const {
+        Array value{};
+        const std::string_view found = view(column);
+        if (found.size() == value.size()) std::copy(found.begin(), found.end(), value.begin());
+        return value;
+    }
 
   private:
+    [[nodiscard]] std::string_view view(int column) const;
+
     sqlite3_stmt* m_statement;
 };
 
 enum class Access : std::uint8_t { create, write, read };
 
-/// One connection with the settings of the store, and its prepared statements. For one thread at a time.
+/// One connection with the settings of a store, and its prepared statements. For one thread at a time.
 class Connection {
   public:
     /// Opens a database; `create` makes it where it is missing, `write` and `read` refuse what is missing. A
     /// database is durable by WAL and synchronous=FULL: with NORMAL a power loss takes acknowledged commits
-    /// back.
-    static Result<std::unique_ptr<Connection>> open(const std::string& path, Access access);
+    /// back. Each statement waits `patience` for other connections that are in its way.
+    static Result<std::unique_ptr<Connection>> open(
+        const std::string& path, Access access,
+        std::chrono::milliseconds patience = std::chrono::seconds(10));
     ~Connection();
     Connection(const Connection&) = delete;
     Connection& operator=(const Connection&) = delete;
@@ -130,7 +144,7 @@ class Connection {
         }
     };
     Connection(sqlite3* handle, std::string path) : m_handle(handle), m_path(std::move(path)) {}
-    Status configure(Access access);
+    Status configure(Access access, std::chrono::milliseconds patience);
     Result<sqlite3_stmt*> prepared(const char* text);
 
     static int bind(sqlite3_stmt* statement, int column, std::int64_t value) {
@@ -146,7 +160,8 @@ class Connection {
         return sqlite3_bind_blob64(statement, column, value.bytes.empty() ? "" : value.bytes.data(),
                                    value.bytes.size(), SQLITE_STATIC);
     }
-    static int bind(sqlite3_stmt* statement, int column, const Hash& value) {
+    template <std::size_t Size>
+    static int bind(sqlite3_stmt* statement, int column, const std::array<unsigned char, Size>& value) {
         return sqlite3_bind_blob64(statement, column, value.data(), value.size(), SQLITE_STATIC);
     }
     template <class Value>
@@ -159,4 +174,4 @@ class Connection {
     std::map<const char*, sqlite3_stmt*> m_statements;  // by the address of their text, which is a literal
 };
 
-}  // namespace weave::loomlink::sql
+}  // namespace weave::sql

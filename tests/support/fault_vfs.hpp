@@ -8,7 +8,7 @@
 #include <sqlite3.h>
 #include <string>
 
-namespace weave::loomlink::testing {
+namespace weave::testing {
 
 /// What goes wrong at the chosen call.
 enum class DiskFault { none, full, io_error, short_write, power_loss };
@@ -71,4 +71,4 @@ class FaultDisk {
     void closed(const std::string& path, sqlite3_file* real);
 };
 
-}  // namespace weave::loomlink::testing
+}  // namespace weave::testing
