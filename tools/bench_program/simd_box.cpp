@@ -82,7 +82,8 @@ Json SimdBox::status() const {
 }
 
 Json SimdBox::session(std::uint64_t number) const {
-    for (const Json& one : status().at("sessions")) {
+    const Json told = status();
+    for (const Json& one : told.at("sessions")) {
         if (one.at("session") == number) return one;
     }
     throw std::runtime_error("there is no session " + std::to_string(number));

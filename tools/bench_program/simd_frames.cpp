@@ -19,7 +19,7 @@ constexpr std::chrono::minutes patience{5};
 constexpr std::size_t pauses = 10;
 
 struct FramesWish {
-    std::vector<std::string> samples{"satin-e", "twill-g", "layer-to-layer", "angle-interlock-b", "tl013-corrected", "pocket"};
+    std::vector<std::string> samples{"satin-e", "twill-g", "layer-to-layer", "angle-interlock-b", "tl013-corrected"};
 };
 
 /// What frames of one kind take, and how far they are off.
@@ -137,7 +137,7 @@ void add_simd_frames(CLI::App& app, CommandOutcome& outcome) {
     CLI::App* const command = add_command(app, outcome, "simd-frames", "Size of frames, in motion and at rest, and how far they are off the yarns",
                                           "tools/bench simd-frames --sample satin-e");
     auto wish = std::make_shared<FramesWish>();
-    command->add_option("--sample", wish->samples, "the samples (satin-e, twill-g, layer-to-layer, angle-interlock-b, tl013-corrected, pocket); may be repeated");
+    command->add_option("--sample", wish->samples, "the samples (satin-e, twill-g, layer-to-layer, angle-interlock-b, tl013-corrected); may be repeated");
     on_run(command, outcome, [wish, &outcome] { return frames(*wish, outcome); });
 }
 

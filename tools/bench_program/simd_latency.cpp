@@ -153,6 +153,7 @@ Flip middle_flip(const std::string& document) {
 /// Cancels jobs at moments of their work: until job_ended.
 std::vector<double> cancel_jobs(const SimdBox& box, const std::string& document, std::size_t count) {
     constexpr std::chrono::milliseconds between_looks{20};
+    constexpr std::chrono::minutes most{5};
     Line line(box.place());
     std::vector<double> ms;
     for (std::size_t k = 0; k < count; ++k) {
@@ -160,12 +161,14 @@ std::vector<double> cancel_jobs(const SimdBox& box, const std::string& document,
         line.send(wire::Submit{submitted, document, restless(), {}});
         const std::uint64_t job = line.accepted(submitted).job.value();
         const auto begun = [&] {
-            for (const Json& one : box.status().at("jobs"))
+            const Json status = box.status();
+            for (const Json& one : status.at("jobs"))
                 if (one.at("job") == job) return one.at("step").get<std::uint64_t>() > 0;
             const auto ended = line.until<wire::JobEnded>([&](const wire::JobEnded& end) { return end.job == job; });
             throw std::runtime_error("a job ended by itself: " + (ended.error ? ended.error->text() : ended.report.value("ending", "")));
         };
-        while (!begun()) std::this_thread::sleep_for(between_looks);
+        for (const auto late = Clock::now() + most; !begun(); std::this_thread::sleep_for(between_looks))
+            if (Clock::now() > late) throw std::runtime_error("a job does not begin for minutes: " + box.status().dump());
         hesitate();
         const Clock::time_point sent = Clock::now();
         line.send(wire::Cancel{request, job});

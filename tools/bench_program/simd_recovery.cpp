@@ -21,6 +21,7 @@ namespace {
 using Clock = std::chrono::steady_clock;
 
 struct RecoveryWish {
+    double seconds = 60;
     std::size_t sessions = 16, points = 2000, kills = 20, restarts = 3, threads = 0;
 };
 
@@ -52,6 +53,7 @@ class Survivor {
         return m_seen;
     }
     [[nodiscard]] std::uint64_t session() const { return m_session; }
+    [[nodiscard]] Clock::time_point began() const { return m_began; }
 
   private:
     void watch() {
@@ -91,6 +93,7 @@ class Survivor {
     static constexpr std::chrono::minutes patience{5};
     wire::Follower m_follower;
     std::uint64_t m_session = 0;
+    const Clock::time_point m_began = Clock::now();
     mutable std::mutex m_mutex;
     Seen m_seen;
     bool m_is_back = false;
@@ -110,11 +113,14 @@ void wait_until(const std::function<bool()>& is_so) {
     }
 }
 
-/// Where the sessions are: a fault cannot hit what has not begun.
-void wait_for_checkpoints(const SimdBox& box, const Survivors& survivors) {
-    wait_until([&] {
-        return std::ranges::all_of(survivors, [&](const auto& one) { return one->seen().step > 0 && box.checkpoint_age_s(one->session()).has_value(); });
-    });
+/// A fault is to hit what is under way.
+void wait_until_all_move(const Survivors& survivors) {
+    wait_until([&] { return std::ranges::all_of(survivors, [](const auto& one) { return one->seen().step > 0; }); });
+}
+
+/// Of the state from which a session would go on now: its checkpoint, or its beginning.
+double age_s(const SimdBox& box, const Survivor& survivor) {
+    return box.checkpoint_age_s(survivor.session()).value_or(std::chrono::duration<double>(Clock::now() - survivor.began()).count());
 }
 
 std::vector<double> sorted_of(const Json& faults, const char* what) {
@@ -146,8 +152,8 @@ Json kill_workers(const SimdBox& box, const Survivors& survivors, std::size_t ki
         const std::size_t victim = std::uniform_int_distribution<std::size_t>(0, survivors.size() - 1)(random);
         const Survivor& one = *survivors[victim];
         const auto worker = box.worker(one.session());
-        const auto age = box.checkpoint_age_s(one.session());
-        if (!worker || !age) continue;
+        const double age = age_s(box, one);
+        if (!worker) continue;
         std::vector<Survivor::Seen> before;
         for (const auto& other : survivors) before.push_back(other->seen());
         const Clock::time_point fault = Clock::now();
@@ -158,7 +164,7 @@ Json kill_workers(const SimdBox& box, const Survivors& survivors, std::size_t ki
             if (other != victim) lost += survivors[other]->seen().lost_frames - before[other].lost_frames;
         faults.push_back({{"recovered_s", between_s(fault, seen.recovered)},
                           {"moved_s", between_s(fault, seen.moved)},
-                          {"checkpoint_age_s", *age},
+                          {"checkpoint_age_s", age},
                           {"steps_again", seen.before_step > seen.recovered_step ? seen.before_step - seen.recovered_step : 0}});
         outcome.note("worker " + std::to_string(k + 1) + " of " + std::to_string(kills) + ": on after " + form("%.2f s", faults.back().at("moved_s")));
     }
@@ -170,11 +176,10 @@ Json kill_daemon(SimdBox& box, const Survivors& survivors, std::size_t restarts,
     Json answer{{"restarts", Json::array()}};
     Json faults = Json::array();
     for (std::size_t k = 0; k < restarts; ++k) {
-        wait_for_checkpoints(box, survivors);
-        std::this_thread::sleep_for(std::chrono::seconds(3));
+        std::this_thread::sleep_for(std::chrono::seconds(5));
         std::vector<std::size_t> before;
         std::vector<double> ages;
-        for (const auto& one : survivors) before.push_back(one->seen().recoveries), ages.push_back(box.checkpoint_age_s(one->session()).value_or(0));
+        for (const auto& one : survivors) before.push_back(one->seen().recoveries), ages.push_back(age_s(box, *one));
         const Clock::time_point fault = Clock::now();
         box.kill();
         box.start();
@@ -202,7 +207,7 @@ void tell(AimTable& table, const std::string& what, const Json& spread) {
     const auto within = [&](const char* member, double most) { return spread.at(member).at("max").get<double>() <= most; };
     table.row(what + " until `recovered`", text("recovered_s", "%.2f s"));
     table.row(what + " until a frame shows a new step", text("moved_s", "%.2f s"), "10 s", within("moved_s", most_s));
-    table.row(what + ": age of the checkpoint", text("checkpoint_age_s", "%.1f s"), "30 s", within("checkpoint_age_s", oldest_s));
+    table.row(what + ": age of the state from which it went on", text("checkpoint_age_s", "%.1f s"), "30 s", within("checkpoint_age_s", oldest_s));
     table.row(what + ": steps made again", text("steps_again", "%.0f"));
 }
 
@@ -229,7 +234,8 @@ Status recovery(const RecoveryWish& wish, CommandOutcome& outcome) {
     Survivors survivors;
     for (std::size_t k = 0; k < wish.sessions; ++k) survivors.push_back(std::make_unique<Survivor>(box, cloth.document));
     outcome.note(std::to_string(wish.sessions) + " sessions run");
-    wait_for_checkpoints(box, survivors);
+    wait_until_all_move(survivors);
+    std::this_thread::sleep_for(std::chrono::duration<double>(wish.seconds));
     said["workers"] = kill_workers(box, survivors, wish.kills, outcome);
     if (wish.restarts > 0) said["daemon"] = kill_daemon(box, survivors, wish.restarts, outcome);
     said["after"] = circumstances();
@@ -245,6 +251,7 @@ void add_simd_recovery(CLI::App& app, CommandOutcome& outcome) {
     auto wish = std::make_shared<RecoveryWish>();
     command->add_option("--sessions", wish->sessions, "sessions side by side (16)")->check(CLI::Range(1, 200));
     command->add_option("--points", wish->points, "control points of each (2000)")->check(CLI::Range(1, 1'000'000));
+    command->add_option("--seconds", wish->seconds, "that they run before the first fault (60)")->check(CLI::Range(0.0, 3600.0));
     command->add_option("--kills", wish->kills, "workers that are killed (20)")->check(CLI::Range(1, 100'000));
     command->add_option("--restarts", wish->restarts, "times that the daemon is killed (3)")->check(CLI::Range(0, 1000));
     command->add_option("--threads", wish->threads, "threads of simd that compute; 0: one a core")->check(CLI::Range(0, 1024));

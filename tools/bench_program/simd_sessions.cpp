@@ -295,8 +295,9 @@ Json beside_trouble(Crowd& crowd, const SessionsWish& wish, const CommandOutcome
     std::vector<double> shares;
     for (std::size_t k = 0; k < others; ++k) {
         all_calm += calm[k], all_troubled += troubled[k];
-        shares.push_back(troubled[k] / calm[k]);
+        shares.push_back(calm[k] > 0 ? troubled[k] / calm[k] : 0);
     }
+    if (all_calm <= 0) throw std::runtime_error("no session shows two frames in a stretch: give it more --seconds");
     std::sort(shares.begin(), shares.end());
     answer.update({{"pace_kept", all_troubled / all_calm}, {"least_pace_kept", shares.front()}, {"lost_frames", lost}, {"kills", kills},
                    {"hostile_connections", connections}, {"hostile_messages", messages}});
