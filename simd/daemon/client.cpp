@@ -1,3 +1,4 @@
+#include <algorithm>
 #include <simd/daemon/client.hpp>
 
 namespace weave::simd {
@@ -11,10 +12,11 @@ void Client::show(const net::Bytes& frame, bool is_last) {
         const std::lock_guard lock(m_mutex);
         if (m_frames_per_second <= 0) return;
         const Clock::time_point now = Clock::now();
-        // A little early is not too often: frames come at the pace of the fastest client.
-        constexpr double early = 0.9;
-        if (!is_last && std::chrono::duration<double>(now - m_last_shown).count() * m_frames_per_second < early) return;
-        m_last_shown = now;
+        constexpr double longest_s = 1e6;
+        const auto period = std::chrono::duration_cast<Clock::duration>(std::chrono::duration<double>(std::min(longest_s, 1 / m_frames_per_second)));
+        // One that comes up to half a period early is shown, as the one before it may have come late; on average no more are than were asked for.
+        if (!is_last && now + period / 2 < m_next_due) return;
+        m_next_due = std::max(m_next_due, now) + period;
     }
     m_socket->send_frame(frame);
 }
@@ -22,6 +24,7 @@ void Client::show(const net::Bytes& frame, bool is_last) {
 void Client::want_frames(double most_per_second) {
     const std::lock_guard lock(m_mutex);
     m_frames_per_second = most_per_second;
+    m_next_due = {};
 }
 
 double Client::frames_per_second() const {

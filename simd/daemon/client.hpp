@@ -49,7 +49,7 @@ class Client {
     const std::shared_ptr<net::WebSocket> m_socket;
     mutable std::mutex m_mutex;
     double m_frames_per_second = 30;
-    Clock::time_point m_last_shown{};
+    Clock::time_point m_next_due{};  ///< the next frame
 };
 
 }  // namespace weave::simd

@@ -1,7 +1,8 @@
-// Benchmarks of libweave and loomlink: each case prints times and the peak memory of its process, in words or as JSON.
+// Benchmarks of libweave, loomlink and simd: each case prints what it measured.
 
 #include "loomlink.hpp"
 #include "settling.hpp"
+#include "simd.hpp"
 
 #include <weave/block/operations.hpp>
 #include <weave/block/preset.hpp>
@@ -18,7 +19,6 @@
 #include <algorithm>
 #include <chrono>
 #include <cstdio>
-#include <exception>
 #include <filesystem>
 #include <string>
 #include <vector>
@@ -228,30 +228,42 @@ Json flip_settles() {
 
 struct Case {
     const char* name;
+    const char* about;
     Json (*run)();
 };
-constexpr Case cases[] = {{"shoe", shoe}, {"shoe-edit", shoe_edit}, {"stencil-20000", stencil_20000},
-                            {"mixed-radii", mixed_radii}, {"tiled", tiled}, {"flip", flip_settles}, {"settling", bench::settling},
-                            {"loomlink-load", bench::loomlink_load}, {"loomlink-growth", bench::loomlink_growth}};
+constexpr Case cases[] = {{"shoe", "The full-size shoe from its file to the card image", shoe},
+                          {"shoe-edit", "One crossing of it flipped, and evaluated again", shoe_edit},
+                          {"stencil-20000", "A stencil of 20,000 x 20,000 stacks", stencil_20000},
+                          {"mixed-radii", "One evaluation of satin with wefts three times as thick", mixed_radii},
+                          {"tiled", "Tiled cloth, reduced, against its cell", tiled},
+                          {"flip", "One flip in relaxed cloth against starting over", flip_settles},
+                          {"settling", "Points that need no step any more", bench::settling},
+                          {"loomlink-load", "Pulls and saves of many people at once", bench::loomlink_load},
+                          {"loomlink-growth", "Bytes that the store grows by with a save", bench::loomlink_growth}};
+
+void add_cases(CLI::App& app, CommandOutcome& outcome) {
+    for (const Case& one : cases) {
+        CLI::App* const command = add_command(app, outcome, one.name, one.about);
+        on_run(command, outcome, [&one, &outcome]() -> Status {
+            const Json answer = one.run();
+            outcome.answer(answer, answer.dump() + "\n");
+            return {};
+        });
+    }
+    bench::add_simd_latency(app, outcome);
+    bench::add_simd_sessions(app, outcome);
+    bench::add_simd_frames(app, outcome);
+    bench::add_simd_recovery(app, outcome);
+}
 
 }  // namespace
 
 int main(int count, char** words) {
-    for (const Case& one : cases) {
-        if (count == 2 && one.name == std::string(words[1])) {
-            try {
-                std::printf("%s\n", one.run().dump().c_str());
-            } catch (const std::exception& trouble) {
-                std::fprintf(stderr, "weave_bench: %s: %s\n", one.name, trouble.what());
-                return 1;
-            }
-            return 0;
-        }
-    }
-    if (count == 1) {
-        for (const Case& one : cases) std::printf("%s\n", one.name);
-        return 0;
-    }
-    std::fprintf(stderr, "usage: weave_bench [NAME]; without a name the cases are listed\n");
-    return 2;
+    CLI::App app("Benchmarks; without a name they are listed");
+    CommandOutcome outcome("weave_bench", JsonLayout::on_one_line);
+    prepare_program(app, "weave_bench " WEAVE_VERSION);
+    add_cases(app, outcome);
+    if (count > 1) return run_program(app, outcome, count, words);
+    for (const CLI::App* command : app.get_subcommands({})) std::printf("%s\n", command->get_name().c_str());
+    return 0;
 }

@@ -1,14 +1,13 @@
 #include "flip_one.hpp"
 #include "loomlink.hpp"
 #include "loomlink_site.hpp"
+#include "spread.hpp"
 
 #include <weave/core/file.hpp>
 #include <weave/design/document.hpp>
 #include <weave/samples/samples.hpp>
 
-#include <algorithm>
 #include <chrono>
-#include <cmath>
 #include <mutex>
 #include <stdexcept>
 #include <thread>
@@ -35,17 +34,8 @@ class Times {
         m_trouble = trouble;
     }
     [[nodiscard]] Json told() const {
-        std::vector<double> sorted = m_ms;
-        std::sort(sorted.begin(), sorted.end());
-        const auto share = [&](double part) {
-            const double rank = std::ceil(part * static_cast<double>(sorted.size()));
-            return sorted.at(static_cast<std::size_t>(std::max(rank, 1.0)) - 1);
-        };
-        Json json{{"count", sorted.size()},
-                  {"p50_ms", share(0.5)},
-                  {"p99_ms", share(0.99)},
-                  {"max_ms", share(1)},
-                  {"errors", m_errors}};
+        Json json = spread_ms(m_ms);
+        json["errors"] = m_errors;
         if (m_errors > 0) json["last_error"] = m_trouble;
         return json;
     }

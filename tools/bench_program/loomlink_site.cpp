@@ -3,20 +3,12 @@
 #include <atomic>
 #include <chrono>
 #include <csignal>
-#include <fcntl.h>
-#include <spawn.h>
 #include <stdexcept>
-#include <sys/wait.h>
 #include <thread>
-#include <unistd.h>
 
 namespace weave::bench {
 
 namespace {
-
-std::string beside_this_program(const char* name) {
-    return (std::filesystem::read_symlink("/proc/self/exe").parent_path() / name).string();
-}
 
 std::string text_of(const net::Response& response) {
     return response.body ? *response.body : "";
@@ -54,9 +46,6 @@ Json LoomlinkSite::Person::done(const std::string& method, const std::string& pa
 }
 
 LoomlinkSite::LoomlinkSite() {
-    std::string name = (std::filesystem::temp_directory_path() / "weave-bench-XXXXXX").string();
-    if (::mkdtemp(name.data()) == nullptr) throw std::runtime_error("no folder for the site");
-    m_folder = name;
     const auto link = spawn().at("invitation").get<std::string>();
     m_tokens.emplace_back("admin", accept(link.substr(link.find('#') + 1), "admin"));
     m_people.push_back(again("admin"));
@@ -65,46 +54,15 @@ LoomlinkSite::LoomlinkSite() {
     administrator().done("PUT", "/policy", policy);
 }
 
-LoomlinkSite::~LoomlinkSite() {
-    if (m_process > 0) ::kill(m_process, SIGKILL), ::waitpid(m_process, nullptr, 0);
-    if (m_answer >= 0) ::close(m_answer);
-    std::error_code ignored;
-    std::filesystem::remove_all(m_folder, ignored);
-}
-
 Json LoomlinkSite::spawn() {
-    int ends[2];
-    if (::pipe2(ends, O_CLOEXEC) != 0) throw std::runtime_error("no pipe");
-    posix_spawn_file_actions_t actions;
-    posix_spawn_file_actions_init(&actions);
-    posix_spawn_file_actions_adddup2(&actions, ends[1], STDOUT_FILENO);
-    posix_spawn_file_actions_addopen(&actions, STDERR_FILENO, (m_folder / "told.txt").c_str(),
-                                     O_WRONLY | O_CREAT | O_APPEND, 0600);
-    std::vector<std::string> words{beside_this_program("loomlink"),
-                                   "serve",
-                                   (m_folder / "site").string(),
-                                   "--port",
-                                   "0",
-                                   "--host",
-                                   "127.0.0.1",
-                                   "--json"};
-    std::vector<char*> pointers;
-    for (std::string& word : words) pointers.push_back(word.data());
-    pointers.push_back(nullptr);
-    const int code =
-        ::posix_spawn(&m_process, pointers.front(), &actions, nullptr, pointers.data(), ::environ);
-    posix_spawn_file_actions_destroy(&actions);
-    ::close(ends[1]);
-    m_answer = ends[0];
-    if (code != 0) throw std::runtime_error("cannot start " + words.front());
-    std::string line;
-    for (char c = 0; ::read(m_answer, &c, 1) == 1 && c != '\n';) line += c;
-    const auto told = parse_json(line);
-    if (!told || !told->contains("url")) throw std::runtime_error("loomlink does not serve: " + line);
-    m_options = net::parse_origin(told->at("url").get<std::string>()).value();
+    const std::vector<std::string> words{"serve",  (m_folder.path() / "site").string(), "--port", "0",
+                                         "--host", "127.0.0.1",                         "--json"};
+    m_program.emplace("loomlink", words, m_folder.path() / "told.txt");
+    const Json& told = m_program->introduction();
+    m_options = net::parse_origin(told.at("url").get<std::string>()).value();
     m_options.answer_time = std::chrono::minutes(5);  // a busy machine is measured, not given up
-    m_options.tls = net::Trust{{}, told->at("certificate_sha256").get<std::string>()};
-    return *told;
+    m_options.tls = net::Trust{{}, told.at("certificate_sha256").get<std::string>()};
+    return told;
 }
 
 void LoomlinkSite::start() {
@@ -114,16 +72,9 @@ void LoomlinkSite::start() {
 }
 
 std::uintmax_t LoomlinkSite::stop_and_measure() {
-    ::kill(m_process, SIGTERM);
-    int status = 0;
-    ::waitpid(m_process, &status, 0);
-    m_process = 0;
-    ::close(m_answer);
-    m_answer = -1;
-    if (!WIFEXITED(status) || WEXITSTATUS(status) != 0)
-        throw std::runtime_error("loomlink did not end in good order");
+    if (m_program->end(SIGTERM) != 0) throw std::runtime_error("loomlink did not end in good order");
     std::uintmax_t bytes = 0;
-    for (const auto& entry : std::filesystem::directory_iterator(m_folder / "site"))
+    for (const auto& entry : std::filesystem::directory_iterator(m_folder.path() / "site"))
         if (entry.path().filename().string().starts_with("loomlink.db")) bytes += entry.file_size();
     return bytes;
 }

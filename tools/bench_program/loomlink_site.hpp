@@ -1,12 +1,13 @@
 #pragma once
 
+#include "service_program.hpp"
+
 #include <weave/core/json.hpp>
 #include <weave/net/client.hpp>
 
 #include <cstdint>
-#include <filesystem>
+#include <optional>
 #include <string>
-#include <sys/types.h>
 #include <vector>
 
 namespace weave::bench {
@@ -16,9 +17,6 @@ namespace weave::bench {
 class LoomlinkSite {
   public:
     LoomlinkSite();
-    ~LoomlinkSite();
-    LoomlinkSite(const LoomlinkSite&) = delete;
-    LoomlinkSite& operator=(const LoomlinkSite&) = delete;
 
     /// A person who has joined, with a connection of his or her own. For one thread at a time.
     class Person {
@@ -53,9 +51,8 @@ class LoomlinkSite {
     Json spawn();
     [[nodiscard]] std::string accept(const std::string& code, const std::string& name) const;
 
-    std::filesystem::path m_folder;
-    pid_t m_process = 0;
-    int m_answer = -1;
+    WorkFolder m_folder;
+    std::optional<ServiceProgram> m_program;
     net::ClientOptions m_options;
     std::vector<Person> m_people;
     std::vector<std::pair<std::string, std::string>> m_tokens;
