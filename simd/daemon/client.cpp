@@ -21,6 +21,11 @@ void Client::show(const net::Bytes& frame, bool is_last) {
     m_socket->send_frame(frame);
 }
 
+bool Client::is_full() const {
+    constexpr std::size_t enough = std::size_t{1} << 20;  // a quarter of what closes a connection
+    return m_socket->waiting_bytes() > enough;
+}
+
 void Client::want_frames(double most_per_second) {
     const std::lock_guard lock(m_mutex);
     m_frames_per_second = most_per_second;

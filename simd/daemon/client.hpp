@@ -5,6 +5,7 @@
 
 #include <chrono>
 #include <cstdint>
+#include <deque>
 #include <functional>
 #include <memory>
 #include <mutex>
@@ -33,12 +34,16 @@ class Client {
     void show(const net::Bytes& frame, bool is_last);
     void close(std::uint16_t code, std::string reason) { m_socket->close(code, std::move(reason)); }
 
+    /// Whether so much waits for it already that what is not urgent had better wait here.
+    [[nodiscard]] bool is_full() const;
     void want_frames(double most_per_second);
     [[nodiscard]] double frames_per_second() const;
     [[nodiscard]] std::uint64_t dropped_frames() const { return m_socket->dropped_frames(); }
 
     /// The session that it is attached to; 0: none. Only the daemon sets it.
     std::uint64_t session = 0;
+    /// Jobs whose end it is still to be told. Only the daemon uses it.
+    std::deque<std::uint64_t> untold_jobs;
     /// Has said hello. Only the daemon sets it.
     bool is_greeted = false;
 

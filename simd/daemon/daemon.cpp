@@ -24,6 +24,7 @@ Result<std::unique_ptr<Daemon>> Daemon::start(std::unique_ptr<Store> store, cons
     std::unique_ptr<Daemon> daemon(new Daemon(std::move(store), settings));
     WEAVE_CHECK_OK(daemon->take_up());
     daemon->m_thread = std::thread([&floor = *daemon] { floor.work(); });
+    daemon->m_writer = std::thread([&floor = *daemon] { floor.write_events(); });
     return daemon;
 }
 
@@ -32,7 +33,9 @@ Daemon::~Daemon() {
         const std::lock_guard lock(m_lock);
         m_ends = true;
     }
+    m_wants_writing.notify_all();
     if (m_thread.joinable()) m_thread.join();
+    if (m_writer.joinable()) m_writer.join();
     const std::lock_guard lock(m_lock);
     m_sessions.clear();
     m_jobs.clear();
@@ -55,15 +58,15 @@ Status Daemon::take_up() {
         m_sessions.back()->take_up();
     }
     WEAVE_TRY(const std::vector<KeptJob> jobs, m_store->jobs());
-    for (const KeptJob& kept : jobs) {
-        WEAVE_TRY(const JobTask task, m_store->task_of_job(kept.number));
-        m_jobs.push_back(std::make_unique<Job>(around_job(), kept, task));
-    }
+    for (const KeptJob& kept : jobs) m_jobs.push_back(std::make_unique<Job>(around_job(), kept));
     return {};
 }
 
 Session::Surroundings Daemon::around_session() {
-    return {*m_store, m_crew, m_settings.folder / "sessions"};
+    return {*m_store, m_crew, m_settings.folder / "sessions", [this] {
+                m_has_to_write = true;
+                m_wants_writing.notify_all();
+            }};
 }
 
 Job::Surroundings Daemon::around_job() {
@@ -84,10 +87,36 @@ void Daemon::work() {
     }
 }
 
+/// Writes what sessions have to tell, without the lock: a disk takes its time to flush, and nobody is to wait for that who has
+/// nothing to write.
+void Daemon::write_events() {
+    constexpr std::chrono::milliseconds until_another_try{500};
+    std::unique_lock lock(m_lock);
+    while (true) {
+        m_wants_writing.wait_for(lock, until_another_try, [this] { return m_has_to_write || m_ends; });
+        if (m_ends) return;
+        m_has_to_write = false;
+        std::vector<Session::Writing> all;
+        for (const auto& session : m_sessions) {
+            if (auto writing = session->is_accepted() ? session->to_write() : std::nullopt) all.push_back(std::move(*writing));
+        }
+        for (const Session::Writing& writing : all) {
+            lock.unlock();
+            Status written = m_store->add_events(writing.number, writing.events, writing.dated);
+            if (written && writing.state) written = m_store->change_session(writing.number, *writing.state);
+            if (!written) log(LogLevel::warning, "session " + std::to_string(writing.number) + ": " + written.error().text());
+            lock.lock();
+            const auto session = std::ranges::find(m_sessions, writing.number, [](const auto& one) { return one->number(); });
+            if (written && session != m_sessions.end()) (*session)->written(writing);
+        }
+    }
+}
+
 void Daemon::tick(Clock::time_point now) {
     m_crew.tick(now);
     for (const auto& session : m_sessions) session->tick(now, m_settings.expire);
     for (const auto& job : m_jobs) job->tick();
+    for (const ClientPtr& client : m_clients) tell_ended_jobs(client);
     if (!m_is_stopping) begin_jobs();
     forget_what_is_over();
     if (now - m_jobs_told < std::chrono::seconds(1)) return;
@@ -207,9 +236,17 @@ void Daemon::job_ended(const Job& job) {
         m_job_seconds.push_back(job.ending().report.value("seconds", 0.0));
         if (m_job_seconds.size() > recent) m_job_seconds.erase(m_job_seconds.begin());
     }
-    const wire::JobEnded ending = job.ending();
     for (const ClientPtr& client : m_clients) {
-        if (client->is_greeted && client->person() == job.person()) client->tell(ending);
+        if (client->is_greeted && client->person() == job.person()) client->untold_jobs.push_back(job.number());
+    }
+}
+
+/// As fast as the client takes it.
+void Daemon::tell_ended_jobs(const ClientPtr& client) {
+    while (!client->untold_jobs.empty() && !client->is_full()) {
+        const Job* const job = job_of(client->person(), client->untold_jobs.front());
+        client->untold_jobs.pop_front();
+        if (job != nullptr && job->is_over()) client->tell(job->ending());
     }
 }
 
@@ -224,8 +261,9 @@ void Daemon::greet(const ClientPtr& client) {
     const std::lock_guard lock(m_lock);
     client->is_greeted = true;
     for (const auto& job : m_jobs) {
-        if (job->is_over() && job->person() == client->person()) client->tell(job->ending());
+        if (job->is_over() && job->person() == client->person()) client->untold_jobs.push_back(job->number());
     }
+    tell_ended_jobs(client);
 }
 
 void Daemon::leave(const ClientPtr& client) {
@@ -324,7 +362,8 @@ void Daemon::stop(std::chrono::milliseconds patience) {
         {
             const std::lock_guard lock(m_lock);
             const auto away = [](const auto& task) { return task->is_put_away(); };
-            if (std::ranges::all_of(m_sessions, away) && std::ranges::all_of(m_jobs, away)) return;
+            const auto written = [](const auto& session) { return session->is_written(); };
+            if (std::ranges::all_of(m_sessions, away) && std::ranges::all_of(m_sessions, written) && std::ranges::all_of(m_jobs, away)) return;
         }
         std::this_thread::sleep_for(tick_time);
     }

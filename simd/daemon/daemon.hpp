@@ -3,9 +3,11 @@
 #include <weave/core/json.hpp>
 #include <weave/net/health.hpp>
 #include <weave/net/metrics.hpp>
+#include <weave/net/throttle.hpp>
 #include <weave/wire/message.hpp>
 
 #include <chrono>
+#include <condition_variable>
 #include <cstdint>
 #include <filesystem>
 #include <functional>
@@ -72,6 +74,8 @@ class Daemon {
     Daemon(std::unique_ptr<Store> store, const DaemonSettings& settings);
     Status take_up();
     void work();
+    void write_events();
+    void tell_ended_jobs(const ClientPtr& client);
     void tick(Clock::time_point now);
     void tell_jobs();
     void forget_what_is_over();
@@ -118,7 +122,10 @@ class Daemon {
     std::vector<double> m_job_seconds;  ///< that recent jobs took
     Clock::time_point m_jobs_told{}, m_began = Clock::now();
     bool m_is_stopping = false, m_ends = false;
-    std::thread m_thread;
+    net::Throttle m_requests{{60, 30, 10000}};  ///< that change something, by person: each costs the disk a flush
+    std::condition_variable m_wants_writing;
+    bool m_has_to_write = false;
+    std::thread m_thread, m_writer;
 };
 
 }  // namespace weave::simd

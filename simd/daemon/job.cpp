@@ -15,7 +15,7 @@ constexpr const char* phase_names[]{"waiting", "running", "done", "failed", "can
 
 }  // namespace
 
-Job::Job(Surroundings around, KeptJob kept, JobTask task) : m_around(std::move(around)), m_kept(std::move(kept)), m_task(std::move(task)) {
+Job::Job(Surroundings around, KeptJob kept) : m_around(std::move(around)), m_kept(std::move(kept)) {
     m_around.folder /= std::to_string(number());
     if (!m_kept.end) return;
     m_end = *m_kept.end;
@@ -70,7 +70,7 @@ Json Job::status(bool with_names) const {
               {"left_s", now.left_s ? Json(*now.left_s) : Json()},
               {"points", m_points},
               {"memory_bytes", m_worker ? m_around.crew.memory_bytes(*m_worker) : 0},
-              {"computed_s", m_worker ? m_around.crew.turns().spent_s(*m_worker) : 0.0}};
+              {"computed_s", m_worker ? m_around.crew.turns().spent_s(*m_worker, Clock::now()) : 0.0}};
     if (!with_names) return told;
     told["person"] = person();
     told["title"] = m_kept.title;
@@ -83,6 +83,9 @@ Json Job::status(bool with_names) const {
 // ---- Its work ----
 
 void Job::begin() {
+    auto task = m_around.store.task_of_job(number());
+    if (!task) return;
+    m_task = std::move(*task);
     m_worker = m_around.crew.hire(*this, person(), true);
 }
 
@@ -90,10 +93,12 @@ WorkOrder Job::order() {
     WorkOrder order;
     order.is_job = true;
     order.number = number();
-    order.document = m_task.document;
-    if (auto work = simulation_from(m_task.simulation)) {
+    const JobTask task = std::exchange(m_task, {}).value_or(JobTask{});
+    order.document = task.document;
+    if (auto work = simulation_from(task.simulation)) {
         order.simulation = std::move(work->simulation);
         order.flips = std::move(work->flips);
+        m_has_flips = !order.flips.empty();
     }
     order.folder = m_around.folder.string();
     order.takes_up = true;  // from the checkpoint of an earlier attempt, if there is one
@@ -101,7 +106,7 @@ WorkOrder Job::order() {
 }
 
 void Job::planned(const Json& plan) {
-    m_points = plan.at("points").get<std::size_t>() * (simulation_from(m_task.simulation)->flips.empty() ? 1 : plan.at("repeats").get<std::size_t>());
+    m_points = plan.at("points").get<std::size_t>() * (m_has_flips ? plan.at("repeats").get<std::size_t>() : 1);
     const std::uint64_t bytes = expected(), whole = m_around.crew.room().whole();
     if (bytes > whole) {
         const Error error{ErrorCode::refused, "the cloth needs " + memory_text(bytes) + ", and " + memory_text(whole) + " is all that there is: simulate a part of it, or fewer points", "simulation"};

@@ -30,7 +30,7 @@ class Job final : public Task {
         std::function<void(const Job&)> has_ended;
     };
 
-    Job(Surroundings around, KeptJob kept, JobTask task);
+    Job(Surroundings around, KeptJob kept);
     ~Job() override;
 
     [[nodiscard]] std::uint64_t number() const { return m_kept.number; }
@@ -50,6 +50,7 @@ class Job final : public Task {
     [[nodiscard]] const std::optional<std::string>& evidence() const { return m_end.evidence; }
     [[nodiscard]] Json status(bool with_names) const;
 
+    /// Has it put to work; nothing where the store cannot be read just now.
     void begin();
     void cancel();
     void put_away();
@@ -69,7 +70,8 @@ class Job final : public Task {
 
     Surroundings m_around;
     KeptJob m_kept;
-    JobTask m_task;
+    std::optional<JobTask> m_task;  ///< from the store, until its worker has it
+    bool m_has_flips = false;
     JobEnd m_end;  ///< once it is over
     wire::JobPhase m_phase = wire::JobPhase::waiting;
     std::optional<Crew::Id> m_worker;

@@ -24,23 +24,20 @@ Result<std::string> title_of(const std::string& document) {
 
 }  // namespace
 
-/// A request that was answered before, be it over another connection, is answered the same way and done no second time.
+/// A request that was answered before, be it over another connection, is answered the same way and done no second time. So is
+/// one that comes too soon after many others, but it may come again.
 bool Daemon::answered_before(const ClientPtr& client, const std::string& request) {
     const auto answer = m_store->answer_of(client->person(), request);
     if (!answer) {
         client->tell(wire::Refused{request, {ErrorCode::system, "the store cannot be read", ""}, {}});
         return true;
     }
-    if (!*answer) return false;
-    const auto read = wire::read_server_message(**answer);
-    const auto* accepted = read ? std::get_if<wire::Accepted>(&*read) : nullptr;
-    if (accepted != nullptr && accepted->session && client->session == 0) {
-        if (Session* const session = session_of(client->person(), *accepted->session)) {
-            session->attach(client, {request, *accepted->session, 0, 0});
-            return true;
-        }
+    if (*answer) {
+        client->tell(net::make_bytes(**answer));
+        return true;
     }
-    client->tell(net::make_bytes(**answer));
+    if (m_requests.take(client->person())) return false;
+    client->tell(wire::Refused{request, {ErrorCode::refused, "too many requests in a short time: at most 30 a second in the long run", ""}, 1.0});
     return true;
 }
 
@@ -147,7 +144,7 @@ void Daemon::submit(const ClientPtr& client, const wire::Submit& submit, const s
     const auto made = m_store->add_job(fresh, text);
     if (!made) return refuse({ErrorCode::system, "the disk does not take it: " + made.error().message, "submit"});
     const KeptJob kept{.number = made->number, .person = fresh.person, .request = fresh.request, .title = fresh.title, .residual = {}, .end = {}};
-    m_jobs.push_back(std::make_unique<Job>(around_job(), kept, JobTask{fresh.document, fresh.simulation}));
+    m_jobs.push_back(std::make_unique<Job>(around_job(), kept));
     client->tell(net::make_bytes(made->answer));
 }
 

@@ -27,7 +27,7 @@ Error Session::gone() const {
 
 Session::Session(Surroundings around, const wire::Create& create, const ClientPtr& client)
     : m_around(std::move(around)), m_person(client->person()), m_request(create.request), m_document(create.document),
-      m_simulation(create.simulation), m_creators{client} {
+      m_simulation(create.simulation), m_creator(client), m_creators{client} {
     m_pause_at = 0;
     m_worker = m_around.crew.hire(*this, m_person, false);
 }
@@ -89,10 +89,12 @@ Status Session::become_accepted() {
         return system_fault("cannot make a folder for the session: " + code.message());
     }
     for (const ClientPtr& client : m_creators) {
-        if (std::exchange(client->session, m_number) == 0) m_clients.push_back(client);  // once, however often it asked
         client->tell(net::make_bytes(text(m_number)));
+        if (client != m_creator || std::exchange(client->session, m_number) != 0) continue;  // once, however often it asked
+        m_viewers.push_back({client, 0, 0, false});
     }
     m_creators.clear();
+    m_creator.reset();
     return {};
 }
 
@@ -109,30 +111,64 @@ void Session::emit(wire::ServerMessage event, EventKind kind, std::optional<Date
         },
         event);
     m_unsaved.push_back({{seq, kind, wire::write_message(event)}, dated});
-    save_unsaved();
+    m_around.wants_writing();
 }
 
-/// Events are told once the disk has them. While it does not take them, they wait in their order.
-void Session::save_unsaved() {
-    while (!m_unsaved.empty()) {
-        const Unsaved& first = m_unsaved.front();
-        const Status saved = m_around.store.add_events(m_number, {first.event}, first.dated ? std::vector{*first.dated} : std::vector<Dated>{});
-        if (!saved) {
-            log(LogLevel::warning, "session " + std::to_string(m_number) + ": " + saved.error().text());
-            return;
+std::optional<Session::Writing> Session::to_write() const {
+    if (m_unsaved.empty() && !m_state_changed) return {};
+    Writing writing{m_number, {}, {}, {}};
+    for (const Unsaved& unsaved : m_unsaved) {
+        writing.events.push_back(unsaved.event);
+        if (unsaved.dated) writing.dated.push_back(*unsaved.dated);
+    }
+    if (m_state_changed) writing.state = kept_state();
+    return writing;
+}
+
+void Session::written(const Writing& writing) {
+    if (writing.state && *writing.state == kept_state()) m_state_changed = false;
+    m_unsaved.erase(m_unsaved.begin(), m_unsaved.begin() + static_cast<std::ptrdiff_t>(writing.events.size()));
+    for (const Event& event : writing.events) {
+        m_saved_seq = event.seq;
+        const net::Bytes text = net::make_bytes(event.text);
+        for (Viewer& viewer : m_viewers) {
+            if (viewer.sent + 1 != event.seq || !viewer.is_shown) continue;  // it is brought up by and by
+            viewer.client->tell(text);
+            viewer.sent = event.seq;
         }
-        deliver(first);
-        m_unsaved.erase(m_unsaved.begin());
+    }
+    for (Viewer& viewer : m_viewers) bring_up(viewer);
+    if (m_unsaved.empty()) show_newest();
+}
+
+/// Tells a viewer what it has not had, as fast as it takes it.
+void Session::bring_up(Viewer& viewer) {
+    constexpr std::size_t at_once = 64;
+    while (viewer.sent < m_saved_seq) {
+        if (viewer.client->is_full()) return;
+        const auto events = m_around.store.events_after(m_number, viewer.sent, at_once);
+        if (!events) return;  // the next tick tries again
+        for (const Event& event : *events) viewer.client->tell(net::make_bytes(event.text));
+        viewer.sent = events->empty() ? m_saved_seq : events->back().seq;
+    }
+    if (viewer.is_shown) return;
+    viewer.is_shown = true;
+    if (m_newest && m_newest_number > viewer.frame + 1) viewer.client->tell(wire::Gap{m_number, viewer.frame + 1, m_newest_number - 1});
+    if (m_newest && m_newest_number > viewer.frame) viewer.client->show(m_newest, true);
+    viewer.frame = m_newest_number;
+}
+
+/// A frame goes out once every event before it, its layout above all, is told.
+void Session::show_newest() {
+    for (Viewer& viewer : m_viewers) {
+        if (!m_newest || !viewer.is_shown || viewer.sent < m_saved_seq || viewer.frame >= m_newest_number) continue;
+        viewer.client->show(m_newest, m_newest_is_last);
+        viewer.frame = m_newest_number;
     }
 }
 
-void Session::deliver(const Unsaved& unsaved) {
-    const net::Bytes text = net::make_bytes(unsaved.event.text);
-    for (const ClientPtr& client : m_clients) client->tell(text);
-}
-
 void Session::say_goodbye() {
-    for (const ClientPtr& client : std::exchange(m_clients, {})) client->close(1000, "the session has ended");
+    for (const Viewer& viewer : std::exchange(m_viewers, {})) viewer.client->close(1000, "the session has ended");
 }
 
 void Session::end(wire::Why why, std::uint64_t step, std::optional<Error> error, Json report) {
@@ -145,9 +181,12 @@ void Session::end(wire::Why why, std::uint64_t step, std::optional<Error> error,
     emit(wire::Ended{.step = step, .why = why, .error = std::move(error), .report = std::move(report)}, EventKind::ended);
 }
 
+SessionState Session::kept_state() const {
+    return {m_runs ? "running" : "paused", m_step, m_pause_at, m_frames_promised, m_layout, m_checkpoint_step};
+}
+
 Status Session::save_state() {
-    return m_around.store.change_session(
-        m_number, {m_runs ? "running" : "paused", m_step, m_pause_at, m_frames_promised, m_layout, m_checkpoint_step});
+    return m_around.store.change_session(m_number, kept_state());
 }
 
 void Session::acknowledge(std::uint64_t seq) {
@@ -202,7 +241,7 @@ void Session::heard_event(const Json& message) {
         if (changed.phase == wire::Phase::paused && m_runs && m_pause_at == changed.step) m_runs = false;
         if (m_phase == changed.phase && m_seq > 1) return;  // told before a fault
         m_phase = changed.phase;
-        static_cast<void>(save_state());
+        m_state_changed = true;
         return emit(std::move(*read), EventKind::phase);
     }
     const bool is_flip = message.contains("flipped");
@@ -254,7 +293,8 @@ void Session::shown(std::string frame) {
     const bool is_last = (little_endian(frame, flags_at, 2) & last_flag) != 0;
     m_newest = net::make_bytes(std::move(frame));
     m_newest_number = m_frame;
-    for (const ClientPtr& client : m_clients) client->show(m_newest, is_last);
+    m_newest_is_last = is_last;
+    if (m_unsaved.empty()) show_newest();
 }
 
 }  // namespace weave::simd

@@ -30,7 +30,16 @@ class Session final : public Task {
     struct Surroundings {
         Store& store;
         Crew& crew;
-        std::filesystem::path folder;  ///< of this session
+        std::filesystem::path folder;        ///< of this session
+        std::function<void()> wants_writing;  ///< is told that there is something for the disk
+    };
+
+    /// What the store is to have of a session.
+    struct Writing {
+        std::uint64_t number = 0;
+        std::vector<Event> events;
+        std::vector<Dated> dated;
+        std::optional<SessionState> state;
     };
 
     /// One that the store does not know yet: it becomes a session once its worker has planned it and there is room.
@@ -51,6 +60,7 @@ class Session final : public Task {
 
     // ---- What clients ask; each answers ----
 
+    /// Asked again: is told, but not attached.
     void wait_for_creation(const ClientPtr& client) { m_creators.push_back(client); }
     /// Is one of those that asked for this session, which is still being planned.
     [[nodiscard]] bool is_awaited_by(const ClientPtr& client) const { return std::ranges::find(m_creators, client) != m_creators.end(); }
@@ -76,6 +86,11 @@ class Session final : public Task {
     void put_away();
     [[nodiscard]] bool is_put_away() const { return !m_worker; }
     void tick(Clock::time_point now, std::chrono::seconds expire);
+    /// What is to be written, and that it was: events are told once the disk has them. Writing takes its time, so it is done
+    /// without the lock.
+    [[nodiscard]] std::optional<Writing> to_write() const;
+    void written(const Writing& writing);
+    [[nodiscard]] bool is_written() const { return m_unsaved.empty(); }
 
     // ---- Task ----
 
@@ -90,15 +105,23 @@ class Session final : public Task {
         Event event;
         std::optional<Dated> dated;
     };
+    /// Somebody who is attached, and how far he or she has been told.
+    struct Viewer {
+        ClientPtr client;
+        std::uint64_t sent = 0;   ///< the last event
+        std::uint64_t frame = 0;  ///< the last that it had
+        bool is_shown = false;    ///< has caught up, and is shown frames
+    };
 
     void refuse_creation(Error error, std::optional<double> wait_s);
     Status become_accepted();
     [[nodiscard]] Error gone() const;
     void emit(wire::ServerMessage event, EventKind kind, std::optional<Dated> dated = {});
-    void deliver(const Unsaved& unsaved);
-    void save_unsaved();
+    void bring_up(Viewer& viewer);
+    void show_newest();
     void say_goodbye();
     void end(wire::Why why, std::uint64_t step, std::optional<Error> error, Json report);
+    [[nodiscard]] SessionState kept_state() const;
     Status save_state();
     void recover(const WorkerEnd& end);
     void heard_event(const Json& message);
@@ -118,9 +141,11 @@ class Session final : public Task {
     std::uint64_t m_number = 0;
     std::optional<Crew::Id> m_worker;
     std::vector<JournaledChange> m_changes;
-    std::vector<ClientPtr> m_creators, m_clients;
+    ClientPtr m_creator;  ///< whose connection is attached once the session is made
+    std::vector<ClientPtr> m_creators;  ///< all that wait for it
+    std::vector<Viewer> m_viewers;
 
-    std::uint64_t m_seq = 0, m_frame = 0, m_frames_promised = 0, m_layout = 0, m_step = 0;
+    std::uint64_t m_seq = 0, m_saved_seq = 0, m_frame = 0, m_frames_promised = 0, m_layout = 0, m_step = 0;
     std::string m_layout_sha256;
     wire::Phase m_phase = wire::Phase::paused;
     bool m_runs = false;
@@ -131,6 +156,7 @@ class Session final : public Task {
     std::size_t m_points = 0, m_repeats = 1;
     net::Bytes m_newest;
     std::uint64_t m_newest_number = 0;
+    bool m_newest_is_last = false, m_state_changed = false;
     Clock::time_point m_seen = Clock::now();  ///< when somebody was attached last
 
     bool m_takes_up = false, m_is_recovering = false, m_is_closing = false, m_is_put_away = false, m_has_ended = false, m_is_over = false;

@@ -23,7 +23,7 @@ Error no_disk(const Error& error) {
 
 Session::Session(Surroundings around, const KeptSession& kept, const SessionTask& task, std::vector<JournaledChange> changes)
     : m_around(std::move(around)), m_person(kept.person), m_request(kept.request), m_title(kept.title), m_document(task.document),
-      m_number(kept.number), m_changes(std::move(changes)), m_seq(kept.last_seq), m_frame(kept.state.frame), m_frames_promised(kept.state.frame),
+      m_number(kept.number), m_changes(std::move(changes)), m_seq(kept.last_seq), m_saved_seq(kept.last_seq), m_frame(kept.state.frame), m_frames_promised(kept.state.frame),
       m_layout(kept.state.layout), m_step(kept.state.step), m_runs(kept.state.phase == "running"), m_pause_at(kept.state.pause_at),
       m_checkpoint_step(kept.state.checkpoint_step), m_takes_up(true), m_has_ended(kept.ended) {
     m_around.folder /= std::to_string(m_number);
@@ -50,7 +50,7 @@ Status Session::remember_events() {
 }
 
 wire::SessionSummary Session::summary() const {
-    return {m_number, m_title, m_phase, m_step, m_step > 0 ? std::optional(m_residual) : std::nullopt, std::max<std::uint64_t>(1, m_points), m_clients.size()};
+    return {m_number, m_title, m_phase, m_step, m_step > 0 ? std::optional(m_residual) : std::nullopt, std::max<std::uint64_t>(1, m_points), m_viewers.size()};
 }
 
 Json Session::status(bool with_names) const {
@@ -61,9 +61,9 @@ Json Session::status(bool with_names) const {
               {"residual", m_residual},
               {"points", m_points},
               {"steps_per_second", m_phase == wire::Phase::running ? m_pace : 0.0},
-              {"clients", m_clients.size()},
+              {"clients", m_viewers.size()},
               {"memory_bytes", m_worker ? m_around.crew.memory_bytes(*m_worker) : 0},
-              {"computed_s", m_worker ? m_around.crew.turns().spent_s(*m_worker) : 0.0},
+              {"computed_s", m_worker ? m_around.crew.turns().spent_s(*m_worker, Clock::now()) : 0.0},
               {"checkpoint_step", m_checkpoint_step},
               {"frames", m_frame}};
     if (!with_names) return told;
@@ -97,26 +97,17 @@ void Session::post(const Json& message) {
 void Session::attach(const ClientPtr& client, const wire::Attach& attach) {
     if (attach.seq > m_seq || attach.frame > std::max(m_frame, m_frames_promised))
         return refuse(client, attach.request, {ErrorCode::usage, "has had fewer events and frames than that", "session " + std::to_string(m_number)});
-    std::vector<net::Bytes> texts;
-    for (std::uint64_t after = attach.seq;;) {
-        const auto events = m_around.store.events_after(m_number, after, events_at_once);
-        if (!events) return refuse(client, attach.request, no_disk(events.error()));
-        for (const Event& event : *events) texts.push_back(net::make_bytes(event.text));
-        if (events->size() < events_at_once) break;
-        after = events->back().seq;
-    }
     client->tell(wire::Accepted{attach.request, m_number, {}, {}});
-    for (net::Bytes& text : texts) client->tell(std::move(text));
-    if (m_newest && m_newest_number > attach.frame + 1) client->tell(wire::Gap{m_number, attach.frame + 1, m_newest_number - 1});
-    if (m_newest && m_newest_number > attach.frame) client->show(m_newest, true);
     client->session = m_number;
-    m_clients.push_back(client);
+    m_viewers.push_back({client, attach.seq, attach.frame, false});
+    bring_up(m_viewers.back());
     tell_rates();
 }
 
 void Session::leave(const ClientPtr& client) {
     std::erase(m_creators, client);
-    if (std::erase(m_clients, client) == 0) return;
+    if (m_creator == client) m_creator.reset();
+    if (std::erase_if(m_viewers, [&](const Viewer& viewer) { return viewer.client == client; }) == 0) return;
     m_seen = Clock::now();
     tell_rates();
 }
@@ -124,7 +115,7 @@ void Session::leave(const ClientPtr& client) {
 /// The worker makes frames for the fastest of those that look on.
 void Session::tell_rates() {
     double fastest = 0;
-    for (const ClientPtr& client : m_clients) fastest = std::max(fastest, client->frames_per_second());
+    for (const Viewer& viewer : m_viewers) fastest = std::max(fastest, viewer.client->frames_per_second());
     post({{"do", "frames"}, {"per_second", fastest}});
 }
 
@@ -266,11 +257,11 @@ void Session::ended(const WorkerEnd& end) {
 
 void Session::tick(Clock::time_point now, std::chrono::seconds expire) {
     constexpr std::chrono::seconds to_take_the_end_in{10};
-    if (!m_unsaved.empty()) save_unsaved();
-    if (m_has_ended && !m_clients.empty() && now - m_ended_at > to_take_the_end_in) say_goodbye();
+    for (Viewer& viewer : m_viewers) bring_up(viewer);
+    if (m_has_ended && !m_viewers.empty() && now - m_ended_at > to_take_the_end_in) say_goodbye();
     if (!is_accepted() || m_has_ended) return;
     if (!m_worker && !m_is_put_away && m_around.crew.room().left() >= expected_bytes(m_points)) take_up();
-    if (m_clients.empty() && now - m_seen > expire) end(wire::Why::expired, m_step, {}, Json::object());
+    if (m_viewers.empty() && now - m_seen > expire) end(wire::Why::expired, m_step, {}, Json::object());
 }
 
 }  // namespace weave::simd

@@ -150,9 +150,11 @@ std::optional<Turns::Clock::duration> Turns::kept_since_asked(Id id, Clock::time
     return now - found->second.asked_back;
 }
 
-double Turns::spent_s(Id id) const {
+double Turns::spent_s(Id id, Clock::time_point now) const {
     const auto found = m_workers.find(id);
-    return found == m_workers.end() ? 0 : found->second.spent;
+    if (found == m_workers.end()) return 0;
+    const Worker& worker = found->second;
+    return worker.spent + (worker.threads > 0 ? seconds(now - worker.charged) * static_cast<double>(worker.threads) : 0);
 }
 
 }  // namespace weave::simd

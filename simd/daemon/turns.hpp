@@ -48,7 +48,7 @@ class Turns {
     [[nodiscard]] std::optional<Clock::duration> kept_since_asked(Id id, Clock::time_point now) const;
     [[nodiscard]] std::size_t waiting() const;
     /// Seconds of computing that a worker has had, times its threads.
-    [[nodiscard]] double spent_s(Id id) const;
+    [[nodiscard]] double spent_s(Id id, Clock::time_point now) const;
 
   private:
     struct Worker {

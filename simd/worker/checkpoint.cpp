@@ -19,10 +19,6 @@ Result<std::uint64_t> number_of(const Json& json, const char* member) {
     return json.at(member).get<std::uint64_t>();
 }
 
-Json optional_json(const std::optional<std::uint64_t>& number) {
-    return number ? Json(*number) : Json();
-}
-
 }  // namespace
 
 std::filesystem::path checkpoint_path(const std::filesystem::path& folder) {
@@ -33,7 +29,6 @@ Status write_checkpoint(const std::filesystem::path& folder, const Checkpoint& c
     std::string body;
     Json::to_cbor(Json{{"step", checkpoint.step},
                        {"changes", checkpoint.changes},
-                       {"flip", optional_json(checkpoint.flip)},
                        {"run", checkpoint.run}},
                   body);
     return write_file(checkpoint_path(folder), std::string(heading) + sha256_hex(body) + "\n" + body);
@@ -49,9 +44,6 @@ Result<Checkpoint> parse_checkpoint(std::string_view bytes) try {
     Checkpoint checkpoint;
     WEAVE_TRY(checkpoint.step, number_of(json, "step"));
     WEAVE_TRY(checkpoint.changes, number_of(json, "changes"));
-    if (!json.contains("flip") || !json.at("flip").is_null()) {
-        WEAVE_TRY(checkpoint.flip, number_of(json, "flip"));
-    }
     if (!json.contains("run")) return bad_input("was damaged", "run");
     checkpoint.run = json.at("run");
     return checkpoint;

@@ -14,7 +14,6 @@ namespace weave::simd {
 struct Checkpoint {
     std::uint64_t step = 0;
     std::uint64_t changes = 0;            ///< of the journal that it has had
-    std::optional<std::uint64_t> flip;    ///< number of the change whose flip is under way
     Json run;                             ///< sim::Run::state()
 };
 

@@ -18,6 +18,9 @@ namespace {
 /// How often a checkpoint is written, at least, as long as legs end; and how often progress is told.
 constexpr std::chrono::seconds between_checkpoints{3};
 constexpr std::chrono::milliseconds between_tellings{200};
+/// On a machine that is busy a leg may last long. It ends then before its steps are made, with a checkpoint, so that none gets too
+/// old; the run is another one from there on than on an idle machine, by as much as a leg's end changes it.
+constexpr std::chrono::seconds longest_leg{15};
 
 sim::RunRequest run_request(const WorkOrder& order) {
     constexpr std::size_t most_steps = 20000, most_steps_in_time = 1'000'000;
@@ -67,14 +70,10 @@ Status Work::begin() {
     WEAVE_TRY(m_run, sim::Run::resume(design, m_request, checkpoint->run, 1));
     m_inbox.skip_changes(checkpoint->changes);
     m_changes_made = checkpoint->changes;
-    for (const JournaledChange& change : m_order.changes) {
-        if (checkpoint->flip == change.number) m_flip = change;
-    }
     m_kept = std::move(*checkpoint);
     m_saved = true;
     m_saved_step = m_kept.step;
     m_saved_changes = m_kept.changes;
-    m_flips_told = m_run->now().flips().size();
     return {};
 }
 
@@ -129,6 +128,7 @@ Status Work::loop() {
         tell_phase(wire::Phase::running);
         m_run->use_threads(m_inbox.turn().value_or(1));
         m_leg_began = m_step;
+        m_leg_start = Clock::now();
         WEAVE_CHECK_OK(m_run->advance(m_leg_steps, [this](const sim::Progress& progress) { return watch(progress); }));
         m_residual = m_run->now().last().residual;
     }
@@ -141,14 +141,12 @@ bool Work::settle_between() {
     if (!now.at_end() || now.cut_short()) return false;
     if (!now.is_flipping() && !m_run->is_coarse()) return false;
     static_cast<void>(m_run->advance(0, {}));  // neither can fail
-    tell_flip_end();
     return true;
 }
 
 void Work::keep_state() {
-    m_kept = {m_step, m_changes_made, {}, m_run->state()};
-    if (m_flip) m_kept.flip = m_flip->number;
-    save_if_due(false);
+    m_kept = {m_step, m_changes_made, m_run->state()};
+    save_if_due(std::exchange(m_leg_was_long, false));
 }
 
 void Work::save_if_due(bool now) {
@@ -170,17 +168,16 @@ Status Work::make_changes() {
         if (const auto* pins = std::get_if<wire::Pins>(&change->change)) made = m_run->hold(pins->pins);
         if (const auto* fields = std::get_if<wire::Fields>(&change->change)) made = m_run->push(fields->fields);
         const auto* flip = std::get_if<Flip>(&change->change);
-        tell_flip_end();  // of one that this change has ended
         m_changes_made = change->number;
         tell_made(*change, made);
         if (flip == nullptr) continue;
-        m_flip = *change;
         m_is_flipping = true;
         show_if_due();
         WEAVE_CHECK_OK(m_run->flip(*flip, [this](const sim::Progress& progress) { return watch(progress); }));
+        if (m_run->now().is_flipping()) m_run->now().end_flip();  // looked at as it lies: the whole may be long in coming to rest
         m_is_flipping = false;
-        tell_flip_end();
-        return {};  // which takes steps: what comes next is due at another one
+        tell_flip_end(*change);
+        return {};  // it took steps: what comes next is due at another one
     }
     return {};
 }
@@ -193,17 +190,12 @@ void Work::tell_made(const JournaledChange& change, const Status& made) {
     tell_event(applied, {{"applied", change.number}, {"step", m_step}});
 }
 
-void Work::tell_flip_end() {
-    if (!m_flip || m_run->now().is_flipping() || m_is_flipping) return;
+void Work::tell_flip_end(const JournaledChange& change) {
     const Json& flips = m_run->now().flips();
-    if (flips.size() <= m_flips_told) return;
-    m_flips_told = flips.size();
-    const JournaledChange flip = std::move(*m_flip);
-    m_flip.reset();
-    if (flip.flip_told) return;
-    tell_event(wire::Flipped{.step = m_run->steps(), .request = flip.request, .done = flips.back().at("done").get<bool>(),
+    if (change.flip_told || flips.empty()) return;
+    tell_event(wire::Flipped{.step = m_run->steps(), .request = change.request, .done = flips.back().at("done").get<bool>(),
                              .reason = flips.back().at("reason").get<std::string>()},
-               {{"flipped", flip.number}});
+               {{"flipped", change.number}});
 }
 
 wire::Phase Work::standing_phase() const {
@@ -236,7 +228,14 @@ bool Work::watch(const sim::Progress& progress) {
     if (!made_a_step) return m_inbox.must_yield() && is_told ? stand_still() : true;
     if (m_inbox.change_is_due(m_step)) return false;
     show_if_due();
-    return stand_still();
+    m_leg_was_long = may_cut_legs() && Clock::now() - m_leg_start > longest_leg;
+    return !m_leg_was_long && stand_still();
+}
+
+/// A period that relaxes would begin its search anew.
+bool Work::may_cut_legs() const {
+    const sim::Plan& plan = m_run->now().plan();
+    return !plan.rim_force_N[0] && !plan.rim_force_N[1];
 }
 
 /// Answers what is asked, and stays here while the session is paused or others have the turn. False: the leg is to end.

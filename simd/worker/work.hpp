@@ -41,12 +41,13 @@ class Work {
     void save_if_due(bool now);
     Status make_changes();
     void tell_made(const JournaledChange& change, const Status& made);
-    void tell_flip_end();
+    void tell_flip_end(const JournaledChange& change);
     void rest();
 
     // During a leg.
     bool watch(const sim::Progress& progress);
     bool stand_still();
+    [[nodiscard]] bool may_cut_legs() const;
     bool hold_turn();
     void give_turn_back();
 
@@ -81,9 +82,8 @@ class Work {
         friend bool operator==(const Laid&, const Laid&) = default;
     } m_laid;
     std::optional<wire::Phase> m_phase;
-    std::optional<JournaledChange> m_flip;  ///< whose yarns are being led past one another
-    std::size_t m_flips_told = 0;
-    bool m_is_flipping = false;
+    bool m_is_flipping = false, m_leg_was_long = false;
+    Clock::time_point m_leg_start{};
     Checkpoint m_kept;  ///< the state at the end of the last leg
     std::uint64_t m_saved_step = 0, m_saved_changes = 0;
     bool m_saved = false, m_has_turn = false, m_shown_last = false;

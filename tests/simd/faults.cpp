@@ -267,7 +267,7 @@ void kill_under(std::size_t sessions, std::size_t kills, const char* cloth, cons
 }  // namespace
 
 TEST_CASE("daemon and workers are killed at random moments under several sessions: each ends with the same bits") {
-    kill_under(4, 8, "layer-to-layer", at(sim::Fidelity::reference));
+    kill_under(4, 8, "layer-to-layer", at(sim::Fidelity::standard));
 }
 
 TEST_CASE("the same 200 times under 16 sessions", "[.][long]") {

@@ -205,3 +205,47 @@ TEST_CASE("a session to which nobody is attached ends after a while, and says so
     }
     CHECK(expired);
 }
+
+TEST_CASE("whoever attaches gets all events that are kept, more than one connection may have waiting") {
+    const Box box;
+    Followed session(box, document_of("plain"), at(sim::Fidelity::draft));
+    auto client = wire::Client::connect(box.place(), "test").value();
+    // Nobody acknowledges: the follower that made the session is not read from any more.
+    constexpr std::size_t changes = 80;
+    const wire::Pins pins{std::vector<Pin>(2000, Pin{false, 0})};
+    std::size_t refused = 0;
+    for (std::size_t k = 0; k < changes; ++k) {
+        const wire::MakeChange change{wire::new_request_id(), session.number, pins};
+        while (true) {
+            const auto answer = client.ask(change, 10s);
+            REQUIRE(answer);
+            const auto* no = std::get_if<wire::Refused>(&*answer);
+            if (no == nullptr) break;
+            REQUIRE(no->wait_s);  // too many in a short time
+            ++refused;
+            std::this_thread::sleep_for(50ms);
+        }
+    }
+    CHECK(refused > 0);
+    std::this_thread::sleep_for(1s);
+    auto late = wire::Client::connect(box.place(), "test").value();
+    REQUIRE(wire::answer_of<wire::Accepted>(late.ask(wire::Attach{wire::new_request_id(), session.number, 0, 0}, 10s)));
+    std::uint64_t seq = 0;
+    std::size_t applied = 0, bytes = 0;
+    for (auto received = late.receive(2s); received && *received; received = late.receive(2s)) {
+        const auto* message = std::get_if<wire::ServerMessage>(&**received);
+        if (message == nullptr) continue;
+        applied += std::holds_alternative<wire::Applied>(*message) ? 1 : 0;
+        bytes += wire::write_message(*message).size();
+        std::visit(
+            [&](const auto& one) {
+                if constexpr (requires { one.seq; one.session; }) {
+                    CHECK(one.seq == seq + 1);
+                    seq = one.seq;
+                }
+            },
+            *message);
+    }
+    CHECK(applied == changes);
+    CHECK(bytes > std::size_t{4} << 20);
+}

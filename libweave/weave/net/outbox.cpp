@@ -38,6 +38,11 @@ void Outbox::close(std::uint16_t code, std::string reason) {
     if (m_wake && !m_farewell) say_farewell(code, std::move(reason));
 }
 
+std::size_t Outbox::waiting_bytes() const {
+    const std::lock_guard lock(m_mutex);
+    return m_control_bytes;
+}
+
 std::uint64_t Outbox::dropped_frames() const {
     const std::lock_guard lock(m_mutex);
     return m_dropped;

@@ -26,6 +26,7 @@ class Outbox final : public WebSocket {
     bool send_control(Bytes bytes, bool binary) override;
     void send_frame(Bytes bytes) override;
     void close(std::uint16_t code, std::string reason) override;
+    [[nodiscard]] std::size_t waiting_bytes() const override;
     [[nodiscard]] std::uint64_t dropped_frames() const override;
 
     /// Takes what is to be sent next: control messages, then the frame, then the farewell.

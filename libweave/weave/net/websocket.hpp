@@ -38,6 +38,8 @@ class WebSocket {
     /// Ends the connection once the control messages queued so far are sent. `reason` at most 123 bytes of
     /// UTF-8.
     virtual void close(std::uint16_t code, std::string reason) = 0;
+    /// Bytes of control messages that wait to be sent.
+    [[nodiscard]] virtual std::size_t waiting_bytes() const = 0;
     /// How many frames were overtaken so far.
     [[nodiscard]] virtual std::uint64_t dropped_frames() const = 0;
 };
