@@ -42,8 +42,8 @@ Result<ServeConfig> whole_config(const ServeOptions& options) {
 
 std::string words_of(const Json& started) {
     std::string words = "simd serves";
-    if (started.contains("url")) words += " at " + started.at("url").get<std::string>();
-    words += " and on " + on_one_line(started.at("unix_socket").get<std::string>()) + ", with " +
+    if (started.contains("url")) words += " at " + started.at("url").get<std::string>() + " and";
+    words += " on " + on_one_line(started.at("unix_socket").get<std::string>()) + ", with " +
              counted(started.at("threads").get<std::size_t>(), "thread") + " and " + memory_text(started.at("memory_bytes")) + "\n";
     if (started.contains("certificate_sha256")) words += "certificate (SHA-256): " + started.at("certificate_sha256").get<std::string>() + "\n";
     return words;

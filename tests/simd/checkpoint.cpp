@@ -49,7 +49,7 @@ TEST_CASE("a checkpoint comes back as it was, to the last bit, and the next take
 
 TEST_CASE("a checkpoint with any bit flipped, any byte cut off or anything behind it is refused") {
     const weave::testing::TemporaryFolder folder;
-    REQUIRE(write_checkpoint(folder.path, {1000, 2, 1, some_state()}));
+    REQUIRE(write_checkpoint(folder.path, {1000, 2, some_state()}));
     const std::string whole = read_file(checkpoint_path(folder.path)).value();
     REQUIRE(parse_checkpoint(whole));
     for (std::size_t at = 0; at < whole.size(); ++at) {
