@@ -66,7 +66,8 @@ template <class Message>
 void Daemon::obey_one(const ClientPtr& client, const Message& message) {
     constexpr bool changes_something = std::is_same_v<Message, wire::Create> || std::is_same_v<Message, wire::Run> || std::is_same_v<Message, wire::Pause> ||
                                        std::is_same_v<Message, wire::Step> || std::is_same_v<Message, wire::MakeChange> ||
-                                       std::is_same_v<Message, wire::Close> || std::is_same_v<Message, wire::Cancel>;
+                                       std::is_same_v<Message, wire::Checkpoint> || std::is_same_v<Message, wire::Close> ||
+                                       std::is_same_v<Message, wire::Cancel>;
     if constexpr (changes_something) {
         if (answered_before(client, message.request)) return;
     }
