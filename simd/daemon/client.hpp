@@ -42,6 +42,8 @@ class Client {
 
     /// The session that it is attached to; 0: none. Only the daemon sets it.
     std::uint64_t session = 0;
+    /// How often in a row it asked for too much in a short time. Only the daemon uses it.
+    std::size_t impatient = 0;
     /// Jobs whose end it is still to be told. Only the daemon uses it.
     std::deque<std::uint64_t> untold_jobs;
     /// Has said hello. Only the daemon sets it.

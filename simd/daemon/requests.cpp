@@ -36,7 +36,12 @@ bool Daemon::answered_before(const ClientPtr& client, const std::string& request
         client->tell(net::make_bytes(**answer));
         return true;
     }
-    if (m_requests.take(client->person())) return false;
+    if (m_requests.take(client->person())) {
+        client->impatient = 0;
+        return false;
+    }
+    constexpr std::size_t most_impatient = 100;  // who does not even slow down when told to costs others their time
+    if (++client->impatient >= most_impatient) client->close(1008, "too many requests in a short time");
     client->tell(wire::Refused{request, {ErrorCode::refused, "too many requests in a short time: at most 30 a second in the long run", ""}, 1.0});
     return true;
 }
@@ -63,7 +68,8 @@ template <class Message>
 void Daemon::obey_one(const ClientPtr& client, const Message& message) {
     constexpr bool changes_something = std::is_same_v<Message, wire::Create> || std::is_same_v<Message, wire::Run> || std::is_same_v<Message, wire::Pause> ||
                                        std::is_same_v<Message, wire::Step> || std::is_same_v<Message, wire::MakeChange> ||
-                                       std::is_same_v<Message, wire::Close> || std::is_same_v<Message, wire::Cancel>;
+                                       std::is_same_v<Message, wire::Checkpoint> || std::is_same_v<Message, wire::Close> ||
+                                       std::is_same_v<Message, wire::Cancel>;
     if constexpr (changes_something) {
         if (answered_before(client, message.request)) return;
     }

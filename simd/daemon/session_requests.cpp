@@ -187,6 +187,11 @@ void Session::change(const ClientPtr& client, const wire::MakeChange& make) {
 
 void Session::checkpoint(const ClientPtr& client, const std::string& request) {
     if (m_has_ended || !m_worker) return refuse(client, request, m_has_ended ? gone() : Error{ErrorCode::refused, "waits for room", "session"});
+    for (auto& [id, waiting] : m_checkpoint_requests) {  // asked again, on another connection, while it is being written
+        if (waiting.second != request) continue;
+        waiting.first = client;
+        return;
+    }
     m_checkpoint_requests[++m_last_id] = {client, request};
     post({{"do", "checkpoint"}, {"id", m_last_id}});
 }

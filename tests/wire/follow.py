@@ -93,28 +93,21 @@ OTHERS = {"welcome", "unsupported", "accepted", "refused", "state", "jobs", "ses
 
 
 class Follower:
-    """A client that attaches to session 7, of which it has nothing yet and nobody acknowledged anything, and listens."""
+    """Holds what is told of one session to its order: every event once, frames that rise and are as their layout says."""
 
     def __init__(self):
         self.frames, self.events, self.layouts = [], [], {}
         self.seq = self.frame = self.missed = 0
-        self.sent = [{"type": "hello", "versions": [1], "client": "follow.py"}]
 
-    def take_text(self, text):
-        message = json.loads(text)
-        kind = message["type"]
-        need(kind in EVENTS | OTHERS, "there is no message " + kind)
-        if kind == "welcome":
-            need(message["version"] == 1, "another version was agreed on")
-            self.sent.append({"type": "attach", "request": "follow-1", "session": 7, "seq": 0, "frame": 0})
-        if kind in EVENTS:
+    def take_message(self, message):
+        need(message["type"] in EVENTS | OTHERS, "there is no message " + message["type"])
+        if message["type"] in EVENTS:
             self.take_event(message)
 
     def take_event(self, message):
         need(message["seq"] == self.seq + 1, "event %d does not come after %d" % (message["seq"], self.seq))
         self.seq = message["seq"]
         self.events.append(message)
-        self.sent.append({"type": "acknowledge", "session": message["session"], "seq": self.seq})
         if message["type"] == "layout":
             self.layouts[message["layout"]] = [yarn["points"] for yarn in message["yarns"]]
 
@@ -128,8 +121,26 @@ class Follower:
         self.frames.append(frame)
 
 
+class Listener(Follower):
+    """A client that attaches to session 7, of which it has nothing yet and nobody acknowledged anything, and listens."""
+
+    def __init__(self):
+        super().__init__()
+        self.sent = [{"type": "hello", "versions": [1], "client": "follow.py"}]
+
+    def take_message(self, message):
+        super().take_message(message)
+        if message["type"] == "welcome":
+            need(message["version"] == 1, "another version was agreed on")
+            self.sent.append({"type": "attach", "request": "follow-1", "session": 7, "seq": 0, "frame": 0})
+
+    def take_event(self, message):
+        super().take_event(message)
+        self.sent.append({"type": "acknowledge", "session": message["session"], "seq": self.seq})
+
+
 def follow(recording):
-    follower, at = Follower(), 0
+    listener, at = Listener(), 0
     while at < len(recording):
         need(len(recording) >= at + 5, "the recording ends within a message")
         kind, (length,) = recording[at:at + 1], struct.unpack_from("<I", recording, at + 1)
@@ -137,11 +148,11 @@ def follow(recording):
         need(len(payload) == length, "the recording ends within a message")
         at += 5 + length
         if kind == b"t":
-            follower.take_text(payload.decode("utf-8"))
+            listener.take_message(json.loads(payload.decode("utf-8")))
         else:
-            follower.take_frame(payload)
-    return {"frames": follower.frames, "events": follower.events, "missed": follower.missed,
-            "sent": [json.dumps(message) for message in follower.sent]}
+            listener.take_frame(payload)
+    return {"frames": listener.frames, "events": listener.events, "missed": listener.missed,
+            "sent": [json.dumps(message) for message in listener.sent]}
 
 
 if __name__ == "__main__":
