@@ -2,14 +2,21 @@
 
 #include <simd/commands/command.hpp>
 #include <simd/worker/work.hpp>
+#include <string>
 #include <string_view>
+#include <vector>
 
 int main(int count, char** words) {
     constexpr int link = 3;  // where the daemon that starts it has put it
     if (count == 2 && std::string_view(words[1]) == "worker") return weave::simd::work_for_daemon(link);
+    // `simd --config F` and `simd --check-config …` mean `serve`: other programs start it so.
+    std::vector<char*> all(words, words + count);
+    std::string serve = "serve";
+    const std::string_view first = count > 1 ? words[1] : "";
+    if (first.starts_with("--config") || first == "--check-config") all.insert(all.begin() + 1, serve.data());
     weave::CommandOutcome outcome("simd", weave::JsonLayout::on_one_line);
     CLI::App app("Simulates cloth for many people at once: live sessions, and jobs in a queue.\n", "simd");
     weave::prepare_program(app, WEAVE_VERSION);
     for (const auto add : {weave::simd::add_serve_command, weave::simd::add_token_commands, weave::simd::add_status_commands}) add(app, outcome);
-    return weave::run_program(app, outcome, count, words);
+    return weave::run_program(app, outcome, static_cast<int>(all.size()), all.data());
 }

@@ -12,6 +12,7 @@
 #include <simd/daemon/daemon.hpp>
 #include <simd/service/routes.hpp>
 #include <simd/store/store.hpp>
+#include <sys/stat.h>
 #include <unistd.h>
 #include <utility>
 
@@ -32,6 +33,20 @@ struct RunningDaemon::Parts {
 namespace {
 
 constexpr std::chrono::seconds connections_end_in{3}, work_is_put_away_in{20};
+
+/// Refused: a folder with anything in it but what simd makes.
+Status check_folder(const DaemonFolder& folder) {
+    std::error_code trouble;
+    if (std::filesystem::exists(folder.store(), trouble)) return {};
+    std::filesystem::directory_iterator entries(folder.path, trouble);
+    if (trouble) return system_fault("cannot be read: " + trouble.message(), folder.path.string());
+    for (const auto& entry : entries) {
+        const std::filesystem::path name = entry.path().filename();
+        if (name != ".lock" && name != folder.tokens().filename())
+            return Error{ErrorCode::refused, "holds no store of simd, and is not empty", folder.path.string()};
+    }
+    return {};
+}
 
 /// The names and addresses that clients use.
 std::vector<std::string> client_hosts(const ServeConfig& config) {
@@ -93,7 +108,9 @@ RunningDaemon::~RunningDaemon() = default;
 
 Result<std::unique_ptr<RunningDaemon>> RunningDaemon::start(const DaemonFolder& folder, const ServeConfig& config, const std::filesystem::path& program) {
     WEAVE_CHECK_OK(check_places(config));
+    ::umask(0077);  // designs are nobody else's, whoever made the folder
     WEAVE_CHECK_OK(make_service_folder(folder.path));
+    WEAVE_CHECK_OK(check_folder(folder));
     WEAVE_TRY(FolderLock lock, FolderLock::take(folder.path, "simd"));
     auto parts = std::make_unique<Parts>(Parts{std::move(lock), folder, config, {}, std::make_shared<net::Metrics>(), {}, {}, {}, {}});
     parts->socket = config.unix_socket.empty() ? folder.socket() : config.unix_socket;

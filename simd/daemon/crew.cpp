@@ -51,18 +51,18 @@ void Crew::start_some(Clock::time_point now) {
         if (time && *time > m_rules.planning_patience) slow.insert(member.person);
         else if (time) ++planning;
     }
-    for (auto next = m_to_start.begin(); next != m_to_start.end() && planning < m_rules.planning_at_once;) {
-        const auto found = m_members.find(*next);
-        if (found != m_members.end() && slow.contains(found->second.person)) {
-            ++next;
+    std::deque<Id> later;  // a start that fails may add to the list
+    for (const Id id : std::exchange(m_to_start, {})) {
+        const auto found = m_members.find(id);
+        if (found == m_members.end()) continue;
+        if (planning >= m_rules.planning_at_once || slow.contains(found->second.person)) {
+            later.push_back(id);
             continue;
         }
-        const Id id = *next;
-        next = m_to_start.erase(next);
-        if (found == m_members.end()) continue;
         ++planning;
         start(id, found->second);
     }
+    m_to_start.insert(m_to_start.begin(), later.begin(), later.end());
 }
 
 void Crew::start(Id id, Member& member) {

@@ -66,7 +66,20 @@ Session::Surroundings Daemon::around_session() {
     return {*m_store, m_crew, m_settings.folder / "sessions", [this] {
                 m_has_to_write = true;
                 m_wants_writing.notify_all();
-            }};
+            }, [this] { return expected_wait_s(); }};
+}
+
+std::optional<double> Daemon::expected_wait_s() const {
+    std::optional<double> least;
+    const auto take = [&](double seconds) { least = std::max(0.0, std::min(least.value_or(seconds), seconds)); };
+    for (const auto& job : m_jobs) {
+        if (const auto left = job->left_s(); left && job->is_at_work()) take(*left);
+    }
+    for (const auto& session : m_sessions) {
+        const auto alone = session->has_ended() ? std::nullopt : session->left_alone();
+        if (alone) take(std::chrono::duration<double>(m_settings.expire - *alone).count());
+    }
+    return least;
 }
 
 Job::Surroundings Daemon::around_job() {
@@ -104,8 +117,12 @@ void Daemon::write_events() {
             lock.unlock();
             Status written = m_store->add_events(writing.number, writing.events, writing.dated);
             if (written && writing.state) written = m_store->change_session(writing.number, *writing.state);
-            if (!written) log(LogLevel::warning, "session " + std::to_string(writing.number) + ": " + written.error().text());
             lock.lock();
+            const std::string trouble = written ? std::string() : written.error().text();
+            if (trouble != std::exchange(m_write_trouble, trouble)) {  // told once, not at every try
+                log(LogLevel::warning, written ? "the disk takes what sessions have to tell again"
+                                               : "what sessions have to tell waits for the disk: " + trouble);
+            }
             const auto session = std::ranges::find(m_sessions, writing.number, [](const auto& one) { return one->number(); });
             if (written && session != m_sessions.end()) (*session)->written(writing);
         }
@@ -192,10 +209,14 @@ std::vector<Job*> Daemon::queue() {
 }
 
 void Daemon::begin_jobs() {
+    constexpr std::chrono::minutes let_pass{10};
     auto at_work = static_cast<std::size_t>(std::ranges::count_if(m_jobs, [](const auto& job) { return job->is_at_work() && !job->is_over(); }));
     if (at_work >= m_settings.jobs_at_once) return;
     for (Job* const job : queue()) {
-        if (job->expected() > m_crew.room().left()) continue;
+        if (job->expected() > m_crew.room().left()) {
+            if (job->waited() < let_pass) continue;
+            return;  // others have gone before it long enough
+        }
         job->begin();
         if (++at_work >= m_settings.jobs_at_once) return;
     }
@@ -209,9 +230,11 @@ Daemon::Outlook Daemon::outlook() {
         const auto left_s = job->left_s();
         if (left_s) outlook.first_s = std::min(outlook.first_s.value_or(*left_s), *left_s);
     }
-    if (!outlook.first_s && !m_job_seconds.empty()) outlook.first_s = 0;
     double usual = 0;
     for (const double seconds : m_job_seconds) usual += seconds / static_cast<double>(m_job_seconds.size());
+    const auto works = [](const auto& job) { return job->is_at_work() && !job->is_over(); };
+    const auto at_work = static_cast<std::size_t>(std::ranges::count_if(m_jobs, works));
+    if (!outlook.first_s && !m_job_seconds.empty()) outlook.first_s = at_work < m_settings.jobs_at_once ? 0 : usual / 2;  // in the middle of it
     outlook.each_s = usual / static_cast<double>(std::max<std::size_t>(1, m_settings.jobs_at_once));
     return outlook;
 }
@@ -325,7 +348,7 @@ Json Daemon::status(bool with_names) {
     const std::lock_guard lock(m_lock);
     Json sessions = Json::array(), jobs = Json::array();
     for (const auto& session : m_sessions) {
-        if (session->is_accepted()) sessions.push_back(session->status(with_names));
+        if (session->is_accepted() && !session->has_ended()) sessions.push_back(session->status(with_names));
     }
     for (const auto& job : m_jobs) {
         if (!job->is_over()) jobs.push_back(job->status(with_names));

@@ -83,6 +83,8 @@ class Daemon {
     void begin_jobs();
     void count();
     void job_ended(const Job& job);
+    /// Until a job ends or a session that was left alone does, as far as that can be foreseen.
+    [[nodiscard]] std::optional<double> expected_wait_s() const;
     [[nodiscard]] Session::Surroundings around_session();
     [[nodiscard]] Job::Surroundings around_job();
     [[nodiscard]] std::vector<Job*> queue();
@@ -125,6 +127,7 @@ class Daemon {
     net::Throttle m_requests{{60, 30, 10000}};  ///< that change something, by person: each costs the disk a flush
     std::condition_variable m_wants_writing;
     bool m_has_to_write = false;
+    std::string m_write_trouble;  ///< what kept the writer from writing, last
     std::thread m_thread, m_writer;
 };
 

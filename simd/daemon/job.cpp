@@ -139,6 +139,9 @@ void Job::said(const std::string& what, const Json& message) {
     } else if (what == "done") {
         m_is_done = true;
         m_step = message.at("step");
+        const Json& residual = message.at("report").at("residual");
+        if (residual.is_number()) m_residual = residual.get<double>();
+        m_around.store.job_progress(number(), m_step, m_residual);
         end(m_is_cancelled ? wire::JobPhase::cancelled : wire::JobPhase::done, {}, message.at("report"), message.value("yarns", std::string()));
     }
 }

@@ -42,6 +42,8 @@ class Job final : public Task {
     [[nodiscard]] bool waits() const { return !is_over() && !m_worker && !m_is_put_away; }
     /// Memory that it will take, where that is known already.
     [[nodiscard]] std::uint64_t expected() const { return m_points > 0 ? expected_bytes(m_points) : 0; }
+    /// Since it came, or since the daemon was started.
+    [[nodiscard]] Clock::duration waited() const { return Clock::now() - m_came; }
     [[nodiscard]] wire::JobState state() const;
     /// Estimated until its end, seconds.
     [[nodiscard]] std::optional<double> left_s() const;
@@ -79,7 +81,7 @@ class Job final : public Task {
     std::uint64_t m_step = 0, m_furthest = 0;
     double m_residual = 0;
     std::optional<sim::Pace> m_pace;
-    Clock::time_point m_began{};
+    Clock::time_point m_began{}, m_came = Clock::now();
     bool m_is_cancelled = false, m_is_put_away = false, m_is_done = false, m_is_saved = false;
     Json m_report = Json::object();
     std::optional<Error> m_error;

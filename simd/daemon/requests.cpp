@@ -19,7 +19,11 @@ Result<std::string> title_of(const std::string& document) {
     if (!json->is_object()) return bad_input("is no design", "document");
     const auto title = json->find("title");
     if (title == json->end() || !title->is_string()) return std::string();
-    return title->get<std::string>().substr(0, longest);
+    std::string text = title->get<std::string>();
+    if (text.size() <= longest) return text;
+    std::size_t end = longest;  // not within a character
+    while (end > 0 && (static_cast<unsigned char>(text[end]) & 0xc0U) == 0x80U) --end;
+    return text.substr(0, end);
 }
 
 }  // namespace
@@ -29,7 +33,7 @@ Result<std::string> title_of(const std::string& document) {
 bool Daemon::answered_before(const ClientPtr& client, const std::string& request) {
     const auto answer = m_store->answer_of(client->person(), request);
     if (!answer) {
-        client->tell(wire::Refused{request, {ErrorCode::system, "the store cannot be read", ""}, {}});
+        client->tell(wire::Refused{request, {ErrorCode::system, "the disk does not take it: " + answer.error().message, ""}, {}});
         return true;
     }
     if (*answer) {
@@ -115,8 +119,12 @@ void Daemon::create(const ClientPtr& client, const wire::Create& create) {
     const auto own = [&](const auto& session) { return !session->has_ended() && session->person() == client->person(); };
     if (static_cast<std::size_t>(std::ranges::count_if(m_sessions, own)) >= m_settings.sessions_per_person)
         return refuse("you have " + std::to_string(m_settings.sessions_per_person) + " sessions, as many as one person may: close one");
+    constexpr std::size_t most_kept = 200;  // of one person, with those whose end nobody has acknowledged yet
+    const auto kept = [&](const auto& session) { return session->person() == client->person(); };
+    if (static_cast<std::size_t>(std::ranges::count_if(m_sessions, kept)) >= most_kept)
+        return refuse("the ends of so many of your sessions are not acknowledged that there is no room for another: acknowledge some");
     if (static_cast<std::size_t>(std::ranges::count_if(m_sessions, lives)) >= m_settings.most_sessions)
-        return refuse("this machine has as many sessions as it may");
+        return refuse("this machine has as many sessions as it may", expected_wait_s());
     m_sessions.push_back(std::make_unique<Session>(around_session(), create, client));
 }
 

@@ -59,7 +59,7 @@ void Session::planned(const Json& plan) {
                                     "the cloth needs " + memory_text(bytes) + ", and " + memory_text(ever ? room.left() : room.whole()) +
                                         (ever ? " are free now" : " is all that there is: simulate a part of it, or fewer points"),
                                     "simulation"},
-                                   {});
+                                   ever ? m_around.expected_wait_s() : std::nullopt);
         }
         if (const Status accepted = become_accepted(); !accepted) return refuse_creation(accepted.error(), {});
     }

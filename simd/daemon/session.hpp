@@ -32,6 +32,7 @@ class Session final : public Task {
         Crew& crew;
         std::filesystem::path folder;        ///< of this session
         std::function<void()> wants_writing;  ///< is told that there is something for the disk
+        std::function<std::optional<double>()> expected_wait_s;  ///< until something gives its room back
     };
 
     /// What the store is to have of a session.
@@ -55,6 +56,10 @@ class Session final : public Task {
     /// Nothing is left of it to be told or done.
     [[nodiscard]] bool is_over() const { return m_is_over; }
     [[nodiscard]] bool has_ended() const { return m_has_ended; }
+    /// Since nobody has been attached; nothing while somebody is.
+    [[nodiscard]] std::optional<Clock::duration> left_alone() const {
+        return m_viewers.empty() ? std::optional(Clock::now() - m_seen) : std::nullopt;
+    }
     [[nodiscard]] wire::SessionSummary summary() const;
     [[nodiscard]] Json status(bool with_names) const;
 

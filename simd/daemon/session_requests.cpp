@@ -99,6 +99,7 @@ void Session::attach(const ClientPtr& client, const wire::Attach& attach) {
         return refuse(client, attach.request, {ErrorCode::usage, "has had fewer events and frames than that", "session " + std::to_string(m_number)});
     client->tell(wire::Accepted{attach.request, m_number, {}, {}});
     client->session = m_number;
+    m_ended_at = Clock::now();  // where it has: there is time to take the end in
     m_viewers.push_back({client, attach.seq, attach.frame, false});
     bring_up(m_viewers.back());
     tell_rates();
@@ -264,6 +265,9 @@ void Session::tick(Clock::time_point now, std::chrono::seconds expire) {
     constexpr std::chrono::seconds to_take_the_end_in{10};
     for (Viewer& viewer : m_viewers) bring_up(viewer);
     if (m_has_ended && !m_viewers.empty() && now - m_ended_at > to_take_the_end_in) say_goodbye();
+    // Its end is told to whoever comes, but not for ever.
+    const auto kept = std::max<Clock::duration>(expire, std::chrono::hours(1));
+    if (m_has_ended && m_viewers.empty() && is_written() && now - std::max(m_seen, m_ended_at) > kept) m_is_over = true;
     if (!is_accepted() || m_has_ended) return;
     if (!m_worker && !m_is_put_away && m_around.crew.room().left() >= expected_bytes(m_points)) take_up();
     if (m_viewers.empty() && now - m_seen > expire) end(wire::Why::expired, m_step, {}, Json::object());

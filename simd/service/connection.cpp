@@ -1,3 +1,5 @@
+#include <weave/wire/client.hpp>
+
 #include <algorithm>
 #include <simd/service/connection.hpp>
 #include <utility>
@@ -32,7 +34,8 @@ void Connection::message(net::WebSocketMessage message) {
 void Connection::greet(const wire::ClientMessage& message) {
     const auto* hello = std::get_if<wire::Hello>(&message);
     if (hello == nullptr) {
-        m_client->tell(wire::Refused{{}, {ErrorCode::usage, "the first message is hello", "type"}, {}});
+        const std::string id = wire::request_id(message);
+        m_client->tell(wire::Refused{id.empty() ? std::nullopt : std::optional(id), {ErrorCode::usage, "the first message is hello", "type"}, {}});
         return m_client->close(1002, "the first message is hello");
     }
     if (std::ranges::find(hello->versions, wire::protocol_version) == hello->versions.end()) {

@@ -4,9 +4,13 @@
 #include <weave/keys/private_file.hpp>
 
 #include <algorithm>
+#include <cerrno>
+#include <cstring>
 #include <simd/service/local_tokens.hpp>
 #include <simd/service/visitors.hpp>
 #include <sstream>
+#include <sys/stat.h>
+#include <unistd.h>
 
 namespace weave::simd {
 
@@ -21,10 +25,20 @@ Status check_name(const std::string& person) {
     return Error{ErrorCode::usage, "a name is of a-z, 0-9, '.', '-' and '_', at most 100 of them, and not 'local'", person};
 }
 
+/// What the machine's administrator writes for a daemon of another user is to be that user's.
+Status belong_to_folder(const std::filesystem::path& file) {
+    struct stat folder{};
+    const std::filesystem::path above = file.has_parent_path() ? file.parent_path() : std::filesystem::path(".");
+    if (::geteuid() != 0 || ::stat(above.c_str(), &folder) != 0 || folder.st_uid == 0) return {};
+    if (::chown(file.c_str(), folder.st_uid, folder.st_gid) == 0) return {};
+    return system_fault(std::string("cannot be given to the owner of its folder: ") + std::strerror(errno), file.string());
+}
+
 Status save(const std::filesystem::path& file, const std::map<std::string, std::string>& people) {
     std::string text;
     for (const auto& [hash, person] : people) text += person + " " + hash + "\n";
-    return write_private_file(file, text);
+    WEAVE_CHECK_OK(write_private_file(file, text));
+    return belong_to_folder(file);
 }
 
 }  // namespace

@@ -1,4 +1,5 @@
 #include <weave/core/file.hpp>
+#include <weave/core/log.hpp>
 #include <weave/core/sha256.hpp>
 #include <weave/design/document.hpp>
 #include <weave/sim/yarns_file.hpp>
@@ -65,9 +66,13 @@ Status Work::run() {
 Status Work::begin() {
     WEAVE_TRY(const Design design, read_document(m_order.document));
     if (!m_order.takes_up) return begin_anew(design);
-    WEAVE_TRY(auto checkpoint, read_checkpoint(m_folder));
+    auto read = read_checkpoint(m_folder);
+    if (!read) log(LogLevel::warning, read.error().text() + ": it begins anew, with its changes at their steps");
+    std::optional<Checkpoint> checkpoint = read ? std::move(*read) : std::optional<Checkpoint>();
     if (!checkpoint) return begin_anew(design);
-    WEAVE_TRY(m_run, sim::Run::resume(design, m_request, checkpoint->run, 1));
+    auto resumed = sim::Run::resume(design, m_request, checkpoint->run, 1);
+    if (!resumed) return begin_anew(design);
+    m_run = std::move(*resumed);
     m_inbox.skip_changes(checkpoint->changes);
     m_changes_made = checkpoint->changes;
     m_kept = std::move(*checkpoint);

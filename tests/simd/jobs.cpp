@@ -6,6 +6,7 @@
 #include <weave/core/sha256.hpp>
 #include <weave/keys/server_key.hpp>
 #include <weave/keys/signer.hpp>
+#include <weave/sim/run.hpp>
 #include <weave/wire/evidence.hpp>
 
 using namespace weave;
@@ -85,6 +86,14 @@ TEST_CASE("a job with flips and rougher points first is what the same run gives 
     CHECK(ended.phase == wire::JobPhase::done);
     CHECK(ended.report.at("coarser").at("fidelity") == "draft");
     CHECK(ended.report.at("flips").size() == 2);
+
+    sim::RunRequest here;
+    here.plan = simulation.plan;
+    here.start_from = simulation.start_from;
+    here.flips = {{0, 0, true}, {0, 0, false}};
+    auto run = sim::Run::begin(design, here, 1).value();
+    while (!run->is_over()) REQUIRE(run->advance(sim::leg_steps(run->now().plan(), here.goal.solver), {}));
+    check_same_yarns(yarns_of(follower, job), write_yarns(run->yarns()).value());
 }
 
 TEST_CASE("a design that cannot be simulated is a failed job that says why") {

@@ -284,13 +284,25 @@ Status PlanRun::ask(System system, const LiveParameters& wanted) {
     return {};
 }
 
+/// Puts right what the plan says of a term.
+void PlanRun::say(const std::string& term, std::string choice, std::string reason) {
+    const auto line = std::ranges::find(m_plan.lines, term, &PlanLine::term);
+    if (line != m_plan.lines.end()) *line = {term, std::move(choice), std::move(reason)};
+}
+
 void PlanRun::hold(const Plan& held) {
-    for (std::size_t y = 0; y < m_scene.yarns.size(); ++y) m_scene.yarns[y].frozen = held.scene.yarns[y].frozen;
+    std::size_t yarns = 0;
+    for (std::size_t y = 0; y < m_scene.yarns.size(); ++y) {
+        m_scene.yarns[y].frozen = held.scene.yarns[y].frozen;
+        yarns += std::ranges::find(m_scene.yarns[y].frozen, std::uint8_t{1}) != m_scene.yarns[y].frozen.end() ? 1 : 0;
+    }
+    say("pins", yarns == 0 ? "off" : std::to_string(yarns) + " yarns with places that are held", "changed while it relaxed; where they lay then");
     begin_relaxation();
 }
 
 void PlanRun::push(std::vector<ForceField> fields) {
     m_scene.fields = std::move(fields);
+    say("fields", m_scene.fields.empty() ? "off" : std::to_string(m_scene.fields.size()), "changed while it relaxed");
     begin_relaxation();
 }
 

@@ -149,6 +149,7 @@ class PlanRun {
     [[nodiscard]] std::vector<Spline> splines_of(std::vector<std::vector<Vec3>> control) const;
     [[nodiscard]] std::string why_not(const Flip& flip) const;
     void tell_of(const Flip& flip, bool done, std::string reason, double flip_seconds, double settle_seconds);
+    void say(const std::string& term, std::string choice, std::string reason);
     [[nodiscard]] Yarns measured(Energy<double>& energy, std::vector<double>& state) const;
     [[nodiscard]] Plan in_periods_reached() const;
     [[nodiscard]] Json report(const Plan& plan, const Fabric<double>& fabric) const;

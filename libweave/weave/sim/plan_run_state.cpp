@@ -90,6 +90,9 @@ Json PlanRun::state() const {
     Json flipped = Json::array();
     for (const Flip& flip : m_flipped) flipped.push_back(to_json(flip));
     state["flipped"] = std::move(flipped);
+    Json lines = Json::array();
+    for (const PlanLine& line : m_plan.lines) lines.push_back({line.term, line.choice, line.reason});
+    state["lines"] = std::move(lines);
     if (m_scene.slip_from)
         state["slip_from"] = {{"control", points_json(m_scene.slip_from->control)}, {"period_mm", m_scene.slip_from->period_mm}};
     if (m_periods)
@@ -121,6 +124,8 @@ Status PlanRun::restore(const Json& state) {
         m_scene.fields.clear();
         for (const Json& field : state.at("fields"))
             m_scene.fields.push_back({field.at("centre_mm"), field.at("radius_mm"), field.at("strength_N_per_mm")});
+        m_plan.lines.clear();
+        for (const Json& line : state.at("lines")) m_plan.lines.push_back({line.at(0), line.at(1), line.at(2)});
         m_scene.slip_from.reset();
         if (state.contains("slip_from"))
             m_scene.slip_from = SlipStart{points_from(state.at("slip_from").at("control"), m_plan.scene), state.at("slip_from").at("period_mm")};
