@@ -109,7 +109,10 @@ void Job::planned(const Json& plan) {
     m_points = plan.at("points").get<std::size_t>() * (m_has_flips ? plan.at("repeats").get<std::size_t>() : 1);
     const std::uint64_t bytes = expected(), whole = m_around.crew.room().whole();
     if (bytes > whole) {
-        const Error error{ErrorCode::refused, "the cloth needs " + memory_text(bytes) + ", and " + memory_text(whole) + " is all that there is: simulate a part of it, or fewer points", "simulation"};
+        const Error error{ErrorCode::refused,
+                          "the cloth needs " + memory_text(bytes) + ", and " + memory_text(whole) +
+                              " is all that there is: simulate a part of it, or fewer points",
+                          "simulation"};
         return end(wire::JobPhase::failed, error, Json::object(), {});
     }
     std::error_code code;

@@ -169,7 +169,9 @@ std::optional<Error> Session::why_no_change(const wire::Change& change) const {
     Room& room = m_around.crew.room();
     const std::uint64_t bytes = expected_bytes(m_points * m_repeats), own = room.promised(*m_worker);
     if (bytes <= room.left() + own) return {};
-    return Error{ErrorCode::refused, "for this the whole cloth is simulated, which needs " + memory_text(bytes) + ", and " + memory_text(room.left() + own) + " are free", "change"};
+    return Error{ErrorCode::refused,
+                 "for this the whole cloth is simulated, which needs " + memory_text(bytes) + ", and " + memory_text(room.left() + own) + " are free",
+                 "change"};
 }
 
 void Session::change(const ClientPtr& client, const wire::MakeChange& make) {

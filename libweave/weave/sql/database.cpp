@@ -1,5 +1,6 @@
 #include <weave/sql/database.hpp>
 
+#include <cerrno>
 #include <filesystem>
 #include <unistd.h>
 
@@ -117,6 +118,8 @@ Error Connection::trouble(int code) const {
         case SQLITE_FULL:
             return system_fault("the disk is full; nothing was stored", m_path);
         case SQLITE_IOERR:
+            if (const int cause = sqlite3_system_errno(m_handle); cause == ENOSPC || cause == EDQUOT)
+                return system_fault("the disk is full; nothing was stored", m_path);
             return system_fault(
                 "the disk reports an error (" + std::to_string(extended) + "); nothing was stored", m_path);
         case SQLITE_BUSY:
