@@ -134,6 +134,7 @@ Status Work::loop() {
         m_run->use_threads(m_inbox.turn().value_or(1));
         m_leg_began = m_step;
         m_leg_start = Clock::now();
+        m_shown_last = false;  // what was shown last is not what it comes to now, however short the leg
         WEAVE_CHECK_OK(m_run->advance(m_leg_steps, [this](const sim::Progress& progress) { return watch(progress); }));
         m_residual = m_run->now().last().residual;
     }
@@ -168,6 +169,7 @@ void Work::save_if_due(bool now) {
 
 Status Work::make_changes() {
     while (auto change = m_inbox.take_change(m_step)) {
+        m_shown_last = false;
         Status made;
         if (const auto* parameters = std::get_if<wire::Parameters>(&change->change)) made = m_run->change(parameters->warp, parameters->weft);
         if (const auto* pins = std::get_if<wire::Pins>(&change->change)) made = m_run->hold(pins->pins);
@@ -263,6 +265,7 @@ bool Work::stand_still() {
             continue;
         }
         tell_phase(wire::Phase::running);
+        m_shown_last = false;
         return true;
     }
 }
