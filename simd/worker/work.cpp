@@ -21,7 +21,7 @@ constexpr std::chrono::seconds between_checkpoints{3};
 constexpr std::chrono::milliseconds between_tellings{200};
 /// On a machine that is busy a leg may last long. It ends then before its steps are made, with a checkpoint, so that none gets too
 /// old; the run is another one from there on than on an idle machine, by as much as a leg's end changes it.
-constexpr std::chrono::seconds longest_leg{15};
+constexpr std::chrono::seconds longest_leg{28};
 
 sim::RunRequest run_request(const WorkOrder& order) {
     constexpr std::size_t most_steps = 20000, most_steps_in_time = 1'000'000;
