@@ -1,12 +1,12 @@
 // status and top: what a daemon is doing.
 
+#include <weave/command/server_wish.hpp>
 #include <weave/command/serving.hpp>
-#include <weave/core/file.hpp>
 #include <weave/core/text.hpp>
 #include <weave/wire/client.hpp>
 
 #include <algorithm>
-#include <cstdlib>
+#include <filesystem>
 #include <iostream>
 #include <limits>
 #include <memory>
@@ -21,23 +21,14 @@ namespace weave::simd {
 namespace {
 
 struct StatusWords {
-    std::string folder = ".", on, token_file, fingerprint, authorities;
+    std::string folder = ".";
+    ServerWish server;
 };
 
+/// The daemon of the folder, unless another place was named.
 Result<wire::ServerPlace> place_of_words(const StatusWords& words) {
-    WEAVE_TRY(wire::ServerPlace place, wire::place_of(words.on.empty() ? "unix:" + std::filesystem::absolute(DaemonFolder{words.folder}.socket()).string() : words.on));
-    if (!words.fingerprint.empty() || !words.authorities.empty()) {
-        if (!place.options.tls) return Error{ErrorCode::usage, "is for a place that is reached over TLS", words.fingerprint.empty() ? "--authorities" : "--fingerprint"};
-        place.options.tls->fingerprint = words.fingerprint;
-        place.options.tls->authorities = words.authorities;
-    }
-    if (!words.token_file.empty()) {
-        WEAVE_TRY(const std::string token, read_file(words.token_file, 2 * wire::most_token_bytes));
-        WEAVE_CHECK_OK(wire::use_token(place, token));
-    } else if (const char* const token = std::getenv("WEAVE_TOKEN"); token != nullptr && place.options.unix_socket.empty()) {
-        WEAVE_CHECK_OK(wire::use_token(place, token));
-    }
-    return place;
+    if (!words.server.host.empty()) return place_of(words.server);
+    return wire::place_of("unix:" + std::filesystem::absolute(DaemonFolder{words.folder}.socket()).string());
 }
 
 Result<Json> status_from(const wire::ServerPlace& place) {
@@ -90,10 +81,7 @@ Status top(const StatusWords& words, CommandOutcome& outcome) {
 CLI::App* add_status_command(CLI::App& app, CommandOutcome& outcome, const char* name, const char* help, const std::shared_ptr<StatusWords>& words) {
     CLI::App* const command = add_command(app, outcome, name, help);
     command->add_option("folder", words->folder, "the folder of a daemon of this machine; the current one if not given");
-    command->add_option("--on", words->on, "another place: https://box:8444, box, unix:/path")->type_name("PLACE");
-    command->add_option("--token-file", words->token_file, "a file with the token to show there (else WEAVE_TOKEN)")->type_name("FILE");
-    command->add_option("--fingerprint", words->fingerprint, "SHA-256 of its certificate, which alone is taken then")->type_name("HEX");
-    command->add_option("--authorities", words->authorities, "PEM file of certificates that may have signed its own")->type_name("FILE");
+    add_server_options(command, words->server);
     return command;
 }
 

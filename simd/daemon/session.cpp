@@ -1,5 +1,4 @@
 #include <weave/core/log.hpp>
-#include <weave/core/text.hpp>
 
 #include <algorithm>
 #include <simd/daemon/session.hpp>

@@ -128,7 +128,6 @@ class Session final : public Task {
     void end(wire::Why why, std::uint64_t step, std::optional<Error> error, Json report);
     [[nodiscard]] SessionState kept_state() const;
     Status save_state();
-    void recover(const WorkerEnd& end);
     void heard_event(const Json& message);
     void heard_checkpoint(const Json& message);
     void heard_yarns(const Json& message);

@@ -24,14 +24,13 @@ constexpr std::chrono::milliseconds between_tellings{200};
 constexpr std::chrono::seconds longest_leg{28};
 
 sim::RunRequest run_request(const WorkOrder& order) {
-    constexpr std::size_t most_steps = 20000, most_steps_in_time = 1'000'000;
     sim::RunRequest request;
     request.plan = order.simulation.plan;
     request.goal.solver = order.simulation.solver;
     request.goal.residual = order.simulation.residual;
-    const bool in_time = order.simulation.solver == sim::Solver::paper;
-    request.goal.most_iterations = order.simulation.most_steps.value_or(in_time ? most_steps_in_time : most_steps);
-    if (!order.is_job && !order.simulation.most_steps) request.goal.most_iterations = wire::most_number;
+    // A session goes on as long as somebody wants it to.
+    const std::size_t usual = order.is_job ? sim::usual_iterations(order.simulation.solver) : wire::most_number;
+    request.goal.most_iterations = order.simulation.most_steps.value_or(usual);
     request.goal.most_seconds = order.simulation.most_seconds.value_or(1e30);
     request.start_from = order.simulation.start_from;
     request.flips = order.flips;
@@ -158,12 +157,22 @@ void Work::keep_state() {
 void Work::save_if_due(bool now) {
     if (m_saved && m_saved_step == m_kept.step && m_saved_changes == m_kept.changes) return;
     if (!now && Clock::now() - m_last_saved < between_checkpoints) return;
+    save({{"say", "checkpoint"}});
+}
+
+/// Writes the checkpoint, and tells how that went.
+void Work::save(Json told) {
     m_last_saved = Clock::now();
     const Status saved = write_checkpoint(m_folder, m_kept);
-    m_saved = m_saved || saved;
-    if (saved) m_saved_step = m_kept.step, m_saved_changes = m_kept.changes;
-    Json told{{"say", "checkpoint"}, {"step", m_kept.step}, {"changes", m_kept.changes}};
-    if (!saved) told["error"] = to_json(saved.error());
+    if (saved) {
+        m_saved = true;
+        m_saved_step = m_kept.step;
+        m_saved_changes = m_kept.changes;
+    } else {
+        told["error"] = to_json(saved.error());
+    }
+    told["step"] = m_kept.step;
+    told["changes"] = m_kept.changes;
     tell(told);
 }
 
@@ -364,20 +373,9 @@ void Work::show(bool is_last) {
 
 void Work::answer_requests() {
     for (const Json& request : m_inbox.take_requests()) {
-        if (request.at("do") == "checkpoint") answer_checkpoint(request);
+        if (request.at("do") == "checkpoint") save({{"say", "checkpoint"}, {"id", request.at("id")}});  // also one that is there: the disk may have become full
         else answer_yarns(request);
     }
-}
-
-void Work::answer_checkpoint(const Json& request) {
-    m_saved = false;  // written again, so that a disk that is full is found out
-    Json told{{"say", "checkpoint"}, {"step", m_kept.step}, {"changes", m_kept.changes}, {"id", request.at("id")}};
-    m_last_saved = Clock::now();
-    const Status saved = write_checkpoint(m_folder, m_kept);
-    m_saved = true;
-    if (saved) m_saved_step = m_kept.step, m_saved_changes = m_kept.changes;
-    else told["error"] = to_json(saved.error());
-    tell(told);
 }
 
 void Work::answer_yarns(const Json& request) {

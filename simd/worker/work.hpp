@@ -33,12 +33,12 @@ class Work {
     Status wait_for_admission();
     Status loop();
     Status finish();
-    [[nodiscard]] Json finishing_report();
 
     // Between two legs.
     [[nodiscard]] bool settle_between();
     void keep_state();
     void save_if_due(bool now);
+    void save(Json told);
     Status make_changes();
     void tell_made(const JournaledChange& change, const Status& made);
     void tell_flip_end(const JournaledChange& change);
@@ -53,7 +53,6 @@ class Work {
 
     // What is told.
     void answer_requests();
-    void answer_checkpoint(const Json& request);
     void answer_yarns(const Json& request);
     void tell(const Json& message);
     void tell_event(const wire::ServerMessage& event, Json more = Json::object());

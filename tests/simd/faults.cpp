@@ -3,8 +3,6 @@
 #include "box.hpp"
 #include "results.hpp"
 
-#include <algorithm>
-#include <atomic>
 #include <random>
 #include <sys/resource.h>
 
@@ -12,14 +10,6 @@ using namespace weave;
 using namespace weave::simd::testing;
 
 namespace {
-
-/// A cloth that takes some seconds and several legs to come to rest.
-wire::Simulation long_run() {
-    wire::Simulation simulation = at(sim::Fidelity::standard);
-    simulation.residual = 1e-4;
-    return simulation;
-}
-const char* const long_cloth = "hexagon-tubes";
 
 const wire::Parameters tighter{{.strain = 1.03, .stiffness_scale = {}, .radius_scale = 1.05}, {}};
 const wire::Fields pushed{{{{2, 1, 0}, 2, 0.01}}};

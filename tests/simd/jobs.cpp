@@ -14,13 +14,6 @@ using namespace weave::simd::testing;
 
 namespace {
 
-wire::Simulation long_run() {
-    wire::Simulation simulation = at(sim::Fidelity::standard);
-    simulation.residual = 1e-4;
-    return simulation;
-}
-const char* const long_cloth = "hexagon-tubes";
-
 std::uint64_t submit(wire::Follower& follower, const std::string& document, const wire::Simulation& simulation, std::vector<Flip> flips = {}) {
     const auto accepted = wire::answer_of<wire::Accepted>(follower.ask(wire::Submit{wire::new_request_id(), document, simulation, std::move(flips)}, 60s));
     INFO((accepted ? "" : accepted.error().text()));
@@ -28,8 +21,8 @@ std::uint64_t submit(wire::Follower& follower, const std::string& document, cons
     return accepted->job.value();
 }
 
-/// Until this job has ended; progress that was told meanwhile goes into `seen`.
-wire::JobEnded end_of(wire::Follower& follower, std::uint64_t job, std::vector<wire::JobState>* seen = nullptr) {
+/// Until this job has ended.
+wire::JobEnded end_of(wire::Follower& follower, std::uint64_t job) {
     const auto late = std::chrono::steady_clock::now() + 180s;
     while (std::chrono::steady_clock::now() < late) {
         const auto received = follower.receive(200ms);
@@ -37,7 +30,6 @@ wire::JobEnded end_of(wire::Follower& follower, std::uint64_t job, std::vector<w
         REQUIRE(received);
         const auto* message = *received ? std::get_if<wire::ServerMessage>(&**received) : nullptr;
         if (message == nullptr) continue;
-        if (const auto* progress = std::get_if<wire::JobProgress>(message); progress != nullptr && seen != nullptr) seen->push_back(progress->state);
         if (const auto* ended = std::get_if<wire::JobEnded>(message); ended != nullptr && ended->job == job) return *ended;
     }
     FAIL("the job did not end");

@@ -1,12 +1,22 @@
 #pragma once
 
 #include <weave/sim/yarns_file.hpp>
+#include <weave/wire/message.hpp>
 
 #include <catch2/catch.hpp>
 
 #include <string>
 
 namespace weave::simd::testing {
+
+/// A cloth, and a run of it that takes some seconds and several legs to come to rest.
+inline constexpr const char* long_cloth = "hexagon-tubes";
+inline wire::Simulation long_run() {
+    wire::Simulation simulation;
+    simulation.plan.fidelity = sim::Fidelity::standard;
+    simulation.residual = 1e-4;
+    return simulation;
+}
 
 /// What must be the same of two results of one run: the yarns to the last bit, and how they came to rest.
 inline void check_same_yarns(const std::string& one_bytes, const std::string& other_bytes) {

@@ -2,9 +2,9 @@
 
 #include "command.hpp"
 #include "remote_job.hpp"
-#include "server_wish.hpp"
 #include "simulate_ending.hpp"
 
+#include <weave/command/server_wish.hpp>
 #include <weave/core/file.hpp>
 #include <weave/core/text.hpp>
 

@@ -14,6 +14,7 @@
 #include <weave/design/document.hpp>
 #include <weave/picture/cloth_view.hpp>
 #include <weave/sim/exports.hpp>
+#include <weave/sim/run.hpp>
 #include <weave/sim/simulate.hpp>
 #include <weave/sim/starts.hpp>
 #include <weave/sim/symmetry.hpp>
@@ -127,12 +128,8 @@ Status show_coarser(const Yarns& yarns, const std::string& file) {
 Status start_coarser(const Block& block, SimulateTask& task, const sim::Plan& plan, const SimulateWish& wish, Teller& teller, Status& shown) {
     const std::string start_from = first_points(wish);
     if (start_from.empty()) return {};
-    sim::SimulationRequest request = task.request;
-    request.points_per_key.reset();
-    WEAVE_TRY(request.fidelity, sim::parse_fidelity(start_from));
-    // Half as many points alone save little: work follows the contact samples. At up to 0.45 no yarn was seen to pass another.
-    if (request.fidelity == sim::Fidelity::draft) request.sample_spacing = 0.4;
-    WEAVE_TRY(task.coarser, plan_of(task.design, block, request, wish.file));
+    WEAVE_TRY(const sim::Fidelity rough, sim::parse_fidelity(start_from));
+    WEAVE_TRY(task.coarser, plan_of(task.design, block, sim::coarser_request(task.request, rough), wish.file));
     if (task.coarser->points_per_key >= plan.points_per_key)
         return usage_error("has no fewer points than what is asked for", "--start-from " + start_from);
     task.options.coarser = &*task.coarser;

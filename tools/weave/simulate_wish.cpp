@@ -81,7 +81,7 @@ Result<SimulateTask> understand(Cloth cloth, const SimulateWish& wish) {
     task.request.reduce = !wish.whole;
     task.options.threads = wish.threads;
     task.options.residual = wish.residual;
-    task.options.most_iterations = wish.steps.value_or(task.options.solver == sim::Solver::paper ? 1'000'000 : 20'000);
+    task.options.most_iterations = wish.steps.value_or(sim::usual_iterations(task.options.solver));
     task.options.most_seconds = wish.seconds.value_or(1e30);
     return task;
 }

@@ -1,8 +1,8 @@
 #pragma once
 
 #include "command.hpp"
-#include "server_wish.hpp"
 
+#include <weave/command/server_wish.hpp>
 #include <weave/sim/simulate.hpp>
 
 #include <cstddef>

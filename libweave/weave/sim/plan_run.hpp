@@ -31,6 +31,11 @@ enum class Solver : std::uint8_t {
 Result<Solver> parse_solver(std::string_view text);
 std::string_view name_of(Solver solver);
 
+/// Steps after which a run that is not told otherwise gives up.
+inline std::size_t usual_iterations(Solver solver) {
+    return solver == Solver::paper ? 1'000'000 : 20'000;
+}
+
 /// How still cloth is to become, and what may be used up on the way.
 struct RunGoal {
     Solver solver = Solver::relax;
@@ -115,7 +120,6 @@ class PlanRun {
     /// The control points of all yarns, as they lie now; also from within a watch.
     [[nodiscard]] std::vector<std::vector<Vec3>> control() const;
     [[nodiscard]] double goal() const { return m_goal.residual.value_or(m_plan.goal); }
-    [[nodiscard]] const RunGoal& asked() const { return m_goal; }
     /// Up to the latest leg.
     [[nodiscard]] const RunCost& cost() const { return m_cost; }
     /// Steps before those that Progress counts from.

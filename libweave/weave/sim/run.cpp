@@ -44,6 +44,13 @@ Scene with_parameters(const Scene& base, const LedParameters& led, const LedPara
 
 }  // namespace
 
+SimulationRequest coarser_request(SimulationRequest request, Fidelity rough) {
+    request.points_per_key.reset();
+    request.fidelity = rough;
+    if (rough == Fidelity::draft) request.sample_spacing = draft_sample_spacing;
+    return request;
+}
+
 std::size_t leg_steps(const Plan& plan, Solver solver) {
     double points = 0;
     for (const SimYarn& yarn : plan.scene.yarns) points += static_cast<double>(yarn.control.size());
@@ -65,14 +72,6 @@ Result<std::unique_ptr<Run>> Run::begin(const Design& design, const RunRequest& 
     run->m_finer = std::move(plan);
     run->relax(std::move(coarser));
     return run;
-}
-
-Result<Plan> Run::coarser_plan() const {
-    SimulationRequest rough = m_request.plan;
-    rough.points_per_key.reset();
-    rough.fidelity = *m_request.start_from;
-    if (rough.fidelity == Fidelity::draft) rough.sample_spacing = draft_sample_spacing;
-    return make_plan(m_design, *m_block, rough);
 }
 
 void Run::use_threads(std::size_t threads) {

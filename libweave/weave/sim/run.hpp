@@ -20,6 +20,9 @@ struct RunRequest {
     std::vector<Flip> flips;  ///< made one after the other once the cloth is at rest
 };
 
+/// The request for the points of a rougher fidelity, in which the run of `request` begins.
+SimulationRequest coarser_request(SimulationRequest request, Fidelity rough);
+
 /// Steps of a leg, after which a run may be taken up again: they depend on the cloth alone, so that a run that was taken up
 /// ends as one that was never broken off. Some seconds of work on two cores; shorter ones cost more steps in all (README).
 std::size_t leg_steps(const Plan& plan, Solver solver);
@@ -72,7 +75,7 @@ class Run {
         : m_design(std::move(design)), m_block(std::move(block)), m_request(std::move(request)), m_threads(threads) {}
 
     Result<Plan> plan() const { return make_plan(m_design, *m_block, m_request.plan); }
-    Result<Plan> coarser_plan() const;
+    Result<Plan> coarser_plan() const { return make_plan(m_design, *m_block, coarser_request(m_request.plan, *m_request.start_from)); }
     void relax(Plan plan);
     void refine();
     void settle();

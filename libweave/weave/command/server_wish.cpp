@@ -1,5 +1,4 @@
-#include "server_wish.hpp"
-
+#include <weave/command/server_wish.hpp>
 #include <weave/core/file.hpp>
 #include <weave/keys/secret_bytes.hpp>
 
@@ -7,7 +6,7 @@
 #include <string_view>
 #include <utility>
 
-namespace weave::program {
+namespace weave {
 
 namespace {
 
@@ -69,4 +68,4 @@ Result<wire::ServerPlace> place_of(const ServerWish& wish) {
     return place;
 }
 
-}  // namespace weave::program
+}  // namespace weave

@@ -6,9 +6,9 @@
 
 #include <string>
 
-/// The server that a command speaks with (--on), and as whom.
-namespace weave::program {
+namespace weave {
 
+/// The server (simd) that a command speaks with, and as whom.
 struct ServerWish {
     std::string host;         ///< as it was written; empty: none
     std::string token_file;   ///< without it the variable WEAVE_TOKEN of the environment
@@ -22,4 +22,4 @@ CLI::Option* add_server_options(CLI::App* command, ServerWish& wish);
 /// The place of the server. Errors name the option.
 Result<wire::ServerPlace> place_of(const ServerWish& wish);
 
-}  // namespace weave::program
+}  // namespace weave
