@@ -3,6 +3,7 @@
 #include <weave/net/websocket.hpp>
 #include <weave/wire/message.hpp>
 
+#include <atomic>
 #include <chrono>
 #include <cstdint>
 #include <deque>
@@ -33,6 +34,12 @@ class Client {
     /// Offers a frame, which waits for the connection or is overtaken; `is_last` ones whatever the pace.
     void show(const net::Bytes& frame, bool is_last);
     void close(std::uint16_t code, std::string reason) { m_socket->close(code, std::move(reason)); }
+    /// The same, because it costs others their time (1008).
+    void throw_out(std::string reason) {
+        m_is_thrown_out = true;
+        close(1008, std::move(reason));
+    }
+    [[nodiscard]] bool is_thrown_out() const { return m_is_thrown_out; }
 
     /// Whether so much waits for it already that what is not urgent had better wait here.
     [[nodiscard]] bool is_full() const;
@@ -54,6 +61,7 @@ class Client {
     const std::function<bool()> m_may_stay;
     const Clock::time_point m_opened = Clock::now();
     const std::shared_ptr<net::WebSocket> m_socket;
+    std::atomic<bool> m_is_thrown_out{false};
     mutable std::mutex m_mutex;
     double m_frames_per_second = 30;
     Clock::time_point m_next_due{};  ///< the next frame

@@ -10,13 +10,15 @@ namespace weave::simd {
 
 Crew::Crew(std::mutex& lock, const Rules& rules)
     : m_lock(lock), m_rules(rules), m_room(rules.memory_bytes),
-      m_turns(rules.turns, {[this](Id id, std::size_t threads) { post(id, {{"do", "turn"}, {"threads", threads}}); },
-                            [this](Id id) { post(id, {{"do", "yield"}}); }}) {}
+      m_turns(rules.turns, {[this](Id id, std::size_t threads) { tell_of_turn(id, {{"do", "turn"}, {"threads", threads}}); },
+                            [this](Id id) { tell_of_turn(id, {{"do", "yield"}}); }}) {}
 
 Crew::~Crew() {
     std::vector<std::unique_ptr<WorkerProcess>> processes;
     {
         const std::lock_guard lock(m_lock);
+        const std::lock_guard links(m_links_lock);
+        m_links.clear();
         for (auto& [id, member] : m_members) {
             member.task = nullptr;
             if (member.process) processes.push_back(std::move(member.process));
@@ -75,6 +77,8 @@ void Crew::start(Id id, Member& member) {
         member.process = std::move(*process);
         member.started = Clock::now();
         m_turns.add(id, member.person, member.is_job);
+        const std::lock_guard links(m_links_lock);
+        m_links[id] = &member.process->link();
         return;
     }
     Task& task = *member.task;
@@ -82,27 +86,48 @@ void Crew::start(Id id, Member& member) {
     task.ended({"could not be started", process.error(), false});
 }
 
-void Crew::heard(Id id, LinkMessage message) {
-    const std::lock_guard lock(m_lock);
+/// A worker that somebody still waits for; null: none.
+Crew::Member* Crew::served(Id id) {
     const auto found = m_members.find(id);
-    if (found == m_members.end() || found->second.task == nullptr) return;
-    if (message.is_frame) return found->second.task->shown(std::move(message.bytes));
+    return found == m_members.end() || found->second.task == nullptr ? nullptr : &found->second;
+}
+
+void Crew::heard(Id id, LinkMessage message) {
     try {
-        obey(id, found->second, Json::parse(message.bytes));
-    } catch (const std::exception& fault) {  // JSON that is not as a worker of this program writes it
+        if (!message.is_frame) return heard_words(id, Json::parse(message.bytes));
+        const std::lock_guard lock(m_lock);
+        if (Member* const member = served(id)) member->task->shown(std::move(message.bytes));
+    } catch (const std::exception& fault) {  // what is not as a worker of this program writes it
         log(LogLevel::warning, std::string("a worker said what no worker says, and is ended: ") + fault.what());
+        const std::lock_guard lock(m_lock);
         kill(id);
     }
 }
 
-void Crew::obey(Id id, Member& member, const Json& message) {
+void Crew::heard_words(Id id, const Json& message) {
     const std::string what = message.at("say");
-    if (what == "turn") {
-        if (message.at("again") == true) m_turns.again(id, Clock::now());
-        else m_turns.want(id, Clock::now());
-    } else if (what == "turn_over") {
-        m_turns.over(id, Clock::now());
-    } else if (what == "planned") {
+    if (heard_of_turn(id, what, message)) return;
+    const std::lock_guard lock(m_lock);
+    if (Member* const member = served(id)) obey(*member, what, message);
+}
+
+/// Without the daemon's lock: whoever has it may wait for the disk, and the next one is to compute meanwhile.
+bool Crew::heard_of_turn(Id id, const std::string& what, const Json& message) {
+    if (what == "turn_over") return m_turns.over(id, Clock::now()), true;
+    if (what != "turn") return false;
+    if (message.at("again") == true) m_turns.again(id, Clock::now());
+    else m_turns.want(id, Clock::now());
+    return true;
+}
+
+void Crew::tell_of_turn(Id id, const Json& message) {
+    const std::lock_guard lock(m_links_lock);
+    const auto found = m_links.find(id);
+    if (found != m_links.end()) static_cast<void>(found->second->post(message));  // the thread that listens finds out that it is gone
+}
+
+void Crew::obey(Member& member, const std::string& what, const Json& message) {
+    if (what == "planned") {
         member.task->planned(message);
     } else if (what == "failed") {
         member.end.failure = error_from(message.at("error"));
@@ -118,6 +143,10 @@ void Crew::lost(Id id, std::string how) {
     if (found == m_members.end()) return;
     Member member = std::move(found->second);
     m_members.erase(found);
+    {
+        const std::lock_guard links(m_links_lock);
+        m_links.erase(id);
+    }
     m_turns.remove(id, Clock::now());
     m_room.give_back(id);
     m_dead.push_back(std::move(member.process));

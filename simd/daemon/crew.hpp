@@ -71,7 +71,11 @@ class Crew {
 
     void start(Id id, Member& member);
     void heard(Id id, LinkMessage message);
-    void obey(Id id, Member& member, const Json& message);
+    void heard_words(Id id, const Json& message);
+    void obey(Member& member, const std::string& what, const Json& message);
+    bool heard_of_turn(Id id, const std::string& what, const Json& message);
+    void tell_of_turn(Id id, const Json& message);
+    [[nodiscard]] Member* served(Id id);
     void lost(Id id, std::string how);
     void start_some(Clock::time_point now);
     void end_stuck(Clock::time_point now);
@@ -80,6 +84,8 @@ class Crew {
     std::mutex& m_lock;
     Rules m_rules;
     Room m_room;
+    std::mutex m_links_lock;
+    std::map<Id, Link*> m_links;  ///< over which turns are told, under this lock of their own
     Turns m_turns;
     Id m_last = 0;
     std::map<Id, Member> m_members;

@@ -115,16 +115,18 @@ void Daemon::write_events() {
         }
         for (const Session::Writing& writing : all) {
             lock.unlock();
-            Status written = m_store->add_events(writing.number, writing.events, writing.dated);
+            Status written = writing.events.empty() ? Status() : m_store->add_events(writing.number, writing.events, writing.dated);
             if (written && writing.state) written = m_store->change_session(writing.number, *writing.state);
+            if (written && writing.acknowledged) written = m_store->acknowledge(writing.number, *writing.acknowledged);
             lock.lock();
+            const auto session = std::ranges::find(m_sessions, writing.number, [](const auto& one) { return one->number(); });
+            if (session == m_sessions.end()) continue;  // forgotten meanwhile
             const std::string trouble = written ? std::string() : written.error().text();
             if (trouble != std::exchange(m_write_trouble, trouble)) {  // told once, not at every try
                 log(LogLevel::warning, written ? "the disk takes what sessions have to tell again"
                                                : "what sessions have to tell waits for the disk: " + trouble);
             }
-            const auto session = std::ranges::find(m_sessions, writing.number, [](const auto& one) { return one->number(); });
-            if (written && session != m_sessions.end()) (*session)->written(writing);
+            if (written) (*session)->written(writing);
         }
     }
 }

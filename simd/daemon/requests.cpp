@@ -45,7 +45,7 @@ bool Daemon::answered_before(const ClientPtr& client, const std::string& request
         return false;
     }
     constexpr std::size_t most_impatient = 100;  // who does not even slow down when told to costs others their time
-    if (++client->impatient >= most_impatient) client->close(1008, "too many requests in a short time");
+    if (++client->impatient >= most_impatient) client->throw_out("too many requests in a short time");
     client->tell(wire::Refused{request, {ErrorCode::refused, "too many requests in a short time: at most 30 a second in the long run", ""}, 1.0});
     return true;
 }

@@ -114,18 +114,20 @@ void Session::emit(wire::ServerMessage event, EventKind kind, std::optional<Date
 }
 
 std::optional<Session::Writing> Session::to_write() const {
-    if (m_unsaved.empty() && !m_state_changed) return {};
-    Writing writing{m_number, {}, {}, {}};
+    if (m_is_over || (m_unsaved.empty() && !m_state_changed && m_acknowledged == m_saved_acknowledged)) return {};
+    Writing writing{.number = m_number, .events = {}, .dated = {}, .state = {}, .acknowledged = {}};
     for (const Unsaved& unsaved : m_unsaved) {
         writing.events.push_back(unsaved.event);
         if (unsaved.dated) writing.dated.push_back(*unsaved.dated);
     }
     if (m_state_changed) writing.state = kept_state();
+    if (m_acknowledged != m_saved_acknowledged) writing.acknowledged = m_acknowledged;
     return writing;
 }
 
 void Session::written(const Writing& writing) {
     if (writing.state && *writing.state == kept_state()) m_state_changed = false;
+    m_saved_acknowledged = writing.acknowledged.value_or(m_saved_acknowledged);
     m_unsaved.erase(m_unsaved.begin(), m_unsaved.begin() + static_cast<std::ptrdiff_t>(writing.events.size()));
     for (const Event& event : writing.events) {
         m_saved_seq = event.seq;
@@ -189,8 +191,7 @@ Status Session::save_state() {
 }
 
 void Session::acknowledge(std::uint64_t seq) {
-    const Status done = m_around.store.acknowledge(m_number, std::min(seq, m_seq));
-    if (!done) log(LogLevel::warning, "session " + std::to_string(m_number) + ": " + done.error().text());
+    m_acknowledged = std::max(m_acknowledged, std::min(seq, m_saved_seq));  // nobody was told of more
     if (!m_has_ended || seq < m_seq || !m_unsaved.empty()) return;
     m_is_over = true;
     say_goodbye();

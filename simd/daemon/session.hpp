@@ -41,6 +41,7 @@ class Session final : public Task {
         std::vector<Event> events;
         std::vector<Dated> dated;
         std::optional<SessionState> state;
+        std::optional<std::uint64_t> acknowledged;  ///< up to which event
     };
 
     /// One that the store does not know yet: it becomes a session once its worker has planned it and there is room.
@@ -77,6 +78,7 @@ class Session final : public Task {
     void read_state(const ClientPtr& client, const std::string& request) const;
     void checkpoint(const ClientPtr& client, const std::string& request);
     void close(const ClientPtr& client, const std::string& request);
+    /// Is kept with whatever is written next: at worst an event is told once more.
     void acknowledge(std::uint64_t seq);
     void want_frames(const ClientPtr& client, const wire::WantFrames& want);
     /// Has the yarns written as they lie; `done` is told with their file, or why not.
@@ -149,7 +151,7 @@ class Session final : public Task {
     std::vector<ClientPtr> m_creators;  ///< all that wait for it
     std::vector<Viewer> m_viewers;
 
-    std::uint64_t m_seq = 0, m_saved_seq = 0, m_frame = 0, m_frames_promised = 0, m_layout = 0, m_step = 0;
+    std::uint64_t m_seq = 0, m_saved_seq = 0, m_acknowledged = 0, m_saved_acknowledged = 0, m_frame = 0, m_frames_promised = 0, m_layout = 0, m_step = 0;
     std::string m_layout_sha256;
     wire::Phase m_phase = wire::Phase::paused;
     bool m_runs = false;

@@ -23,7 +23,8 @@ Error no_disk(const Error& error) {
 
 Session::Session(Surroundings around, const KeptSession& kept, const SessionTask& task, std::vector<JournaledChange> changes)
     : m_around(std::move(around)), m_person(kept.person), m_request(kept.request), m_title(kept.title), m_document(task.document),
-      m_number(kept.number), m_changes(std::move(changes)), m_seq(kept.last_seq), m_saved_seq(kept.last_seq), m_frame(kept.state.frame), m_frames_promised(kept.state.frame),
+      m_number(kept.number), m_changes(std::move(changes)), m_seq(kept.last_seq), m_saved_seq(kept.last_seq), m_acknowledged(kept.acknowledged),
+      m_saved_acknowledged(kept.acknowledged), m_frame(kept.state.frame), m_frames_promised(kept.state.frame),
       m_layout(kept.state.layout), m_step(kept.state.step), m_runs(kept.state.phase == "running"), m_pause_at(kept.state.pause_at),
       m_checkpoint_step(kept.state.checkpoint_step), m_takes_up(true), m_has_ended(kept.ended) {
     m_around.folder /= std::to_string(m_number);
@@ -161,10 +162,9 @@ bool Session::unfolds_for(const wire::Change& change) const {
 
 std::optional<Error> Session::why_no_change(const wire::Change& change) const {
     if (m_has_ended) return gone();
-    const auto left = m_around.store.unacknowledged(m_number);
-    if (!left) return no_disk(left.error());
-    if (*left >= most_unacknowledged)
-        return Error{ErrorCode::refused, "its clients have left " + std::to_string(*left) + " events unacknowledged", "session " + std::to_string(m_number)};
+    const std::uint64_t left = m_seq - m_acknowledged;
+    if (left >= most_unacknowledged)
+        return Error{ErrorCode::refused, "its clients have left " + std::to_string(left) + " events unacknowledged", "session " + std::to_string(m_number)};
     if (!unfolds_for(change) || !m_worker) return {};
     Room& room = m_around.crew.room();
     const std::uint64_t bytes = expected_bytes(m_points * m_repeats), own = room.promised(*m_worker);

@@ -14,6 +14,7 @@ double seconds(Turns::Clock::duration time) {
 }  // namespace
 
 void Turns::add(Id id, const std::string& person, bool is_job) {
+    const std::lock_guard lock(m_mutex);
     Worker& worker = m_workers[id];
     worker.person = person;
     worker.is_job = is_job;
@@ -21,6 +22,7 @@ void Turns::add(Id id, const std::string& person, bool is_job) {
 }
 
 void Turns::want(Id id, Clock::time_point now) {
+    const std::lock_guard lock(m_mutex);
     const auto found = m_workers.find(id);
     if (found == m_workers.end() || found->second.threads > 0 || found->second.wants) return;
     catch_up(found->second, now);
@@ -61,6 +63,7 @@ void Turns::take_back(Worker& worker, Clock::time_point now) {
 }
 
 void Turns::over(Id id, Clock::time_point now) {
+    const std::lock_guard lock(m_mutex);
     const auto found = m_workers.find(id);
     if (found == m_workers.end()) return;
     take_back(found->second, now);
@@ -68,6 +71,7 @@ void Turns::over(Id id, Clock::time_point now) {
 }
 
 void Turns::again(Id id, Clock::time_point now) {
+    const std::lock_guard lock(m_mutex);
     const auto found = m_workers.find(id);
     if (found == m_workers.end()) return;
     take_back(found->second, now);
@@ -76,6 +80,7 @@ void Turns::again(Id id, Clock::time_point now) {
 }
 
 void Turns::remove(Id id, Clock::time_point now) {
+    const std::lock_guard lock(m_mutex);
     const auto found = m_workers.find(id);
     if (found == m_workers.end()) return;
     const std::string person = found->second.person;
@@ -85,6 +90,11 @@ void Turns::remove(Id id, Clock::time_point now) {
 }
 
 std::size_t Turns::waiting() const {
+    const std::lock_guard lock(m_mutex);
+    return count_waiting();
+}
+
+std::size_t Turns::count_waiting() const {
     return static_cast<std::size_t>(std::ranges::count_if(m_workers, [](const auto& entry) { return entry.second.wants; }));
 }
 
@@ -130,7 +140,8 @@ void Turns::hand_out(Clock::time_point now) {
 }
 
 void Turns::tick(Clock::time_point now) {
-    const bool others_wait = waiting() > 0;
+    const std::lock_guard lock(m_mutex);
+    const bool others_wait = count_waiting() > 0;
     for (auto& [id, worker] : m_workers) {
         if (worker.threads == 0) continue;
         if (worker.is_asked_back) {
@@ -145,12 +156,14 @@ void Turns::tick(Clock::time_point now) {
 }
 
 std::optional<Turns::Clock::duration> Turns::kept_since_asked(Id id, Clock::time_point now) const {
+    const std::lock_guard lock(m_mutex);
     const auto found = m_workers.find(id);
     if (found == m_workers.end() || !found->second.is_asked_back) return {};
     return now - found->second.asked_back;
 }
 
 double Turns::spent_s(Id id, Clock::time_point now) const {
+    const std::lock_guard lock(m_mutex);
     const auto found = m_workers.find(id);
     if (found == m_workers.end()) return 0;
     const Worker& worker = found->second;

@@ -5,6 +5,7 @@
 #include <cstdint>
 #include <functional>
 #include <map>
+#include <mutex>
 #include <optional>
 #include <string>
 
@@ -13,7 +14,7 @@ namespace weave::simd {
 /// Who computes when. A worker that wants to compute asks for a turn and keeps it until it is asked back, which happens once
 /// others have waited for a quantum. People share the machine evenly, whatever number of sessions and jobs each has; of one
 /// person's own, sessions go before jobs four times out of five. The threads of the machine are spread over those that want to
-/// compute. Not safe for several threads: its owner locks.
+/// compute. Safe from any thread, and waits for nobody: who computes next must not depend on who has the daemon's lock.
 class Turns {
   public:
     using Clock = std::chrono::steady_clock;
@@ -25,7 +26,7 @@ class Turns {
         /// A worker that does not give its turn back for so long after it was asked no longer keeps others waiting.
         std::chrono::milliseconds patience{1000};
     };
-    /// What workers are told: `give(id, threads)` a turn, `ask_back(id)`.
+    /// What workers are told: `give(id, threads)` a turn, `ask_back(id)`. Neither may wait, nor call what is below.
     struct Tell {
         std::function<void(Id, std::size_t)> give;
         std::function<void(Id)> ask_back;
@@ -68,13 +69,15 @@ class Turns {
     void charge(Worker& worker, Clock::time_point now);
     void hand_out(Clock::time_point now);
     [[nodiscard]] Worker* next(Id& id);
+    [[nodiscard]] std::size_t count_waiting() const;
     [[nodiscard]] std::size_t threads_in_use() const;
     [[nodiscard]] std::size_t threads_of_a_turn() const;
     /// One that comes back after a while has not saved up for it.
     void catch_up(Worker& worker, Clock::time_point now);
 
-    Rules m_rules;
-    Tell m_tell;
+    const Rules m_rules;
+    const Tell m_tell;
+    mutable std::mutex m_mutex;  ///< the functions above take it, those of here have it
     std::map<Id, Worker> m_workers;
     std::map<std::string, Person> m_people;
 };

@@ -24,6 +24,12 @@ void Connection::opened(std::shared_ptr<net::WebSocket> socket) {
 }
 
 void Connection::message(net::WebSocketMessage message) {
+    take(std::move(message));
+    const bool is_out = m_client->is_thrown_out() && !std::exchange(m_is_out, m_client->is_thrown_out());
+    if (is_out && !m_visitor.is_local) m_doorkeeper.thrown_out(m_visitor.person);
+}
+
+void Connection::take(net::WebSocketMessage message) {
     if (message.binary) return m_client->close(1003, "frames come from the server alone");
     auto read = wire::read_client_message(message.bytes);
     if (!read) return not_understood(message.bytes, read.error());
@@ -50,7 +56,7 @@ void Connection::greet(const wire::ClientMessage& message) {
 void Connection::not_understood(const std::string& text, const Error& error) {
     m_client->tell(wire::Refused{wire::request_of(text), error, {}});
     if (!m_is_greeted) m_client->close(1002, "the first message is hello");
-    else if (++m_not_understood >= most_not_understood) m_client->close(1008, "too many messages that cannot be read");
+    else if (++m_not_understood >= most_not_understood) m_client->throw_out("too many messages that cannot be read");
 }
 
 }  // namespace weave::simd

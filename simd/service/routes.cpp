@@ -78,15 +78,15 @@ class WaitingRoom {
     std::map<std::string, std::size_t> m_taken_by;
 };
 
-Response come_again() {
-    Response response = net::error_answer(Error{ErrorCode::refused, "too many wait for files of sessions: try again", "yarns"}, 503);
-    response.headers.set("Retry-After", "1");
+Response come_again(const Error& why, std::chrono::seconds wait) {
+    Response response = net::error_answer(why, 503);
+    response.headers.set("Retry-After", std::to_string(wait.count()));
     return response;
 }
 
 Response session_yarns(Daemon& daemon, WaitingRoom& waiting, const Visitor& visitor, const Request& request) {
     const auto seat = waiting.seat(visitor.person);
-    if (!seat) return come_again();
+    if (!seat) return come_again({ErrorCode::refused, "too many wait for files of sessions: try again", "yarns"}, std::chrono::seconds(1));
     const auto path = daemon.session_yarns(visitor.person, number_in(request, "session"));
     if (!path) return not_there(path.error());
     Response response = file_answer(*path);
@@ -108,7 +108,9 @@ Response job_evidence(Daemon& daemon, const Visitor& visitor, const Request& req
 net::WebSocketAdmission open_wire(const ServiceParts& parts, const Request& request) {
     auto visitor = parts.doorkeeper.let_in(request);
     if (!visitor) return unknown_visitor(visitor.error());
-    return std::make_unique<Connection>(parts.daemon, std::move(*visitor), "simd " + parts.version);
+    if (const auto wait = parts.doorkeeper.wait(visitor->person); wait.count() > 0)
+        return come_again({ErrorCode::refused, "your connections were closed for asking too much: wait a little", "wire"}, wait);
+    return std::make_unique<Connection>(parts.daemon, parts.doorkeeper, std::move(*visitor), "simd " + parts.version);
 }
 
 }  // namespace

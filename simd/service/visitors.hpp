@@ -37,6 +37,11 @@ class Doorkeeper {
 
     /// Refused, in the same words whatever is wrong with a token: no stranger learns more than that it does not count.
     Result<Visitor> let_in(const net::Request& request);
+    /// A connection of this person was closed because it cost others their time. Who is thrown out for the second time within
+    /// ten seconds waits before the next connection: making one costs the machine more than a message does.
+    void thrown_out(const std::string& person) { static_cast<void>(m_thrown_out.take(person)); }
+    /// For how long that is; 0: not at all.
+    [[nodiscard]] std::chrono::seconds wait(const std::string& person) { return m_thrown_out.wait(person); }
 
   private:
     std::optional<Visitor> visitor_of(const std::string& token);
@@ -48,6 +53,7 @@ class Doorkeeper {
     std::map<std::string, std::string> m_people;  ///< by the hash of their local token
     std::filesystem::file_time_type m_read{};
     net::Throttle m_wrong{{20, 0.2, 10000}};      ///< tokens that did not count, by address
+    net::Throttle m_thrown_out{{2, 0.1, 10000}};  ///< connections, by person
 };
 
 /// The person of requests over the Unix socket; no token may name it.

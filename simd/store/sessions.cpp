@@ -213,18 +213,6 @@ Status Store::acknowledge(Number session, Number seq) {
     });
 }
 
-Result<Number> Store::unacknowledged(Number session) {
-    std::optional<Number> count;
-    WEAVE_CHECK_OK(read([&](sql::Connection& connection) -> Status {
-        WEAVE_TRY(count, connection.one(
-                             "SELECT last_seq - acknowledged FROM session WHERE number = ?",
-                             [](const sql::Row& row) { return number_at(row, 0); }, whole(session)));
-        return {};
-    }));
-    if (!count) return no_such("session", session);
-    return *count;
-}
-
 Result<Made> Store::add_change(Number session, const std::string& request, const std::string& change,
                                const AnswerOf& answer) {
     Made made;

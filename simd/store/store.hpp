@@ -65,8 +65,6 @@ class Store {
     Result<std::vector<Event>> events_after(Number session, Number seq, std::size_t most);
     /// Up to `seq` all is dealt with: drops it, but for the newest layout, the newest phase, and `ended`.
     Status acknowledge(Number session, Number seq);
-    /// How many events nobody has acknowledged.
-    Result<Number> unacknowledged(Number session);
     /// @}
 
     /// @name The journal of a session

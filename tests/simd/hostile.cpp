@@ -235,6 +235,26 @@ TEST_CASE("what is no message is refused or ends its own connection, and a sessi
     bystander.check_unharmed();
 }
 
+TEST_CASE("who is thrown out for the second time waits before the next connection, and nobody else does") {
+    const People people;
+    const auto thrown_out = [&](const wire::ServerPlace& place) {
+        Rude rude(place);
+        rude.greet();
+        for (int k = 0; k < 100; ++k) rude.send("garbage");
+        CHECK(rude.end() == 1008);
+    };
+    thrown_out(people.place("mallory"));
+    thrown_out(people.place("mallory"));
+    const auto refused = wire::Client::connect(people.place("mallory"), "test");
+    REQUIRE_FALSE(refused);
+    CHECK(refused.error().code == ErrorCode::system);  // which passes, so a follower tries again
+    CHECK(refused.error().message.find("wait a little") != std::string::npos);
+    CHECK(wire::Client::connect(people.place("dora"), "test"));
+    for (int k = 0; k < 3; ++k) thrown_out(people.box().place());  // the machine's owner
+    CHECK(wire::Client::connect(people.box().place(), "test"));
+    CHECK(comes_true([&] { return bool(wire::Client::connect(people.place("mallory"), "test")); }));
+}
+
 TEST_CASE("what others have is, for a stranger, as if it were not there") {
     const People people;
     Followed owned(people.follower("dora"), document_of("plain"), at(sim::Fidelity::draft));

@@ -328,8 +328,6 @@ std::string apply(Store& store, const Operation& operation) {
             return outcome(store.events_after(operation.number, operation.other, 3));
         case Kind::acknowledge:
             return outcome(store.acknowledge(operation.number, operation.other));
-        case Kind::unacknowledged:
-            return outcome(store.unacknowledged(operation.number));
         case Kind::add_change:
             return outcome(
                 store.add_change(operation.number, operation.request, operation.text, answer_to(operation)));

@@ -30,7 +30,6 @@ struct Operation {
         add_events,
         events_after,
         acknowledge,
-        unacknowledged,
         add_change,
         add_job,
         start_job,
@@ -38,7 +37,7 @@ struct Operation {
         end_job,
         forget_job
     };
-    static constexpr std::size_t kinds = 15;
+    static constexpr std::size_t kinds = 14;
 
     Kind kind = Kind::remember;
     Number number = 0;
