@@ -286,6 +286,19 @@ TEST_CASE("a reader that lets control messages pile up beyond the bound is close
     REQUIRE(HttpClient(client_of(server)).send({"GET", "/hello", {}, {}}));
 }
 
+TEST_CASE("whoever goes on sending after the farewell is not heard, and cut off") {
+    const auto seen = std::make_shared<Seen>();
+    ServerOptions options;
+    options.limits.transfer_time = 10min;
+    const Server server = started(with_echo(seen), options);
+    WebSocketClient flood = connected(client_of(server));
+    seen->opened()->close(1008, "enough");
+    std::size_t sent = 0;
+    while (sent < 1'000'000'000 && flood.send(std::string(1000, 'x'))) ++sent;
+    REQUIRE(seen->ended().code == 1008);
+    REQUIRE(seen->read([](Seen& s) { return s.messages.size(); }) <= 1);  // one that was read already
+}
+
 TEST_CASE("a client that shows no sign of life is let go, one that answers pings is kept") {
     const auto seen = std::make_shared<Seen>();
     ServerOptions options;

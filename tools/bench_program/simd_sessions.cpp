@@ -38,10 +38,12 @@ struct Pace {
 /// Somebody who looks at a session of his or her own that never comes to rest, and changes its parameters now and then.
 class Watcher {
   public:
-    Watcher(const SimdBox& box, std::size_t person, const std::string& document)
+    Watcher(const SimdBox& box, std::size_t person, const std::string& document, sim::Solver solver)
         : m_client(must(wire::Client::connect(box.place_of_person(person), "bench"), "no connection")), m_random(static_cast<unsigned>(person + 1)) {
         constexpr std::chrono::minutes patience{10};
-        const auto made = wire::answer_of<wire::Accepted>(m_client.ask(wire::Create{wire::new_request_id(), document, restless()}, patience));
+        wire::Simulation simulation = restless();
+        simulation.solver = solver;
+        const auto made = wire::answer_of<wire::Accepted>(m_client.ask(wire::Create{wire::new_request_id(), document, simulation}, patience));
         m_session = must(made, "a session").session.value();
         must(wire::answer_of<wire::Accepted>(m_client.ask(wire::Run{wire::new_request_id(), m_session}, patience)), "a session does not run");
         m_thread = std::thread([this] { watch(); });
@@ -206,10 +208,11 @@ struct Stretch {
 
 class Crowd {
   public:
-    explicit Crowd(const SessionsWish& wish) : m_box(wish.threads, wish.sessions), m_cloth(tiled_cloth(wish.points)), m_seconds(wish.seconds) {}
+    Crowd(const SessionsWish& wish, sim::Solver solver)
+        : m_box(wish.threads, wish.sessions), m_cloth(tiled_cloth(wish.points)), m_seconds(wish.seconds), m_solver(solver) {}
 
     void grow(std::size_t count) {
-        while (m_watchers.size() < count) m_watchers.push_back(std::make_unique<Watcher>(m_box, m_watchers.size(), m_cloth.document));
+        while (m_watchers.size() < count) m_watchers.push_back(std::make_unique<Watcher>(m_box, m_watchers.size(), m_cloth.document, m_solver));
     }
     Stretch measure() {
         constexpr std::chrono::seconds to_settle{2};
@@ -235,6 +238,7 @@ class Crowd {
     SimdBox m_box;
     TiledCloth m_cloth;
     double m_seconds;
+    sim::Solver m_solver;
     std::vector<std::unique_ptr<Watcher>> m_watchers;
 };
 
@@ -266,12 +270,18 @@ Json told(const Stretch& stretch, std::size_t count) {
             {"client_cores", stretch.client_cores}};
 }
 
-/// All but two sessions, beside two ordinary ones and beside a hostile client and a worker that keeps dying, by turns.
-Json beside_trouble(Crowd& crowd, const SessionsWish& wish, const CommandOutcome& outcome) {
+/// All but two sessions, beside two ordinary ones and beside a hostile client and a worker that keeps dying, by turns. They
+/// compute in time steps, each of which costs the same, so that the steps of one stretch can be held against those of another.
+Json beside_trouble(const SessionsWish& wish, const CommandOutcome& outcome) {
+    outcome.note(std::to_string(wish.sessions) + " side by side, in time steps");
+    Crowd crowd(wish, sim::Solver::paper);
+    crowd.grow(wish.sessions);
     const std::size_t others = wish.sessions - 2;
     std::vector<double> calm(others), troubled(others);
     Json answer{{"others", others}, {"stretches", Json::array()}};
     std::uint64_t kills = 0, connections = 0, messages = 0, lost = 0;
+    double calm_clients = 0, troubled_clients = 0;  // cores
+    double calm_frames = 0, troubled_frames = 0;    // of all others, a second
     for (std::size_t round = 0; round < 2 * wish.rounds; ++round) {
         const bool is_troubled = round % 2 == 1;
         outcome.note(is_troubled ? "beside a hostile client and a dying worker" : "beside two ordinary sessions");
@@ -289,6 +299,8 @@ Json beside_trouble(Crowd& crowd, const SessionsWish& wish, const CommandOutcome
         for (std::size_t k = 0; k < others; ++k) (is_troubled ? troubled : calm)[k] += stretch.paces[k].steps_per_s;
         Json one = told(stretch, others);
         one["troubled"] = is_troubled;
+        (is_troubled ? troubled_frames : calm_frames) += mean_of(stretch.paces, others, &Pace::frames_per_s);
+        (is_troubled ? troubled_clients : calm_clients) += stretch.client_cores / static_cast<double>(wish.rounds);
         answer["stretches"].push_back(std::move(one));
     }
     double all_calm = 0, all_troubled = 0;
@@ -299,7 +311,8 @@ Json beside_trouble(Crowd& crowd, const SessionsWish& wish, const CommandOutcome
     }
     if (all_calm <= 0) throw std::runtime_error("no session shows two frames in a stretch: give it more --seconds");
     std::sort(shares.begin(), shares.end());
-    answer.update({{"pace_kept", all_troubled / all_calm}, {"least_pace_kept", shares.front()}, {"lost_frames", lost}, {"kills", kills},
+    answer.update({{"pace_kept", all_troubled / all_calm}, {"least_pace_kept", shares.front()}, {"frames_kept", troubled_frames / calm_frames}, {"lost_frames", lost}, {"kills", kills},
+                   {"calm_client_cores", calm_clients}, {"troubled_client_cores", troubled_clients},
                    {"hostile_connections", connections}, {"hostile_messages", messages}});
     return answer;
 }
@@ -318,15 +331,18 @@ std::string words_of(const SessionsWish& wish, const Json& said) {
     constexpr double least = 0.9;
     const double kept = trouble.at("pace_kept");
     table.row(std::to_string(trouble.at("others").get<std::size_t>()) + " others beside a hostile client (" + form("%.0f messages, ", trouble.at("hostile_messages")) +
-                  form("%.0f connections) and a worker that was killed ", trouble.at("hostile_connections")) + form("%.0f times: their pace", trouble.at("kills")),
+                  form("%.0f connections) and a worker that was killed ", trouble.at("hostile_connections")) + form("%.0f times: their steps", trouble.at("kills")),
               form("%.1f %%", 100 * kept) + ", that of the one that lost most " + form("%.1f %%", 100 * trouble.at("least_pace_kept").get<double>()), "90 %", kept >= least);
+    const double frames = trouble.at("frames_kept");
+    table.row("the same: their frames, of which each turn shows one", form("%.1f %%", 100 * frames), "90 %", frames >= least);
+    table.row("cores that the clients took of this machine, which they would not have elsewhere: without and with the hostile one",
+              form("%.2f", trouble.at("calm_client_cores")) + " and " + form("%.2f", trouble.at("troubled_client_cores")));
     table.row("frames of theirs that they did not get", form("%.0f", trouble.at("lost_frames")), "0", trouble.at("lost_frames") == 0);
     return table.text();
 }
 
-Status sessions(const SessionsWish& wish, CommandOutcome& outcome) {
-    Json said{{"before", circumstances()}, {"seconds", wish.seconds}, {"side_by_side", Json::array()}};
-    Crowd crowd(wish);
+void side_by_side(const SessionsWish& wish, const CommandOutcome& outcome, Json& said) {
+    Crowd crowd(wish, sim::Solver::relax);
     said["points"] = crowd.points();
     for (const std::size_t count : {std::size_t{1}, std::size_t{8}, wish.sessions}) {
         if (count > wish.sessions || (count == wish.sessions && !said["side_by_side"].empty() && said["side_by_side"].back().at("sessions") == count)) continue;
@@ -335,7 +351,12 @@ Status sessions(const SessionsWish& wish, CommandOutcome& outcome) {
         said["side_by_side"].push_back(told(crowd.measure(), count));
         crowd.check(count);
     }
-    if (wish.sessions > 2) said["trouble"] = beside_trouble(crowd, wish, outcome);
+}
+
+Status sessions(const SessionsWish& wish, CommandOutcome& outcome) {
+    Json said{{"before", circumstances()}, {"seconds", wish.seconds}, {"side_by_side", Json::array()}};
+    side_by_side(wish, outcome, said);
+    if (wish.sessions > 2) said["trouble"] = beside_trouble(wish, outcome);
     said["after"] = circumstances();
     outcome.answer(said, words_of(wish, said));
     return {};

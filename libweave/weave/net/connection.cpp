@@ -147,9 +147,12 @@ void Connection::cut() {
     asio::post(m_stream.get_executor(), [self = shared_from_this()] { self->m_stream.close(); });
 }
 
+Milliseconds Connection::time_for(std::uint64_t bytes) const {
+    return Milliseconds(bytes * 1000 / m_service->options.limits.slowest_bytes_per_second);
+}
+
 Milliseconds Connection::transfer_time(std::uint64_t bytes) const {
-    const ServerLimits& limits = m_service->options.limits;
-    return limits.transfer_time + Milliseconds(bytes * 1000 / limits.slowest_bytes_per_second);
+    return m_service->options.limits.transfer_time + time_for(bytes);
 }
 
 asio::awaitable<void> Connection::run() {

@@ -107,6 +107,8 @@ class Connection : public std::enable_shared_from_this<Connection> {
     asio::awaitable<bool> write(Response response, const Incoming& incoming, Moment begun);
     asio::awaitable<void> linger();
     [[nodiscard]] bool uses_tls() const { return m_service->tls && !m_peer.local; }
+    /// What so many bytes need at the slowest pace that is served.
+    [[nodiscard]] Milliseconds time_for(std::uint64_t bytes) const;
     [[nodiscard]] Milliseconds transfer_time(std::uint64_t bytes) const;
     void tell(const Incoming& incoming, int status, Moment begun) const;
 

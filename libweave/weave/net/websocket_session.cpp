@@ -20,7 +20,8 @@ constexpr Milliseconds parting_time{2'000};   // beside what the size of the que
 WebSocketSession::WebSocketSession(std::shared_ptr<Connection> connection, std::size_t message_limit)
     : m_connection(std::move(connection)),
       m_socket(m_connection->m_stream),
-      m_wake(m_connection->m_stream.get_executor(), asio::steady_timer::time_point::max()) {
+      m_wake(m_connection->m_stream.get_executor(), asio::steady_timer::time_point::max()),
+      m_parted(m_connection->m_stream.get_executor(), asio::steady_timer::time_point::max()) {
     set_up(message_limit);
 }
 
@@ -48,7 +49,7 @@ std::function<void()> WebSocketSession::waker() {
             const auto bytes = self->m_outbox->bytes_before_farewell();
             if (bytes && self->m_connection->m_stream.socket().is_open())  // it may be stuck in a write
                 self->m_connection->m_deadline.set(self->m_connection,
-                                                   parting_time + self->m_connection->transfer_time(*bytes));
+                                                   parting_time + self->m_connection->time_for(*bytes));
         });
     };
 }
@@ -97,6 +98,10 @@ asio::awaitable<WebSocketEnd> WebSocketSession::read_all(WebSocketHandler& handl
         beast::flat_buffer buffer;
         const auto [error, size] = co_await m_socket.async_read(buffer, as_result);
         if (error) co_return end_of(error);
+        if (const auto farewell = m_outbox->farewell()) {  // nobody hears it any more: a flood is not even read
+            co_await m_parted.async_wait(as_result);
+            co_return *farewell;
+        }
         const char* const begin = static_cast<const char*>(buffer.cdata().data());
         WebSocketMessage message{std::string(begin, size), m_socket.got_binary()};
         const std::function<void()> hand_over = [&] { handler.message(std::move(message)); };
@@ -122,6 +127,7 @@ asio::awaitable<void> WebSocketSession::write_all() {
         }
     }
     m_connection->m_stream.close();
+    m_parted.expires_at(asio::steady_timer::time_point::min());  // also for who waits only later
 }
 
 WebSocketEnd WebSocketSession::end_of(const error_code& error) const {

@@ -31,7 +31,7 @@ class WebSocketSession : public std::enable_shared_from_this<WebSocketSession> {
 
     std::shared_ptr<Connection> m_connection;
     Socket m_socket;
-    asio::steady_timer m_wake;
+    asio::steady_timer m_wake, m_parted;  ///< there is something to send; nothing will be sent any more
     std::shared_ptr<Outbox> m_outbox;
 };
 
