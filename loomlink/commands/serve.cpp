@@ -38,6 +38,7 @@ std::string words_of(const Json& started) {
 }
 
 Status serve(ServeOptions& options, CommandOutcome& outcome) {
+    const EndingSignals signals;
     const auto check = [](const ServeConfig& config) -> Status {
         WEAVE_CHECK_OK(check_config(config));
         return check_places(config);
@@ -45,7 +46,6 @@ Status serve(ServeOptions& options, CommandOutcome& outcome) {
     WEAVE_CHECK_OK(options.words.complete<ServeConfig>(options.config, parse_config, check));
     WEAVE_CHECK_OK(check_service_folder(options.folder));
     if (options.words.only_checks(outcome)) return {};
-    const EndingSignals signals;
     log_to_stderr();
     WEAVE_TRY(const auto site, RunningSite::start({options.folder}, options.config));
     WEAVE_TRY(const Json started, site->introduction());

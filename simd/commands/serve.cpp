@@ -30,6 +30,7 @@ std::string words_of(const Json& started) {
 }
 
 Status serve(ServeOptions& options, CommandOutcome& outcome) {
+    const EndingSignals signals;
     const DaemonFolder folder{options.folder};
     const auto check = [&](const ServeConfig& config) -> Status {
         WEAVE_CHECK_OK(check_config(config));
@@ -38,7 +39,6 @@ Status serve(ServeOptions& options, CommandOutcome& outcome) {
     WEAVE_CHECK_OK(options.words.complete<ServeConfig>(options.config, parse_config, check));
     WEAVE_CHECK_OK(check_service_folder(options.folder));
     if (options.words.only_checks(outcome)) return {};
-    const EndingSignals signals;
     log_to_stderr();
     WEAVE_TRY(const auto daemon, RunningDaemon::start(folder, options.config, std::filesystem::read_symlink("/proc/self/exe")));
     const Json started = daemon->introduction();
