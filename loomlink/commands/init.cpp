@@ -1,3 +1,4 @@
+#include <weave/command/service_places.hpp>
 #include <weave/core/text.hpp>
 
 #include <loomlink/commands/command.hpp>
@@ -14,7 +15,7 @@ Status make_new_site(const SiteFolder& folder, const ServeConfig& config, Comman
     WEAVE_CHECK_OK(check_config(config));
     WEAVE_TRY(OpenSite site, open_site(folder, config));
     if (!site.is_new) return Error{ErrorCode::refused, "holds a site already", folder.path.string()};
-    WEAVE_CHECK_OK(tls_of(folder, config));
+    WEAVE_CHECK_OK(tls_of(folder.tls(), config));
     WEAVE_TRY(const auto certificate, net::read_certificate(folder.tls().certificate));
     const std::string name = site.name;
     WEAVE_TRY(const auto workflow, Workflow::open(std::move(site.store), std::move(site.keys)));

@@ -1,4 +1,5 @@
-#include <weave/keys/private_file.hpp>
+#include <weave/command/service_places.hpp>
+#include <weave/core/descriptor.hpp>
 #include <weave/net/certificate.hpp>
 #include <weave/net/server.hpp>
 
@@ -8,6 +9,7 @@
 #include <loomlink/service/handlers.hpp>
 #include <loomlink/service/service.hpp>
 #include <optional>
+#include <unistd.h>
 #include <utility>
 
 namespace weave::loomlink {
@@ -27,16 +29,6 @@ struct RunningSite::Parts {
 namespace {
 
 constexpr std::chrono::seconds patience{10};
-
-bool is_loopback(const std::string& address) {
-    return address == "::1" || address.starts_with("127.");
-}
-
-std::string origin_of(const ServeConfig& config, std::uint16_t port) {
-    std::string host = config.plain ? config.address : client_hosts(config).front();
-    if (host.find(':') != std::string::npos) host = "[" + host + "]";
-    return (config.plain ? "http://" : "https://") + host + ":" + std::to_string(port);
-}
 
 Status check_store(Workflow& workflow) {
     const auto name = workflow.store().read([](const Reader& reader) { return reader.site(); });
@@ -59,23 +51,21 @@ ServiceParts service_of(Workflow& workflow, const Watchers& watchers, const Head
     return service;
 }
 
+Status check_heads(const std::filesystem::path& heads) {
+    std::error_code code;
+    const auto folder = heads.has_parent_path() ? heads.parent_path() : ".";
+    if (!std::filesystem::is_directory(folder, code) || std::filesystem::is_directory(heads, code))
+        return bad_input("must be a file in a folder that is there", "heads: " + heads.string());
+    const bool there = std::filesystem::exists(heads, code);
+    if (::access(there ? heads.c_str() : folder.c_str(), there ? R_OK | W_OK : W_OK | X_OK) == 0) return {};
+    return file_fault(heads, "write").in("heads");
+}
+
 }  // namespace
 
 Status check_places(const ServeConfig& config) {
-    if (config.plain && !is_loopback(config.address))
-        return bad_input("serves this machine alone: 127.0.0.1 or ::1", "address");
-    if (!config.certificate.empty()) {
-        if (const auto read = net::read_certificate(config.certificate); !read)
-            return Error(read.error()).under("certificate");
-        if (const Status closed = check_private_file(config.key); !closed)
-            return Error(closed.error()).under("key");
-    }
-    std::error_code code;
-    const auto folder = config.heads.has_parent_path() ? config.heads.parent_path() : ".";
-    if (!config.heads.empty() &&
-        (!std::filesystem::is_directory(folder, code) || std::filesystem::is_directory(config.heads, code)))
-        return bad_input("must be a file in a folder that is there", "heads");
-    return {};
+    WEAVE_CHECK_OK(check_service_places(config));
+    return config.heads.empty() ? Status() : check_heads(config.heads);
 }
 
 RunningSite::RunningSite(std::unique_ptr<Parts> parts) : m_parts(std::move(parts)) {}
@@ -85,7 +75,7 @@ RunningSite::~RunningSite() = default;
 Result<std::unique_ptr<RunningSite>> RunningSite::start(const SiteFolder& folder, const ServeConfig& config,
                                                         const DeskSettings& settings) {
     WEAVE_TRY(OpenSite site, open_site(folder, config));
-    WEAVE_TRY(const auto tls, tls_of(folder, config));
+    WEAVE_TRY(const auto tls, tls_of(folder.tls(), config));
     WEAVE_TRY(auto workflow, Workflow::open(std::move(site.store), std::move(site.keys), settings));
     auto parts = std::make_unique<Parts>(
         Parts{std::move(site.lock), config, std::move(site.name), {}, std::move(workflow), tls, {}, {}, {}});
@@ -97,12 +87,7 @@ Result<std::unique_ptr<RunningSite>> RunningSite::start(const SiteFolder& folder
     }
     const ServiceParts service = service_of(*parts->workflow, parts->watchers, parts->heads.get());
     WEAVE_TRY(net::Router routes, service_routes(service));
-    net::ServerOptions options;
-    options.address = config.address;
-    options.port = config.port;
-    options.tls = tls;
-    options.hosts = config.hosts;
-    options.workers = config.workers;
+    net::ServerOptions options = server_options(config, tls);
     options.metrics = service.metrics;
     WEAVE_TRY(net::Server server, net::Server::start(std::move(routes), std::move(options)));
     parts->server.emplace(std::move(server));

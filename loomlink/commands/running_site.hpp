@@ -11,8 +11,8 @@
 
 namespace weave::loomlink {
 
-/// Whether what the configuration names is there: certificate and key, a folder for the heads; and that plain
-/// HTTP keeps to this machine. Errors name the member.
+/// Whether what the configuration names is there and can be had: as of check_service_places(), and a folder for the
+/// heads. Errors name the member.
 Status check_places(const ServeConfig& config);
 
 /// A site with its service. Ends with the object.

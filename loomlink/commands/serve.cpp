@@ -1,3 +1,4 @@
+#include <weave/command/config_options.hpp>
 #include <weave/command/serving.hpp>
 #include <weave/core/log.hpp>
 #include <weave/core/text.hpp>
@@ -12,32 +13,11 @@ namespace weave::loomlink {
 namespace {
 
 struct ServeOptions {
+    explicit ServeOptions(CLI::App* command) : words(command, "loomlink/README.md") {}
     std::string folder = ".";
-    std::string config_file;
-    bool check_only = false;
-    ServeConfig given;  ///< by options, in place of what the file says
-    CLI::App* command = nullptr;
-};
-
-/// The configuration of file and options together; options count more.
-Result<ServeConfig> whole_config(const ServeOptions& options) {
     ServeConfig config;
-    if (!options.config_file.empty()) {
-        WEAVE_TRY(config, load_config(options.config_file));
-    }
-    const auto take = [&](const char* option, auto member) {
-        if (options.command->count(option) > 0) config.*member = options.given.*member;
-    };
-    take("--site", &ServeConfig::site);
-    take("--address", &ServeConfig::address);
-    take("--port", &ServeConfig::port);
-    take("--host", &ServeConfig::hosts);
-    take("--cert", &ServeConfig::certificate);
-    take("--key", &ServeConfig::key);
-    take("--plain", &ServeConfig::plain);
-    WEAVE_CHECK_OK(check_config(config));
-    return config;
-}
+    ConfigOptions words;
+};
 
 std::string words_of(const Json& started) {
     std::string words;
@@ -57,16 +37,17 @@ std::string words_of(const Json& started) {
     return words;
 }
 
-Status serve(const ServeOptions& options, CommandOutcome& outcome) {
-    WEAVE_TRY(const ServeConfig config, whole_config(options));
-    if (options.check_only) {
-        WEAVE_CHECK_OK(check_places(config));
-        outcome.answer({{"valid", true}}, "The configuration is valid.\n");
-        return {};
-    }
+Status serve(ServeOptions& options, CommandOutcome& outcome) {
     const EndingSignals signals;
+    const auto check = [](const ServeConfig& config) -> Status {
+        WEAVE_CHECK_OK(check_config(config));
+        return check_places(config);
+    };
+    WEAVE_CHECK_OK(options.words.complete<ServeConfig>(options.config, parse_config, check));
+    WEAVE_CHECK_OK(check_service_folder(options.folder));
+    if (options.words.only_checks(outcome)) return {};
     log_to_stderr();
-    WEAVE_TRY(const auto site, RunningSite::start({options.folder}, config));
+    WEAVE_TRY(const auto site, RunningSite::start({options.folder}, options.config));
     WEAVE_TRY(const Json started, site->introduction());
     outcome.answer(started, words_of(started));
     log(LogLevel::info, "serving on port " + std::to_string(site->port()));
@@ -82,21 +63,10 @@ Status serve(const ServeOptions& options, CommandOutcome& outcome) {
 void add_serve_command(CLI::App& app, CommandOutcome& outcome) {
     CLI::App* const command = add_command(
         app, outcome, "serve", "Serve a site; where the folder is empty or missing, make a new one first");
-    auto options = std::make_shared<ServeOptions>();
-    options->command = command;
+    auto options = std::make_shared<ServeOptions>(command);
     add_text(command, "folder", options->folder, "the folder of the site; the current one if not given");
-    command->add_option("--config", options->config_file, "a file of JSON with what else stands here");
-    command->add_flag("--check-config", options->check_only,
-                      "say whether the configuration is valid, and end");
-    command->add_option("--site", options->given.site, "the name of a site that is made");
-    command->add_option("--address", options->given.address, "the address to listen on (127.0.0.1)");
-    command->add_option("--port", options->given.port, "the port to listen on (8443); 0: any free one");
-    command->add_option("--host", options->given.hosts,
-                        "a name or address that clients use; may be repeated");
-    command->add_option("--cert", options->given.certificate,
-                        "a certificate (PEM) in place of a self-made one");
-    command->add_option("--key", options->given.key, "the key of that certificate (PEM)");
-    command->add_flag("--plain", options->given.plain, "HTTP without TLS, on this machine alone");
+    options->words.add("--site", "site", options->config.site, "the name of a site that is made");
+    options->words.add_service(options->config);
     on_run(command, outcome, [options, &outcome] { return serve(*options, outcome); });
 }
 

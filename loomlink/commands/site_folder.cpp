@@ -91,14 +91,4 @@ Result<OpenSite> open_site(const SiteFolder& folder, const ServeConfig& config) 
     return make_site(std::move(lock), folder, config.site);
 }
 
-Result<std::optional<net::TlsFiles>> tls_of(const SiteFolder& folder, const ServeConfig& config) {
-    if (config.plain) return std::optional<net::TlsFiles>();
-    if (!config.certificate.empty()) return std::optional(net::TlsFiles{config.certificate, config.key});
-    const net::TlsFiles own = folder.tls();
-    std::error_code trouble;
-    if (!fs::exists(own.certificate, trouble))
-        WEAVE_CHECK_OK(net::make_certificate(own, client_hosts(config)));
-    return std::optional(own);
-}
-
 }  // namespace weave::loomlink

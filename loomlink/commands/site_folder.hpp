@@ -8,7 +8,6 @@
 #include <loomlink/store/store.hpp>
 #include <loomlink/workflow/desk.hpp>
 #include <memory>
-#include <optional>
 #include <string>
 
 namespace weave::loomlink {
@@ -42,9 +41,5 @@ struct OpenSite {
 /// signed with it. Errors: a folder that is missing with the one above it (bad_input); refused:
 /// one that holds other things, or half a site.
 Result<OpenSite> open_site(const SiteFolder& folder, const ServeConfig& config);
-
-/// The certificate that is served with: the one of the configuration, or the folder's own, which is made
-/// where it is missing. Nothing where HTTP is plain.
-Result<std::optional<net::TlsFiles>> tls_of(const SiteFolder& folder, const ServeConfig& config);
 
 }  // namespace weave::loomlink

@@ -1,9 +1,4 @@
-#include <weave/core/file.hpp>
-#include <weave/core/json_reader.hpp>
 #include <weave/core/text.hpp>
-#include <weave/keys/private_file.hpp>
-#include <weave/keys/signer.hpp>
-#include <weave/net/certificate.hpp>
 
 #include <algorithm>
 #include <simd/commands/config.hpp>
@@ -16,24 +11,9 @@ namespace {
 
 constexpr std::uint64_t mib = std::uint64_t{1} << 20;
 
-std::vector<std::string> texts_of(JsonReader& reader, const char* key, std::size_t most) {
-    std::vector<std::string> texts;
-    if (!reader.has(key)) return texts;
-    const Json& list = reader.raw(key);
-    if (!list.is_array() || list.size() > most) {
-        reader.fail("must be a list of at most " + std::to_string(most) + " texts", key);
-        return texts;
-    }
-    for (std::size_t k = 0; k < list.size(); ++k) {
-        if (list[k].is_string()) texts.push_back(list[k].get<std::string>());
-        else reader.fail("must be a text", indexed(key, k));
-    }
-    return texts;
-}
-
 std::vector<PublicKey> keys_of(JsonReader& reader) {
     std::vector<PublicKey> keys;
-    const std::vector<std::string> texts = texts_of(reader, "access_keys", 8);
+    const std::vector<std::string> texts = reader.texts("access_keys", 8);
     for (std::size_t k = 0; k < texts.size(); ++k) {
         auto key = parse_public_key(texts[k]);
         if (key) keys.push_back(*key);
@@ -46,25 +26,15 @@ std::size_t count_of(JsonReader& reader, const char* key, std::int64_t low, std:
     return static_cast<std::size_t>(reader.integer(key, low, high, static_cast<std::int64_t>(usual)));
 }
 
-bool is_loopback(const std::string& address) {
-    return address == "::1" || address.starts_with("127.");
-}
-
 }  // namespace
 
-Result<ServeConfig> parse_config(std::string_view text) {
+Result<ServeConfig> parse_config(std::string_view text, const std::filesystem::path& folder) {
     constexpr std::int64_t most_mib = std::int64_t{1} << 30, week = 7 * 24 * 3600;
     WEAVE_TRY(const Json json, parse_json(text));
     JsonReader reader(json, "");
     ServeConfig config;
-    config.address = reader.text("address", config.address, 64);
-    config.port = static_cast<std::uint16_t>(reader.integer("port", 0, 65535, config.port));
-    config.hosts = texts_of(reader, "hosts", 32);
-    config.certificate = reader.text("certificate", std::string(), 4096);
-    config.key = reader.text("key", std::string(), 4096);
-    config.plain = reader.boolean("plain", config.plain);
-    config.unix_socket = reader.text("unix_socket", std::string(), 4096);
-    config.workers = count_of(reader, "workers", 1, 64, config.workers);
+    read_service(reader, folder, config);
+    config.unix_socket = path_member(reader, "unix_socket", folder);
     config.threads = count_of(reader, "threads", 0, 1024, 0);
     config.memory_bytes = static_cast<std::uint64_t>(reader.integer("memory_mib", 0, most_mib, 0)) * mib;
     config.sessions = count_of(reader, "sessions", 1, 10000, config.sessions);
@@ -75,42 +45,17 @@ Result<ServeConfig> parse_config(std::string_view text) {
     config.stall_seconds = reader.integer("stall_seconds", 1, week, config.stall_seconds);
     config.site = reader.text("site", std::string(), 200);
     config.access_keys = keys_of(reader);
-    config.evidence_key = reader.text("evidence_key", std::string(), 4096);
+    config.evidence_key = path_member(reader, "evidence_key", folder);
     reader.no_others();
     WEAVE_CHECK_OK(reader.status());
     WEAVE_CHECK_OK(check_config(config));
     return config;
 }
 
-Result<ServeConfig> load_config(const std::filesystem::path& file) {
-    constexpr std::uint64_t most_bytes = 65536;
-    WEAVE_TRY(const std::string text, read_file(file, most_bytes));
-    auto config = parse_config(text);
-    if (!config) return std::move(config).error().in(file.string());
-    for (auto* path : {&config->certificate, &config->key, &config->unix_socket, &config->evidence_key})
-        if (!path->empty() && path->is_relative()) *path = file.parent_path() / *path;
-    return config;
-}
-
 Status check_config(const ServeConfig& config) {
-    if (config.certificate.empty() != config.key.empty())
-        return bad_input("certificate and key go together", config.key.empty() ? "key" : "certificate");
-    if (config.plain && !config.certificate.empty()) return bad_input("goes with no certificate: HTTP without TLS needs none", "plain");
-    if (config.plain && !config.address.empty() && !is_loopback(config.address))
-        return bad_input("without TLS it serves this machine alone: 127.0.0.1 or ::1", "address");
+    WEAVE_CHECK_OK(check_service(config));
     if (!config.site.empty() && config.access_keys.empty()) return bad_input("counts for tokens of its keys: give access_keys too", "site");
     if (config.site.empty() && !config.access_keys.empty()) return bad_input("are of a site: give its name too", "access_keys");
-    return {};
-}
-
-Status check_places(const ServeConfig& config) {
-    if (!config.certificate.empty()) {
-        if (const auto read = net::read_certificate(config.certificate); !read) return Error(read.error()).under("certificate");
-        if (const Status closed = check_private_file(config.key); !closed) return Error(closed.error()).under("key");
-    }
-    if (!config.evidence_key.empty()) {
-        if (const auto signer = load_signer(config.evidence_key); !signer) return Error(signer.error()).under("evidence_key");
-    }
     return {};
 }
 

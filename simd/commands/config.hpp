@@ -1,5 +1,6 @@
 #pragma once
 
+#include <weave/command/service_config.hpp>
 #include <weave/core/result.hpp>
 #include <weave/keys/key.hpp>
 
@@ -11,17 +12,13 @@
 
 namespace weave::simd {
 
-/// How simd serves. As a file: one JSON object with these members, each of which may be missing, and no others. Paths count from
-/// the configuration's folder.
-struct ServeConfig {
-    std::string address = "127.0.0.1";   ///< `address`: to listen on; empty: on the Unix socket alone
-    std::uint16_t port = 8444;           ///< `port`; 0: any free one
-    std::vector<std::string> hosts;      ///< `hosts`: names and addresses that clients use; they stand in a self-made certificate
-    std::filesystem::path certificate;   ///< `certificate`: PEM; none: a self-made one in the folder
-    std::filesystem::path key;           ///< `key`: PEM
-    bool plain = false;                  ///< `plain`: HTTP without TLS, on loopback alone
+/// How simd serves. An empty `address`: on the Unix socket alone.
+struct ServeConfig : ServiceConfig {
+    ServeConfig() {
+        port = 8444;
+        workers = 8;
+    }
     std::filesystem::path unix_socket;   ///< `unix_socket`; none: `simd.sock` in the folder
-    std::size_t workers = 8;             ///< `workers`: threads that answer
     std::size_t threads = 0;             ///< `threads` that compute; 0: one a core
     std::uint64_t memory_bytes = 0;      ///< `memory_mib` for all sessions and jobs together; 0: four fifths of the machine's
     std::size_t sessions = 64;           ///< `sessions` in all
@@ -35,14 +32,10 @@ struct ServeConfig {
     std::filesystem::path evidence_key;  ///< `evidence_key`: file of `loomlink signer enrol`; none: nothing is signed
 };
 
-/// Errors name the member: unknown ones too, and what no single member shows.
-Result<ServeConfig> parse_config(std::string_view text);
-/// Reads a configuration file; errors name it.
-Result<ServeConfig> load_config(const std::filesystem::path& file);
+/// Errors name the member: unknown ones too, and what no single member shows. Paths count from `folder`.
+Result<ServeConfig> parse_config(std::string_view text, const std::filesystem::path& folder = {});
 /// What no single member shows. Errors name a member.
 Status check_config(const ServeConfig& config);
-/// Whether what it names is there and usable. Errors name a member.
-Status check_places(const ServeConfig& config);
 
 /// Threads and memory with what the machine has, where the configuration leaves that open.
 std::size_t threads_of(const ServeConfig& config);

@@ -5,7 +5,6 @@
 #include <weave/net/server.hpp>
 #include <weave/wire/evidence.hpp>
 
-#include <array>
 #include <chrono>
 #include <optional>
 #include <simd/commands/running_daemon.hpp>
@@ -48,28 +47,8 @@ Status check_folder(const DaemonFolder& folder) {
     return {};
 }
 
-/// The names and addresses that clients use.
-std::vector<std::string> client_hosts(const ServeConfig& config) {
-    std::vector<std::string> hosts = config.hosts;
-    if (hosts.empty()) {
-        std::array<char, 256> name{};
-        if (::gethostname(name.data(), name.size() - 1) == 0 && name[0] != '\0') hosts.emplace_back(name.data());
-        hosts.insert(hosts.end(), {"localhost", "127.0.0.1", "::1"});
-    }
-    const bool everywhere = config.address == "0.0.0.0" || config.address == "::";
-    if (!everywhere && std::ranges::find(hosts, config.address) == hosts.end()) hosts.push_back(config.address);
-    return hosts;
-}
-
-Result<std::optional<net::TlsFiles>> tls_of(const DaemonFolder& folder, const ServeConfig& config) {
-    if (config.plain || config.address.empty()) return std::optional<net::TlsFiles>();
-    if (!config.certificate.empty()) return std::optional(net::TlsFiles{config.certificate, config.key});
-    net::TlsFiles own{folder.certificate(), folder.key()};
-    if (!std::filesystem::exists(own.certificate)) {
-        WEAVE_TRY(const auto made, net::make_certificate(own, client_hosts(config)));
-        log(LogLevel::info, "made a certificate, SHA-256 " + made.fingerprint);
-    }
-    return std::optional(std::move(own));
+std::filesystem::path socket_of(const DaemonFolder& folder, const ServeConfig& config) {
+    return config.unix_socket.empty() ? folder.socket() : config.unix_socket;
 }
 
 /// What signs the evidence of jobs; null where nothing does.
@@ -103,18 +82,25 @@ DaemonSettings settings_of(const DaemonFolder& folder, const ServeConfig& config
 
 }  // namespace
 
+Status check_places(const DaemonFolder& folder, const ServeConfig& config) {
+    WEAVE_CHECK_OK(check_service_places(config));
+    WEAVE_CHECK_OK(check_unix_socket(socket_of(folder, config), config.unix_socket.empty()));
+    if (config.evidence_key.empty()) return {};
+    auto signer = load_signer(config.evidence_key);
+    return signer ? Status() : Status(std::move(signer).error().in("evidence_key"));
+}
+
 RunningDaemon::RunningDaemon(std::unique_ptr<Parts> parts) : m_parts(std::move(parts)) {}
 RunningDaemon::~RunningDaemon() = default;
 
 Result<std::unique_ptr<RunningDaemon>> RunningDaemon::start(const DaemonFolder& folder, const ServeConfig& config, const std::filesystem::path& program) {
-    WEAVE_CHECK_OK(check_places(config));
     ::umask(0077);  // designs are nobody else's, whoever made the folder
     WEAVE_CHECK_OK(make_service_folder(folder.path));
     WEAVE_CHECK_OK(check_folder(folder));
     WEAVE_TRY(FolderLock lock, FolderLock::take(folder.path, "simd"));
     auto parts = std::make_unique<Parts>(Parts{std::move(lock), folder, config, {}, std::make_shared<net::Metrics>(), {}, {}, {}, {}});
-    parts->socket = config.unix_socket.empty() ? folder.socket() : config.unix_socket;
-    WEAVE_TRY(parts->tls, tls_of(folder, config));
+    parts->socket = socket_of(folder, config);
+    WEAVE_TRY(parts->tls, tls_of(folder.tls(), config));
     DaemonSettings settings = settings_of(folder, config, program);
     settings.metrics = parts->metrics;
     WEAVE_TRY(settings.sign, signing(config));
@@ -122,12 +108,7 @@ Result<std::unique_ptr<RunningDaemon>> RunningDaemon::start(const DaemonFolder& 
     WEAVE_TRY(parts->daemon, Daemon::start(std::move(store), settings));
     parts->doorkeeper = std::make_unique<Doorkeeper>(TokenRules{config.site, config.access_keys, folder.tokens()});
     WEAVE_TRY(net::Router routes, service_routes({*parts->daemon, *parts->doorkeeper, parts->metrics, WEAVE_VERSION, config.workers}));
-    net::ServerOptions options;
-    options.address = config.address;
-    options.port = config.port;
-    options.tls = parts->tls;
-    options.hosts = config.hosts;
-    options.workers = config.workers;
+    net::ServerOptions options = server_options(config, parts->tls);
     options.metrics = parts->metrics;
     options.unix_socket = parts->socket;
     WEAVE_TRY(net::Server server, net::Server::start(std::move(routes), std::move(options)));
@@ -142,11 +123,7 @@ std::uint16_t RunningDaemon::port() const {
 Json RunningDaemon::introduction() const {
     const ServeConfig& config = m_parts->config;
     Json told{{"unix_socket", m_parts->socket.string()}, {"threads", threads_of(config)}, {"memory_bytes", memory_of(config)}};
-    if (!config.address.empty()) {
-        std::string host = config.plain ? config.address : client_hosts(config).front();
-        if (host.find(':') != std::string::npos) host = "[" + host + "]";
-        told["url"] = (config.plain ? "http://" : "https://") + host + ":" + std::to_string(port());
-    }
+    if (!config.address.empty()) told["url"] = origin_of(config, port());
     if (!m_parts->tls) return told;
     if (const auto certificate = net::read_certificate(m_parts->tls->certificate)) told["certificate_sha256"] = certificate->fingerprint;
     return told;

@@ -1,5 +1,6 @@
 #pragma once
 
+#include <weave/command/service_places.hpp>
 #include <weave/core/json.hpp>
 #include <weave/core/result.hpp>
 
@@ -16,9 +17,11 @@ struct DaemonFolder {
     [[nodiscard]] std::filesystem::path store() const { return path / "simd.db"; }
     [[nodiscard]] std::filesystem::path tokens() const { return path / "tokens"; }
     [[nodiscard]] std::filesystem::path socket() const { return path / "simd.sock"; }
-    [[nodiscard]] std::filesystem::path certificate() const { return path / "tls.pem"; }
-    [[nodiscard]] std::filesystem::path key() const { return path / "tls.key"; }
+    [[nodiscard]] net::TlsFiles tls() const { return {path / "tls.pem", path / "tls.key"}; }
 };
+
+/// Whether what the configuration names is there and usable, and can be listened on. Errors name the member.
+Status check_places(const DaemonFolder& folder, const ServeConfig& config);
 
 /// A daemon with its service. Ends with the object, at once; stop() before that puts everything away.
 class RunningDaemon {

@@ -1,3 +1,4 @@
+#include <weave/command/config_options.hpp>
 #include <weave/command/serving.hpp>
 #include <weave/core/log.hpp>
 #include <weave/core/text.hpp>
@@ -13,32 +14,11 @@ namespace weave::simd {
 namespace {
 
 struct ServeOptions {
-    std::string folder = ".", config_file;
-    bool check_only = false;
-    ServeConfig given;  ///< by options, in place of what the file says
-    CLI::App* command = nullptr;
-};
-
-/// The configuration of file and options together; options count more.
-Result<ServeConfig> whole_config(const ServeOptions& options) {
+    explicit ServeOptions(CLI::App* command) : words(command, "simd/README.md") {}
+    std::string folder = ".";
     ServeConfig config;
-    if (!options.config_file.empty()) {
-        WEAVE_TRY(config, load_config(options.config_file));
-    }
-    const auto take = [&](const char* option, auto member) {
-        if (options.command->count(option) > 0) config.*member = options.given.*member;
-    };
-    take("--address", &ServeConfig::address);
-    take("--port", &ServeConfig::port);
-    take("--host", &ServeConfig::hosts);
-    take("--cert", &ServeConfig::certificate);
-    take("--key", &ServeConfig::key);
-    take("--plain", &ServeConfig::plain);
-    take("--socket", &ServeConfig::unix_socket);
-    take("--threads", &ServeConfig::threads);
-    WEAVE_CHECK_OK(check_config(config));
-    return config;
-}
+    ConfigOptions words;
+};
 
 std::string words_of(const Json& started) {
     std::string words = "simd serves";
@@ -49,16 +29,18 @@ std::string words_of(const Json& started) {
     return words;
 }
 
-Status serve(const ServeOptions& options, CommandOutcome& outcome) {
-    WEAVE_TRY(const ServeConfig config, whole_config(options));
-    if (options.check_only) {
-        WEAVE_CHECK_OK(check_places(config));
-        outcome.answer({{"valid", true}}, "The configuration is valid.\n");
-        return {};
-    }
+Status serve(ServeOptions& options, CommandOutcome& outcome) {
     const EndingSignals signals;
+    const DaemonFolder folder{options.folder};
+    const auto check = [&](const ServeConfig& config) -> Status {
+        WEAVE_CHECK_OK(check_config(config));
+        return check_places(folder, config);
+    };
+    WEAVE_CHECK_OK(options.words.complete<ServeConfig>(options.config, parse_config, check));
+    WEAVE_CHECK_OK(check_service_folder(options.folder));
+    if (options.words.only_checks(outcome)) return {};
     log_to_stderr();
-    WEAVE_TRY(const auto daemon, RunningDaemon::start({options.folder}, config, std::filesystem::read_symlink("/proc/self/exe")));
+    WEAVE_TRY(const auto daemon, RunningDaemon::start(folder, options.config, std::filesystem::read_symlink("/proc/self/exe")));
     const Json started = daemon->introduction();
     outcome.answer(started, words_of(started));
     signals.wait();
@@ -73,19 +55,12 @@ Status serve(const ServeOptions& options, CommandOutcome& outcome) {
 void add_serve_command(CLI::App& app, CommandOutcome& outcome) {
     CLI::App* const command = add_command(app, outcome, "serve", "Serve from a folder; where it is missing, make it",
                                           "simd serve box --address 0.0.0.0 --host box.mill");
-    auto options = std::make_shared<ServeOptions>();
-    options->command = command;
+    auto options = std::make_shared<ServeOptions>(command);
+    ServeConfig& config = options->config;
     command->add_option("folder", options->folder, "the folder of its sessions and jobs; the current one if not given");
-    command->add_option("--config", options->config_file, "a file of JSON with what else stands here, and more (simd/README.md)");
-    command->add_flag("--check-config", options->check_only, "say whether the configuration is valid, and end");
-    command->add_option("--address", options->given.address, "the address to listen on (127.0.0.1); empty: on the Unix socket alone");
-    command->add_option("--port", options->given.port, "the port to listen on (8444); 0: any free one");
-    command->add_option("--host", options->given.hosts, "a name or address that clients use; may be repeated");
-    command->add_option("--cert", options->given.certificate, "a certificate (PEM) in place of a self-made one");
-    command->add_option("--key", options->given.key, "the key of that certificate (PEM)");
-    command->add_flag("--plain", options->given.plain, "HTTP without TLS, on this machine alone");
-    command->add_option("--socket", options->given.unix_socket, "the Unix socket for this machine (simd.sock in the folder)");
-    command->add_option("--threads", options->given.threads, "threads that compute; 0: one a core");
+    options->words.add_service(config);
+    options->words.add("--socket", "unix_socket", config.unix_socket, "the Unix socket for this machine (simd.sock in the folder)");
+    options->words.add("--threads", "threads", config.threads, "threads that compute; 0: one a core");
     on_run(command, outcome, [options, &outcome] { return serve(*options, outcome); });
 }
 

@@ -3,6 +3,9 @@
 #include <cstdio>
 #include <simd/daemon/room.hpp>
 #include <simd/service/page.hpp>
+#include <string>
+#include <utility>
+#include <vector>
 
 namespace weave::simd {
 
@@ -19,8 +22,11 @@ h1{font-size:1.4rem;margin:0}h2{font-size:1.05rem;margin:1.8rem 0 .5rem}p{margin
 .bar{height:.7rem;background:var(--line);border-radius:.35rem;overflow:hidden}.bar i{display:block;height:100%;background:var(--busy)}
 div.wide{overflow-x:auto;background:var(--card);border:1px solid var(--line);border-radius:.5rem}
 table{border-collapse:collapse;width:100%;font-variant-numeric:tabular-nums}
-th,td{text-align:right;padding:.4rem .8rem;border-top:1px solid var(--line);white-space:nowrap}tr:first-child th{border-top:0}
-th{font-weight:600;color:var(--soft)}th:nth-child(-n+2),td:nth-child(-n+2){text-align:left}
+th,td{text-align:right;vertical-align:bottom;padding:.4rem .6rem;border-top:1px solid var(--line)}td{white-space:nowrap}tr:first-child th{border-top:0}
+th,td::before{font-weight:600;color:var(--soft)}th:nth-child(-n+2),td:nth-child(-n+2){text-align:left}
+@media (max-width:60rem){body{padding:1.5rem 1rem}table,tbody{display:block}tr.heads{display:none}
+tr{display:grid;grid-template-columns:repeat(auto-fit,minmax(15rem,1fr));column-gap:2rem;padding:.4rem .8rem}tr+tr+tr{border-top:1px solid var(--line)}
+td,td:nth-child(-n+2){display:flex;justify-content:space-between;gap:1rem;text-align:right;padding:.1rem 0;border:0}td::before{content:attr(data-head)}}
 </style></head><body>
 )";
 
@@ -30,8 +36,28 @@ std::string number_text(double value, const char* form) {
     return text.data();
 }
 
-std::string cell(const std::string& text) {
-    return "<td>" + text + "</td>";
+/// A table with these heads. Each cell knows its own: on a narrow screen, where a row stands as a block, it is shown beside it.
+class Table {
+  public:
+    explicit Table(std::vector<std::string> heads) : m_heads(std::move(heads)) {
+        m_text = "<div class=\"wide\"><table><tr class=\"heads\">";
+        for (const std::string& name : m_heads) m_text += "<th>" + name + "</th>";
+        m_text += "</tr>\n";
+    }
+    void add_row(const std::vector<std::string>& cells) {
+        m_text += "<tr>";
+        for (std::size_t k = 0; k < cells.size(); ++k) m_text += "<td data-head=\"" + m_heads[k] + "\">" + cells[k] + "</td>";
+        m_text += "</tr>\n";
+    }
+    [[nodiscard]] std::string text() const { return m_text + "</table></div>\n"; }
+
+  private:
+    std::vector<std::string> m_heads;
+    std::string m_text;
+};
+
+std::string whole_text(const Json& number) {
+    return std::to_string(number.get<std::uint64_t>());
 }
 
 std::string residual_text(const Json& residual) {
@@ -40,31 +66,26 @@ std::string residual_text(const Json& residual) {
 
 std::string sessions_table(const Json& sessions) {
     if (sessions.empty()) return "<p>No session is open.</p>\n";
-    std::string table = "<div class=\"wide\"><table><tr><th>Session</th><th>State</th><th>Steps</th><th>Steps a second</th><th>Residual</th>"
-                        "<th>Points</th><th>Memory</th><th>Computed</th><th>Watched by</th></tr>\n";
+    Table table({"Session", "State", "Steps", "Steps a second", "Residual", "Points", "Memory", "Computed", "Watched by"});
     for (const Json& session : sessions) {
-        table += "<tr>" + cell(std::to_string(session.at("session").get<std::uint64_t>())) + cell(session.at("phase")) +
-                 cell(std::to_string(session.at("step").get<std::uint64_t>())) + cell(number_text(session.at("steps_per_second"), "%.0f")) +
-                 cell(residual_text(session.at("residual"))) + cell(std::to_string(session.at("points").get<std::uint64_t>())) +
-                 cell(memory_text(session.at("memory_bytes"))) + cell(time_text(session.at("computed_s"))) +
-                 cell(std::to_string(session.at("clients").get<std::uint64_t>())) + "</tr>\n";
+        table.add_row({whole_text(session.at("session")), session.at("phase"), whole_text(session.at("step")), number_text(session.at("steps_per_second"), "%.0f"),
+                       residual_text(session.at("residual")), whole_text(session.at("points")), memory_text(session.at("memory_bytes")),
+                       time_text(session.at("computed_s")), whole_text(session.at("clients"))});
     }
-    return table + "</table></div>\n";
+    return table.text();
 }
 
 std::string jobs_table(const Json& jobs) {
     if (jobs.empty()) return "<p>No job waits or runs.</p>\n";
-    std::string table = "<div class=\"wide\"><table><tr><th>Job</th><th>State</th><th>Steps</th><th>Residual</th><th>Points</th><th>Memory</th>"
-                        "<th>Computed</th><th>Still takes</th></tr>\n";
+    Table table({"Job", "State", "Steps", "Residual", "Points", "Memory", "Computed", "Still takes"});
     for (const Json& job : jobs) {
         const Json& left = job.at("left_s");
         const bool has_begun = job.at("points") > 0;
-        table += "<tr>" + cell(std::to_string(job.at("job").get<std::uint64_t>())) + cell(job.at("phase")) +
-                 cell(std::to_string(job.at("step").get<std::uint64_t>())) + cell(residual_text(job.at("residual"))) +
-                 cell(has_begun ? std::to_string(job.at("points").get<std::uint64_t>()) : "–") + cell(has_begun ? memory_text(job.at("memory_bytes")) : "–") +
-                 cell(has_begun ? time_text(job.at("computed_s")) : "–") + cell(left.is_null() ? "–" : "about " + time_text(left)) + "</tr>\n";
+        table.add_row({whole_text(job.at("job")), job.at("phase"), whole_text(job.at("step")), residual_text(job.at("residual")),
+                       has_begun ? whole_text(job.at("points")) : "–", has_begun ? memory_text(job.at("memory_bytes")) : "–",
+                       has_begun ? time_text(job.at("computed_s")) : "–", left.is_null() ? "–" : "about " + time_text(left)});
     }
-    return table + "</table></div>\n";
+    return table.text();
 }
 
 }  // namespace
@@ -85,8 +106,8 @@ std::string status_page(const Json& status, const std::string& version) {
     const double share = whole == 0 ? 0 : 100 * static_cast<double>(promised) / static_cast<double>(whole);
     std::string page = head;
     page += "<h1>simd " + version + "</h1><p>has served for " + time_text(status.at("up_s")) + " with " +
-            std::to_string(status.at("threads").get<std::uint64_t>()) + " threads; " + std::to_string(status.at("turns_waiting").get<std::uint64_t>()) +
-            " wait to compute; " + std::to_string(status.at("clients").get<std::uint64_t>()) + " connections</p>\n";
+            whole_text(status.at("threads")) + " threads; " + whole_text(status.at("turns_waiting")) +
+            " wait to compute; " + whole_text(status.at("clients")) + " connections</p>\n";
     page += "<h2>Memory</h2><div class=\"bar\"><i style=\"width:" + number_text(share, "%.1f") + "%\"></i></div><p>" + memory_text(promised) + " of " +
             memory_text(whole) + " promised</p>\n";
     page += "<h2>Sessions</h2>\n" + sessions_table(status.at("sessions"));

@@ -20,7 +20,8 @@ std::string error_of(const std::string& text, Read read) {
 TEST_CASE("a reader hands out members of every kind") {
     const Json json =
         parse_json(R"({"n": 1.5, "i": -3, "b": true, "t": "plain", "c": "#A0b1c2", "way": "right",
-        "list": [1, 2], "o": {"x": 1}, "os": [{"x": 1}, {"x": 2}], "named": {"toe": {"x": 4}, "heel": {"x": 5}}, "raw": [null]})")
+        "list": [1, 2], "o": {"x": 1}, "os": [{"x": 1}, {"x": 2}], "named": {"toe": {"x": 4}, "heel": {"x": 5}}, "raw": [null],
+        "names": ["loom", ""]})")
             .value();
     JsonReader reader(json, "here");
     REQUIRE(reader.number("n", {0, 2}) == 1.5);
@@ -30,6 +31,7 @@ TEST_CASE("a reader hands out members of every kind") {
     REQUIRE(reader.colour("c") == Colour{0xa0, 0xb1, 0xc2});
     REQUIRE(reader.choice("way", {"left", "right"}) == 1);
     REQUIRE(reader.integers("list", 1, 2) == std::vector<std::int64_t>{1, 2});
+    REQUIRE(reader.texts("names", 2) == std::vector<std::string>{"loom", ""});
     REQUIRE(reader.object("o").integer("x", 0, 9) == 1);
     REQUIRE(reader.objects("os")[1].integer("x", 0, 9) == 2);
     auto named = reader.object("named").named_objects();
@@ -44,6 +46,7 @@ TEST_CASE("a reader hands out members of every kind") {
     REQUIRE(reader.text("gone", "spare") == "spare");
     REQUIRE(reader.object("gone", true).integer("x", 0, 9, 3) == 3);
     REQUIRE(reader.objects("gone", true).empty());
+    REQUIRE(reader.texts("gone", 1).empty());
     REQUIRE(reader.status());
 }
 
@@ -55,6 +58,12 @@ TEST_CASE("the first error is kept, with the path to its member") {
             }) == "shoe.weave.a.b[1].c: must be a whole number from 0 to 10");
     REQUIRE(error_of(R"({"x": 1, "typo": 2})", [](auto& r) { r.integer("x", 0, 9), r.no_others(); }) ==
             "shoe.weave.typo: is not known here");
+    REQUIRE(error_of(R"({"x": "a"})", [](auto& r) { r.texts("x", 2); }) ==
+            "shoe.weave.x: must be a list of at most 2 texts");
+    REQUIRE(error_of(R"({"x": ["a", "b", "c"]})", [](auto& r) { r.texts("x", 2); }) ==
+            "shoe.weave.x: must be a list of at most 2 texts");
+    REQUIRE(error_of(R"({"x": ["a", 1]})", [](auto& r) { r.texts("x", 2); }) ==
+            "shoe.weave.x[1]: must be a text");
     REQUIRE(error_of("[1]", [](auto& r) { r.no_others(); }) == "shoe.weave: must be an object");
 }
 

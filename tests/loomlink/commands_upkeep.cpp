@@ -197,15 +197,15 @@ TEST_CASE("a configuration whose places are not there is found before the site i
     for (const auto& [text, where] : std::vector<std::pair<std::string, std::string>>{
              {R"({"plain":true,"address":"0.0.0.0"})", "address"},
              {R"({"certificate":"no.pem","key":"no.key"})", "certificate"},
-             {R"({"heads":"nowhere/heads.jsonl"})", "heads"},
-             {R"({"heads":"."})", "heads"}}) {
+             {R"({"port":0,"heads":"nowhere/heads.jsonl"})", "heads"},
+             {R"({"port":0,"heads":"."})", "heads"}}) {
         INFO(text);
         REQUIRE(write_file(file, text));
         const Ended ended = mill.run({"serve", mill.at("new"), "--config", file, "--check-config"});
         CHECK(ended.code == 3);
         CHECK_THAT(ended.err, Catch::Contains(where));
     }
-    REQUIRE(write_file(file, R"({"heads":"heads.jsonl"})"));
+    REQUIRE(write_file(file, R"({"port":0,"heads":"heads.jsonl"})"));
     CHECK(mill.run({"serve", mill.at("new"), "--config", file, "--check-config"}).code == 0);
     CHECK_FALSE(fs::exists(mill.at("new")));
 }

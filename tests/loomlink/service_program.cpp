@@ -90,17 +90,38 @@ TEST_CASE("init makes a site once") {
     CHECK(second.exit_code() == 4);
 }
 
-TEST_CASE("a configuration is checked without serving") {
+TEST_CASE("a configuration is checked without serving, and says whether it could be served") {
     const TemporaryFolder folder;
-    const std::string told = folder.path / "told.txt", config = folder.path / "loomlink.json";
-    REQUIRE(write_file(config, R"({"port":9000})"));
-    Program right({"serve", "--check-config", "--config", config, "--json"}, told);
-    CHECK(parse_json(right.line()).value() == Json{{"valid", true}});
-    CHECK(right.exit_code() == 0);
+    const std::string told = folder.path / "told.txt", config = folder.path / "loomlink.json", site = folder.path / "site";
+    const auto check = [&](std::vector<std::string> more = {}) {
+        more.insert(more.begin(), {"serve", site, "--check-config", "--json"});
+        Program program(more, told);
+        const Json answer = parse_json(program.line()).value();
+        return std::pair(answer, program.exit_code());
+    };
+    const auto refused = [&](const std::pair<Json, int>& ran, int code, const std::string& where) {
+        CHECK(ran.second == code);
+        CHECK(ran.first.at("error").at("where") == where);
+    };
+    REQUIRE(write_file(config, R"({"port":0})"));
+    CHECK(check({"--config", config}) == std::pair(Json{{"valid", true}}, 0));
+    CHECK_FALSE(std::filesystem::exists(site));
     REQUIRE(write_file(config, R"({"prot":9000})"));
-    Program wrong({"serve", "--check-config", "--config", config}, told);
-    CHECK(wrong.exit_code() == 3);
-    CHECK_THAT(read_file(told).value(), Catch::Contains("prot"));
-    Program mixed({"serve", "--check-config", "--plain", "--cert", "x.pem", "--key", "x.key"}, told);
-    CHECK(mixed.exit_code() == 3);
+    refused(check({"--config", config}), 3, config + ": prot");
+    refused(check({"--plain", "--cert", "x.pem", "--key", "x.key"}), 3, "--plain");
+    refused(check({"--port", "0", "--host", "a b"}), 3, "--host[0]");
+    REQUIRE(write_file(config, R"({"port":0,"heads":"none/heads.jsonl"})"));
+    refused(check({"--config", config}), 3, config + ": heads: " + (folder.path / "none/heads.jsonl").string());
+
+    Program serving({"serve", site, "--port", "0", "--plain", "--json"}, told);
+    const std::string url = parse_json(serving.line()).value().at("url");
+    const std::string place = url.substr(url.find("//") + 2), port = place.substr(place.find(':') + 1);
+    refused(check({"--port", port}), 5, "--port: " + place);
+    REQUIRE(write_file(config, R"({"port":)" + port + "}"));
+    refused(check({"--config", config}), 5, config + ": port: " + place);
+    Program second({"serve", (folder.path / "other").string(), "--config", config, "--json"}, told);
+    CHECK(second.exit_code() == 5);
+    CHECK_FALSE(std::filesystem::exists(folder.path / "other"));
+    serving.end(SIGTERM);
+    CHECK(serving.exit_code() == 0);
 }

@@ -159,7 +159,7 @@ TEST_CASE("a configuration that is wrong is refused at its place, by the program
         CHECK(ran.code == 3);
         CHECK(parse_json(ran.out).value().at("error").at("where") == file + ": " + wrong[k].second);
     }
-    for (const char* text : {"{}", R"({"address":"","memory_mib":100})"}) {
+    for (const char* text : {R"({"port":0})", R"({"address":"","memory_mib":100})"}) {
         REQUIRE(write_file(file, text));
         CHECK(run({"serve", "--config", file, "--check-config"}).code == 0);
     }
@@ -174,20 +174,45 @@ TEST_CASE("places that are missing or open to others are found before anything i
         const Ran ran = run({"serve", "--config", file, "--check-config", "--json"});
         INFO(config << ran.out << ran.err);
         CHECK(ran.code > 2);
-        CHECK(parse_json(ran.out).value().at("error").at("where").get<std::string>().find(where) != std::string::npos);
+        CHECK_THAT(parse_json(ran.out).value().at("error").at("where").get<std::string>(), Catch::StartsWith(file + ": " + where));
         CHECK(run({"serve", (folder.path / "box").string(), "--config", file}).code == ran.code);
         CHECK_FALSE(std::filesystem::exists(folder.path / "box"));
     };
-    const std::string both = R"({"certificate":"tls.pem","key":"tls.key"})";
-    check(both, "certificate");
+    const std::string both = R"({"port":0,"certificate":"tls.pem","key":"tls.key"})";
+    check(both, "certificate: " + tls.certificate.string());
     REQUIRE(net::make_certificate(tls, {"localhost"}));
     REQUIRE(run({"serve", "--config", file, "--check-config"}).code == 0);
     std::filesystem::permissions(tls.key, std::filesystem::perms(0644));
-    check(both, "key");
+    check(both, "key: " + tls.key.string());
     REQUIRE(write_file(tls.certificate, "no certificate"));
     check(both, "certificate");
-    check(R"({"evidence_key":"no.key"})", "evidence_key");
+    check(R"({"port":0,"evidence_key":"no.key"})", "evidence_key: " + (folder.path / "no.key").string());
+    check(R"({"hosts":["a b"]})", "hosts[0]");
+    check(R"({"port":0,"unix_socket":"none/simd.sock"})", "unix_socket: " + (folder.path / "none/simd.sock").string());
+    check(R"({"port":0,"unix_socket":")" + std::string(108, 'x') + R"("})", "unix_socket");
+    const Ran option = run({"serve", "--check-config", "--address", "", "--socket", (folder.path / "none" / "s").string(), "--json"});
+    CHECK_THAT(parse_json(option.out).value().at("error").at("where").get<std::string>(), Catch::StartsWith("--socket: "));
     CHECK(run({"serve", "--config", (folder.path / "none").string(), "--check-config"}).code != 0);
+}
+
+TEST_CASE("a check says that address or socket is taken, and that its folder cannot be made") {
+    const Box box(Json{{"address", "127.0.0.1"}, {"port", 0}, {"plain", true}});
+    const std::string url = box.introduction.at("url"), place = url.substr(url.find("//") + 2), port = place.substr(place.find(':') + 1);
+    const auto refused = [](const std::vector<std::string>& words, int code, const std::string& where) {
+        std::vector<std::string> all{"serve", "--check-config", "--json"};
+        all.insert(all.end(), words.begin(), words.end());
+        const Ran ran = run(all);
+        INFO(ran.out << ran.err);
+        CHECK(ran.code == code);
+        CHECK(parse_json(ran.out).value().at("error").at("where") == where);
+    };
+    const std::string other = (box.folder().parent_path() / "other").string(), far = (box.folder() / "no" / "such").string();
+    refused({other, "--port", port}, 5, "--port: " + place);
+    refused({box.folder().string(), "--address", ""}, 4, "unix_socket: " + (box.folder() / "simd.sock").string());
+    refused({far, "--address", ""}, 3, far);
+    CHECK(run({"serve", other, "--check-config", "--address", ""}).code == 0);
+    CHECK_FALSE(std::filesystem::exists(other));
+    CHECK(box.status().at("sessions").empty());
 }
 
 TEST_CASE("a folder is served by one daemon, and only where it can be written") {

@@ -10,8 +10,19 @@
 #include <string_view>
 #include <sys/file.h>
 #include <sys/stat.h>
+#include <unistd.h>
 
 namespace weave {
+
+namespace {
+
+/// For the system's reason (errno).
+Error cannot_make(const std::filesystem::path& folder) {
+    if (errno != ENOENT) return file_fault(folder, "make the folder");
+    return bad_input("cannot be made, since the folder above it is missing; make that first, or mend the name", folder.string());
+}
+
+}  // namespace
 
 void log_to_stderr() {
     set_log_sink([](LogLevel level, std::string_view message) {
@@ -53,8 +64,15 @@ Result<FolderLock> FolderLock::take(const std::filesystem::path& folder, const s
 
 Status make_service_folder(const std::filesystem::path& folder) {
     if (::mkdir(folder.c_str(), 0700) == 0 || errno == EEXIST) return {};
-    if (errno != ENOENT) return file_fault(folder, "make the folder");
-    return bad_input("cannot be made, since the folder above it is missing; make that first, or mend the name", folder.string());
+    return cannot_make(folder);
+}
+
+Status check_service_folder(const std::filesystem::path& folder) {
+    std::error_code trouble;
+    std::filesystem::path whole = std::filesystem::absolute(folder, trouble);
+    if (!whole.has_filename()) whole = whole.parent_path();  // `box/` is `box`
+    if (std::filesystem::exists(whole, trouble) || ::access(whole.parent_path().c_str(), W_OK | X_OK) == 0) return {};
+    return cannot_make(folder);
 }
 
 }  // namespace weave

@@ -43,4 +43,7 @@ class FolderLock {
 /// where nobody looks for it.
 Status make_service_folder(const std::filesystem::path& folder);
 
+/// Whether it is there, or could be made so.
+Status check_service_folder(const std::filesystem::path& folder);
+
 }  // namespace weave

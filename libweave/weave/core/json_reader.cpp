@@ -160,6 +160,24 @@ std::vector<std::int64_t> JsonReader::integers(const std::string& key, std::int6
     return values;
 }
 
+std::vector<std::string> JsonReader::texts(const std::string& key, std::size_t most) {
+    std::vector<std::string> values;
+    const Json* member = find(key, false);
+    if (member == nullptr) return values;
+    if (!member->is_array() || member->size() > most) {
+        fail("must be a list of at most " + std::to_string(most) + " texts", key);
+        return values;
+    }
+    for (std::size_t i = 0; i < member->size(); ++i) {
+        const Json& item = (*member)[i];
+        if (item.is_string())
+            values.push_back(item.get<std::string>());
+        else
+            fail("must be a text", key + "[" + std::to_string(i) + "]");
+    }
+    return values;
+}
+
 JsonReader JsonReader::object(const std::string& key, bool optional) {
     const Json* member = find(key, !optional);
     return {member != nullptr ? *member : empty_object, place(key), m_error};

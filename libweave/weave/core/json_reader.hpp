@@ -46,6 +46,8 @@ class JsonReader {
     std::size_t choice(const std::string& key, const std::vector<std::string>& names,
                        std::optional<std::size_t> fallback = {});
     std::vector<std::int64_t> integers(const std::string& key, std::int64_t low, std::int64_t high);
+    /// A list of at most `most` strings. Missing: empty.
+    std::vector<std::string> texts(const std::string& key, std::size_t most);
 
     /// A member that is an object. Missing: an empty object if `optional`, else an error.
     JsonReader object(const std::string& key, bool optional = false);

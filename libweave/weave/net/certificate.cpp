@@ -184,12 +184,16 @@ Result<CertificateFacts> facts_of(X509* certificate) {
 Status check_names(const std::vector<std::string>& names) {
     if (names.empty()) return Error{ErrorCode::usage, "a certificate needs a host name or an address", {}};
     for (const std::string& name : names)
-        if (!is_address(name) && !is_host_name(name))
+        if (!can_be_certified(name))
             return Error{ErrorCode::usage, "is neither a host name nor an address", on_one_line(name)};
     return {};
 }
 
 }  // namespace
+
+bool can_be_certified(const std::string& name) {
+    return is_address(name) || is_host_name(name);
+}
 
 Result<CertificateFacts> make_certificate(const TlsFiles& files, const std::vector<std::string>& names) {
     WEAVE_CHECK_OK(check_names(names));

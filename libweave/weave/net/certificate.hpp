@@ -22,6 +22,9 @@ struct CertificateFacts {
     std::chrono::system_clock::time_point from, until;
 };
 
+/// Whether a certificate can stand for it: a host name, or an IP address.
+bool can_be_certified(const std::string& name);
+
 /// Makes a key (ECDSA P-256) and a certificate for these host names and IP addresses, signed by itself and
 /// valid for 825 days. Both files appear whole or not at all; the key first, readable by its owner alone.
 /// Errors: usage for no name or one that is neither host name nor address; refused if either file is there

@@ -38,9 +38,9 @@ Status load_files(asio::ssl::context& context, const TlsFiles& files) {
     return {};
 }
 
-Result<std::optional<asio::ssl::context>> tls_context(const ServerOptions& options) {
+Result<std::optional<asio::ssl::context>> tls_context(const std::optional<TlsFiles>& files) {
     std::optional<asio::ssl::context> context;
-    if (!options.tls) return context;
+    if (!files) return context;
     context.emplace(asio::ssl::context::tls_server);
     SSL_CTX* const native = context->native_handle();
     const bool set = SSL_CTX_set_min_proto_version(native, TLS1_2_VERSION) == 1 &&
@@ -48,16 +48,27 @@ Result<std::optional<asio::ssl::context>> tls_context(const ServerOptions& optio
     if (!set) return system_fault("cannot set up TLS");
     SSL_CTX_set_options(native,
                         SSL_OP_NO_RENEGOTIATION | SSL_OP_NO_COMPRESSION | SSL_OP_CIPHER_SERVER_PREFERENCE);
-    WEAVE_CHECK_OK(load_files(*context, *options.tls));
+    WEAVE_CHECK_OK(load_files(*context, *files));
     return context;
+}
+
+Result<asio::ip::address> address_of(const std::string& text) {
+    error_code error;
+    const asio::ip::address address = asio::ip::make_address(text, error);
+    if (error) return Error{ErrorCode::usage, "is no address to listen on", text};
+    return address;
+}
+
+/// An address and a port as people write them: `127.0.0.1:80`, `[::1]:80`.
+std::string text_of(const Tcp::endpoint& endpoint) {
+    const std::string address = endpoint.address().to_string();
+    return (endpoint.address().is_v6() ? "[" + address + "]" : address) + ":" + std::to_string(endpoint.port());
 }
 
 /// Where to listen by TCP, if at all.
 Result<std::optional<Tcp::endpoint>> endpoint_of(const ServerOptions& options) {
     if (options.address.empty() && !options.unix_socket.empty()) return std::optional<Tcp::endpoint>();
-    error_code error;
-    const asio::ip::address address = asio::ip::make_address(options.address, error);
-    if (error) return Error{ErrorCode::usage, "is no address to listen on", options.address};
+    WEAVE_TRY(const asio::ip::address address, address_of(options.address));
     if (!options.tls && !options.plain_beyond_loopback && !address.is_loopback())
         return Error{ErrorCode::usage, "plain HTTP is served on loopback alone; give a certificate",
                      options.address};
@@ -90,8 +101,7 @@ struct Door {
         if (!error) acceptor.bind(endpoint, error);
         if (!error) acceptor.listen(asio::socket_base::max_listen_connections, error);
         if (!error) return {};
-        return system_fault("cannot listen: " + error.message(),
-                            endpoint.address().to_string() + " port " + std::to_string(endpoint.port()));
+        return system_fault("cannot listen: " + error.message(), text_of(endpoint));
     }
     Status open_unix(const std::filesystem::path& path) {
         WEAVE_TRY(UnixListener opened, UnixListener::open(path));
@@ -113,6 +123,17 @@ struct Door {
 };
 
 }  // namespace
+
+Status check_listening(const std::string& address, std::uint16_t port) {
+    WEAVE_TRY(const asio::ip::address place, address_of(address));
+    asio::io_context io;
+    return Door(io.get_executor()).open_tcp(Tcp::endpoint(place, port));
+}
+
+Status check_tls(const TlsFiles& files) {
+    WEAVE_CHECK_OK(tls_context(files));
+    return {};
+}
 
 /// A server that listens: its threads and what they share.
 class Server::Running {
@@ -224,7 +245,7 @@ Server::~Server() {
 Result<Server> Server::start(Router router, ServerOptions options) {
     WEAVE_CHECK_OK(check_limits(options));
     WEAVE_TRY(const std::optional<Tcp::endpoint> endpoint, endpoint_of(options));
-    WEAVE_TRY(auto tls, tls_context(options));
+    WEAVE_TRY(auto tls, tls_context(options.tls));
     try {
         auto running = std::make_unique<Running>(std::move(router), std::move(options));
         if (Status started = running->start(std::move(tls), endpoint); !started) {

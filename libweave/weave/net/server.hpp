@@ -51,6 +51,13 @@ struct ServerOptions {
     std::shared_ptr<Metrics> metrics;  ///< told of requests and connections, if given
 };
 
+/// Whether a server can listen there: it listens, and lets go at once. Errors: usage for an address that is none;
+/// system where address or port cannot be had.
+Status check_listening(const std::string& address, std::uint16_t port);
+
+/// Whether a server can be known by these files. Errors name the one that is wrong.
+Status check_tls(const TlsFiles& files);
+
 /// An HTTP/1.1 and WebSocket server. Requests are read whole before a worker sees them, and answers are
 /// written without one, so a slow client holds no worker. TLS is 1.2 or newer.
 class Server {

@@ -47,7 +47,7 @@ int stream_socket() {
 /// Two servers that found the same dead socket could each replace it, the second the living one of the first:
 /// so one starts after the other.
 Status wait_for_turn(const Descriptor& folder, const std::filesystem::path& path) {
-    if (folder.number() < 0) return cannot_listen(path, errno);
+    if (folder.number() < 0) return system_fault("cannot open its folder: " + in_words(errno), path.string());
     for (int k = 0; k < turn_tries; ++k) {
         if (::flock(folder.number(), LOCK_EX | LOCK_NB) == 0) return {};
         if (errno != EWOULDBLOCK && errno != EINTR) return cannot_listen(path, errno);

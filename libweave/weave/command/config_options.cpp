@@ -1,0 +1,45 @@
+#include <weave/command/config_options.hpp>
+
+#include <algorithm>
+#include <utility>
+
+namespace weave {
+
+ConfigOptions::ConfigOptions(CLI::App* command, const std::string& more) : m_command(command) {
+    command->add_option("--config", m_file, "a file of JSON with what else stands here, and more (" + more + ")");
+    command->add_flag("--check-config", m_check_only,
+                      "say whether it could be served so: what is configured, its files, and that address and port are free; and end");
+}
+
+void ConfigOptions::add_service(ServiceConfig& config) {
+    add("--address", "address", config.address, "the address to listen on (" + config.address + ")");
+    add("--port", "port", config.port, "the port to listen on (" + std::to_string(config.port) + "); 0: any free one");
+    add("--host", "hosts", config.hosts, "a name or address that clients use; may be repeated");
+    add("--cert", "certificate", config.certificate, "a certificate (PEM) in place of a self-made one");
+    add("--key", "key", config.key, "the key of that certificate (PEM)");
+    m_command->add_flag_callback(
+        "--plain", [this, &config] { give("--plain", "plain", [&config] { config.plain = true; }); },
+        "HTTP without TLS, on this machine alone");
+}
+
+bool ConfigOptions::only_checks(CommandOutcome& outcome) const {
+    if (m_check_only) outcome.answer({{"valid", true}}, "The configuration is valid.\n");
+    return m_check_only;
+}
+
+void ConfigOptions::give(const std::string& option, const std::string& member, std::function<void()> set) {
+    m_given.push_back(std::move(set));
+    m_options[member] = option;
+}
+
+Error ConfigOptions::told(Error error) const {
+    const std::size_t end = std::min(error.where.find_first_of(".[:"), error.where.size());
+    const auto option = m_options.find(error.where.substr(0, end));
+    if (option != m_options.end()) {
+        error.where.replace(0, end, option->second);
+        return error;
+    }
+    return m_file.empty() ? error : std::move(error).in(m_file);
+}
+
+}  // namespace weave
