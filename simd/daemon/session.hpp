@@ -61,7 +61,7 @@ class Session final : public Task {
     [[nodiscard]] std::optional<Clock::duration> left_alone() const {
         return m_viewers.empty() ? std::optional(Clock::now() - m_seen) : std::nullopt;
     }
-    [[nodiscard]] wire::SessionSummary summary() const;
+    [[nodiscard]] wire::SessionSummary summary(std::chrono::seconds expire) const;
     [[nodiscard]] Json status(bool with_names) const;
 
     // ---- What clients ask; each answers ----
@@ -120,6 +120,7 @@ class Session final : public Task {
         bool is_shown = false;    ///< has caught up, and is shown frames
     };
 
+    [[nodiscard]] std::optional<double> left_s(std::chrono::seconds expire) const;
     void refuse_creation(Error error, std::optional<double> wait_s);
     Status become_accepted();
     [[nodiscard]] Error gone() const;

@@ -15,6 +15,11 @@ constexpr std::size_t events_at_once = 1000;
 /// Faults of the worker, none of which got further than the one before, after which a session is given up.
 constexpr std::size_t most_faults = 3;
 
+/// The end of a session is told to whoever comes, but not for ever.
+std::chrono::seconds kept_after_end(std::chrono::seconds expire) {
+    return std::max<std::chrono::seconds>(expire, std::chrono::hours(1));
+}
+
 Error no_disk(const Error& error) {
     return {ErrorCode::system, "the disk does not take it: " + error.message, ""};
 }
@@ -50,8 +55,16 @@ Status Session::remember_events() {
     }
 }
 
-wire::SessionSummary Session::summary() const {
-    return {m_number, m_title, m_phase, m_step, m_step > 0 ? std::optional(m_residual) : std::nullopt, std::max<std::uint64_t>(1, m_points), m_viewers.size()};
+wire::SessionSummary Session::summary(std::chrono::seconds expire) const {
+    const auto residual = m_step > 0 ? std::optional(m_residual) : std::nullopt;
+    return {m_number, m_title, m_phase, m_step, residual, std::max<std::uint64_t>(1, m_points), m_viewers.size(), m_has_ended, left_s(expire)};
+}
+
+/// Until it is ended, or one that has ended is forgotten, if nobody comes; nothing while somebody is attached.
+std::optional<double> Session::left_s(std::chrono::seconds expire) const {
+    if (!m_viewers.empty()) return {};
+    const auto until = m_has_ended ? std::max(m_seen, m_ended_at) + kept_after_end(expire) : m_seen + expire;
+    return std::max(0.0, std::chrono::duration<double>(until - Clock::now()).count());
 }
 
 Json Session::status(bool with_names) const {
@@ -267,9 +280,7 @@ void Session::tick(Clock::time_point now, std::chrono::seconds expire) {
     constexpr std::chrono::seconds to_take_the_end_in{10};
     for (Viewer& viewer : m_viewers) bring_up(viewer);
     if (m_has_ended && !m_viewers.empty() && now - m_ended_at > to_take_the_end_in) say_goodbye();
-    // Its end is told to whoever comes, but not for ever.
-    const auto kept = std::max<Clock::duration>(expire, std::chrono::hours(1));
-    if (m_has_ended && m_viewers.empty() && is_written() && now - std::max(m_seen, m_ended_at) > kept) m_is_over = true;
+    if (m_has_ended && m_viewers.empty() && is_written() && now - std::max(m_seen, m_ended_at) > kept_after_end(expire)) m_is_over = true;
     if (!is_accepted() || m_has_ended) return;
     if (!m_worker && !m_is_put_away && m_around.crew.room().left() >= expected_bytes(m_points)) take_up();
     if (m_viewers.empty() && now - m_seen > expire) end(wire::Why::expired, m_step, {}, Json::object());

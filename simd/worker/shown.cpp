@@ -5,6 +5,18 @@
 
 namespace weave::simd {
 
+namespace {
+
+/// The radius that a yarn is led to: a layout holds for all frames of the way there.
+double shown_radius(const sim::PlanRun& now, std::size_t yarn) {
+    constexpr double least = 1e-9, most = 1e9;  // that a layout can tell
+    const sim::Plan& plan = now.plan();
+    const System system = plan.curves.yarns[plan.curve_of[yarn]].system;
+    return std::clamp(plan.scene.yarns[yarn].radius_mm * now.parameters().wanted(system).radius, least, most);
+}
+
+}  // namespace
+
 wire::Layout layout_of(const sim::Run& run) {
     const sim::PlanRun& now = run.now();
     const sim::Plan& plan = now.plan();
@@ -21,7 +33,7 @@ wire::Layout layout_of(const sim::Run& run) {
         shown.system = curve.system;
         shown.number = curve.number;
         shown.beam = warp ? design.warp.beam_order.at(curve.number) : 0;
-        shown.radius_mm = yarn.radius_mm;
+        shown.radius_mm = shown_radius(now, y);
         shown.colour = warp ? colour_of_end(design, curve.number) : design.weft.yarns[curve.type].colour;
         shown.points = yarn.control.size();
         shown.is_periodic = yarn.is_periodic;
@@ -36,7 +48,7 @@ wire::Frame frame_of(const sim::Run& run) {
     wire::Frame frame;
     frame.head.size_mm = now.scene().period_mm;
     double smallest = 1e300;
-    for (const sim::SimYarn& yarn : now.scene().yarns) smallest = std::min(smallest, yarn.radius_mm);
+    for (std::size_t y = 0; y < now.scene().yarns.size(); ++y) smallest = std::min({smallest, now.scene().yarns[y].radius_mm, shown_radius(now, y)});
     frame.head.quantum_mm = wire::quantum_for(smallest);
     frame.head.is_coarse = run.is_coarse();
     for (const std::vector<Vec3>& points : now.control()) {

@@ -6,7 +6,7 @@
 
 namespace weave::simd {
 
-/// What the yarns of a run's frames are now; its numbers of session, event and layout stay 1.
+/// What the yarns of a run's frames are, with the radii that they are led to; its numbers of session, event and layout stay 1.
 wire::Layout layout_of(const sim::Run& run);
 
 /// The control points of a run as they lie; the head has its size and quantum, all else is left to the caller.

@@ -317,7 +317,7 @@ void Work::tell_event(const wire::ServerMessage& event, Json more) {
 
 void Work::tell_layout() {
     const sim::LedParameters& parameters = m_run->now().parameters();
-    const Laid laid{m_run->level(), parameters.now(System::warp).radius, parameters.now(System::weft).radius};
+    const Laid laid{m_run->level(), parameters.wanted(System::warp).radius, parameters.wanted(System::weft).radius};
     if (m_order.is_job || m_laid == laid) return;
     m_laid = laid;
     wire::Layout layout = layout_of(*m_run);
@@ -355,7 +355,7 @@ void Work::show(bool is_last) {
     if (is_last && std::exchange(m_shown_last, true)) return;
     if (!is_last) m_shown_last = false;
     m_last_shown = Clock::now();
-    tell_layout();  // parameters move on with the leg
+    tell_layout();
     wire::Frame frame = frame_of(*m_run);
     frame.head.session = m_order.number;
     frame.head.number = ++m_frame;

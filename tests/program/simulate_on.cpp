@@ -142,7 +142,7 @@ TEST_CASE("what a server cannot do is refused by name before anything is sent") 
     Mill mill;
     mill.shop.must({"simulate", "d.weave", "-o", "before.yarns"});
     const std::vector<std::vector<std::string>> wishes{{"--starts", "3"}, {"--symmetry"}, {"--resume", "before.yarns"}, {"--seed", "1"}, {"--threads", "2"},
-                                                       {"--backend", "cuda"}, {"--backend", "cpu"}};
+                                                       {"--backend", "cuda"}};
     for (const auto& wish : wishes) {
         std::vector<std::string> words{"simulate", "d.weave", "-o", "d.yarns"};
         words.insert(words.end(), wish.begin(), wish.end());
@@ -161,6 +161,18 @@ TEST_CASE("what a server cannot do is refused by name before anything is sent") 
     CHECK(mill.simd.look([](ScriptedSimd& s) { return s.count_of<wire::Submit>(); }) == 0);
     // And so is what the protocol does not take.
     mill.shop.refused(mill.on({"simulate", "d.weave", "-o", "x", "--residual", "2"}), 2, {"simulation.residual"});
+}
+
+TEST_CASE("a server computes on the CPU, and is asked for that or for the best there is") {
+    Mill mill;
+    for (const char* backend : {"cpu", "auto"}) {
+        INFO(backend);
+        mill.shop.must({"simulate", "d.weave", "-o", "here.yarns", "--backend", backend});
+        mill.shop.must(mill.on({"simulate", "d.weave", "-o", "there.yarns", "--backend", backend}));
+    }
+    mill.shop.refused(mill.on({"simulate", "d.weave", "-o", "there.yarns", "--backend", "abacus"}), 2, {"--backend abacus"});
+    mill.shop.refused(mill.on({"simulate", "d.weave", "-o", "there.yarns", "--backend", "cuda"}), 2, {"--backend cuda", "cpu or auto"});
+    CHECK(mill.simd.look([](ScriptedSimd& s) { return s.count_of<wire::Submit>(); }) == 2);
 }
 
 TEST_CASE("broken connections and a restarted server change nothing but the time it takes") {
@@ -238,6 +250,7 @@ TEST_CASE("Ctrl-C cancels the job and leaves its yarns as they lay, as on this m
     CHECK(answer.at("interrupted") == true);
     CHECK(answer.at("left_undone").at(0) == "coming to rest");
     CHECK(answer.at("converged") == false);
+    CHECK(answer.at("error").at("exit") == 4);
     CHECK(read_yarns(mill.shop.get("d.yarns")));
     CHECK_FALSE(mill.shop.has("d.evidence"));
     CHECK(mill.settled() == std::set<std::uint64_t>{1});
@@ -293,6 +306,7 @@ TEST_CASE("what a server gives is believed only so far as it fits together") {
     refused("not one that this program knows", [](JobResult& result) { result.report["residual"] = "small"; });
     refused("not one that this program knows", [](JobResult& result) { result.report["fidelity"] = "\x1b[31m"; });
     refused("something else than was asked for", [](JobResult& result) { result.report["flips"] = Json::array({{{"pick", 1}, {"end", 1}, {"done", true}, {"tried", true}, {"flip_seconds", 0}, {"settle_seconds", 0}}}); });
+    refused("not one that this program knows", [](JobResult& result) { result.report["flips"] = {{"first", {{"pick", 1}, {"end", 1}, {"done", true}, {"tried", true}, {"flip_seconds", 0}, {"settle_seconds", 0}}}}; });
     refused("", [&](JobResult& result) { result.yarns = "no yarns", rehash(result); });
     refused("version: is missing", [](JobResult& result) { result.evidence = R"({"format":"weave-signed-evidence"})"; });
     refused("another than was told", [](JobResult& result) { *result.evidence += "\n"; });
@@ -328,7 +342,95 @@ TEST_CASE("what the server signed is written beside, byte by byte") {
     CHECK_THAT(none.err, Contains("no key to sign"));
     CHECK_THAT(none.out, Contains("e.yarns, at rest"));
     CHECK((mill.shop.has("e.yarns") && !mill.shop.has("e.evidence")));
+    const Json told = mill.shop.json(mill.on({"simulate", "d.weave", "-o", "e.yarns", "--evidence", "e.evidence"}), 4);
+    CHECK(told.at("converged") == true);
+    CHECK((told.at("error").at("kind") == "refused" && told.at("error").at("exit") == 4));
+    CHECK_THAT(told.at("error").at("message").get<std::string>(), Contains("no key to sign"));
+    CHECK_THAT(told.at("error").at("where").get<std::string>(), Contains("job 3"));
     mill.shop.refused(mill.on({"simulate", "d.weave", "-o", "e.yarns", "--evidence", "d.weave"}), 2, {"d.weave"});
+}
+
+TEST_CASE("evidence that a server will not sign is refused before it is given a job") {
+    Mill mill;
+    mill.simd.signs = false;
+    const std::vector<std::string> words = mill.on({"simulate", "d.weave", "-o", "d.yarns", "--evidence", "d.evidence"});
+    mill.shop.refused(words, 4, {mill.simd.place().name, "no key to sign", "--evidence"});
+    CHECK(mill.simd.look([](ScriptedSimd& s) { return s.count_of<wire::Submit>(); }) == 0);
+    CHECK(mill.shop.names() == std::set<std::string>{"d.weave"});
+    CHECK(mill.shop.json(mill.on({"jobs"})).at("signs") == false);
+    mill.shop.must(mill.on({"simulate", "d.weave", "-o", "d.yarns"}));
+    mill.simd.version = 1;  // which does not say
+    mill.shop.must(words);
+    CHECK(mill.shop.has("d.evidence"));
+    CHECK_FALSE(mill.shop.json(mill.on({"jobs"})).contains("signs"));
+}
+
+TEST_CASE("a job that is fetched later leaves the flipped design too, made of the design that it was made of") {
+    Mill mill;
+    mill.shop.must({"tile", "d.weave", "--x", "3", "--y", "3", "-o", "large.weave"});
+    mill.shop.must({"tile", "d.weave", "--x", "2", "--y", "2", "-o", "other.weave"});
+    mill.shop.must(mill.on({"simulate", "large.weave", "-o", "there.yarns", "--flip", "1,1", "--save-design", "there.weave"}));
+    const auto left = [&](const std::vector<std::string>& more) {  // a job that is still there, as its files could not be written
+        std::vector<std::string> words{"simulate", "large.weave", "-o", "no/such/folder.yarns"};
+        words.insert(words.end(), more.begin(), more.end());
+        CHECK(mill.shop.run(mill.on(words)).exit == 5);
+    };
+    left({"--flip", "1,1"});
+    left({});
+    const auto fetch = [&](const char* job, const std::string& of, const std::string& saved) {
+        return mill.on({"jobs", "fetch", job, "-o", "later.yarns", "--of", of, "--save-design", saved});
+    };
+    mill.shop.refused(fetch("2", "other.weave", "later.weave"), 3, {"other.weave", "not the design", "job 2"});
+    mill.shop.refused(fetch("2", "missing.weave", "later.weave"), 3, {"missing.weave"});
+    mill.shop.refused(fetch("2", "large.weave", "later.yarns"), 2, {"later.yarns"});
+    mill.shop.refused(fetch("3", "large.weave", "later.weave"), 2, {"--save-design later.weave", "job 3", "given none"});
+    mill.shop.refused(mill.on({"jobs", "fetch", "2", "-o", "later.yarns", "--save-design", "later.weave"}), 2, {"--of"});
+    mill.shop.refused(mill.on({"jobs", "fetch", "2", "-o", "later.yarns", "--of", "large.weave"}), 2, {"--save-design"});
+    CHECK((!mill.shop.has("later.yarns") && !mill.shop.has("later.weave")));
+    CHECK(mill.settled() == std::set<std::uint64_t>{1});
+    CHECK(mill.shop.json(fetch("2", "large.weave", "later.weave")).at("saved_design") == "later.weave");
+    CHECK(mill.shop.get("later.weave") == mill.shop.get("there.weave"));
+    CHECK(mill.settled() == std::set<std::uint64_t>{1, 2});
+    const Design saved = load_design(mill.shop.path("later.weave")).value();
+    CHECK(read_yarns(mill.shop.get("later.yarns")).value().design_sha256 == design_sha256(saved));
+}
+
+TEST_CASE("a flip that was not made leaves the design as it was, and is not written") {
+    Mill mill;
+    mill.simd.work = [](const wire::Submit& submit) { return relaxed(submit, 2); };  // over before its flips
+    CHECK(mill.shop.run(mill.on({"simulate", "d.weave", "-o", "no/such/folder.yarns", "--flip", "1,1"})).exit == 5);
+    const Ended fetched = mill.shop.run(mill.on({"jobs", "fetch", "1", "-o", "d.yarns", "--of", "d.weave", "--save-design", "flipped.weave"}));
+    INFO(fetched.err);
+    CHECK(fetched.exit == 1);
+    CHECK_THAT(fetched.out, Contains("flipped.weave is NOT written: no flip was made"));
+    CHECK((mill.shop.has("d.yarns") && !mill.shop.has("flipped.weave")));
+}
+
+TEST_CASE("sessions are listed, and closed for good") {
+    Mill mill;
+    mill.simd.session = {wire::ServerMessage(wire::PhaseChanged{1, 1, 0, wire::Phase::at_rest}),
+                         wire::ServerMessage(wire::Ended{1, 2, 20, wire::Why::closed, {}, {{"converged", true}}})};
+    CHECK(mill.shop.must(mill.on({"sessions"})).out == "no sessions\n");
+    for (int k = 0; k < 3; ++k) {
+        auto client = wire::Client::connect(mill.simd.place(), "test").value();
+        REQUIRE(client.ask(wire::Create{wire::new_request_id(), "{}", {}}, std::chrono::seconds(20)));
+    }
+    CHECK(mill.shop.must(mill.on({"sessions"})).out ==
+          "1  cloth: at rest, residual 5.00e-01 after 20 steps, 136 points, nobody attached, ended in some 60 min\n"
+          "2  cloth: ended, residual 5.00e-01 after 20 steps, 136 points, nobody attached, forgotten in some 25 h\n"
+          "3  cloth: at rest, residual 5.00e-01 after 20 steps, 136 points, 2 clients attached\n");
+    const Json list = mill.shop.json(mill.on({"sessions"}));
+    CHECK(list.at("server") == mill.simd.place().name);
+    CHECK((list.at("sessions").at(0).at("left_s") == 3600 && list.at("sessions").at(0).at("ended") == false && list.at("sessions").at(2).at("attached") == 2));
+    CHECK(mill.shop.must(mill.on({"sessions", "close", "1"})).out == "session 1 is closed, after 20 steps\n");
+    const Json closed = mill.shop.json(mill.on({"sessions", "close", "3"}));
+    CHECK((closed.at("session") == 3 && closed.at("why") == "closed" && closed.at("step") == 20 && closed.at("report").at("converged") == true));
+    CHECK(mill.simd.look([](ScriptedSimd& s) { return s.acknowledged; }) == std::map<std::uint64_t, std::uint64_t>{{1, 2}, {3, 2}});
+    mill.shop.refused(mill.on({"sessions", "close", "1"}), 2, {"session 1", "no such session"});
+    mill.shop.refused(mill.on({"sessions", "close", "0"}), 2, {"0"});
+    mill.shop.refused({"sessions"}, 2, {"--on HOST"});
+    mill.simd.version = 1;
+    CHECK(mill.shop.must(mill.on({"sessions"})).out == "2  cloth: at rest, residual 5.00e-01 after 20 steps, 136 points, nobody attached\n");
 }
 
 TEST_CASE("jobs are listed, fetched and cancelled") {
@@ -351,5 +453,6 @@ TEST_CASE("jobs are listed, fetched and cancelled") {
     CHECK(fetched.at("yarns_sha256") == sha256_hex(mill.shop.get("d.yarns")));
     CHECK(mill.settled() == std::set<std::uint64_t>{1});
     CHECK(mill.shop.must(mill.on({"jobs"})).out == "no jobs\n");
+    CHECK_THAT(mill.shop.must({"jobs", "fetch", "--help"}).out, Contains("--of") && Contains("--save-design") && Contains("--evidence"));
     mill.shop.refused({"jobs"}, 2, {"--on HOST"});
 }

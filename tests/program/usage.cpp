@@ -25,6 +25,8 @@ const std::map<std::string, std::vector<std::string>> commands{
     {"diff", {"BEFORE", "AFTER", "--out"}},
     {"flip", {"FILE", "--pick", "--end", "--out"}},
     {"export", {"FILE", "--loom", "--out"}},
+    {"jobs", {"--on", "fetch", "cancel"}},
+    {"sessions", {"--on", "close"}},
 };
 
 }  // namespace

@@ -151,6 +151,11 @@ TEST_CASE("a machine with a key signs what a job found, of the very design, scen
     REQUIRE(save_signer_note(keys.path / "box.key", {key.id(), "the mill", "box"}));
     const Box box(Json{{"evidence_key", (keys.path / "box.key").string()}});
     wire::Follower follower = box.follower();
+    const auto signs = [](wire::Follower& asking) { return wire::answer_of<wire::JobList>(asking.ask(wire::ListJobs{wire::new_request_id()}, 10s)).value().signs; };
+    CHECK(signs(follower) == true);
+    const Box without;
+    wire::Follower there = without.follower();
+    CHECK(signs(there) == false);
     const Design design = find_sample("plain")->make();
     const std::uint64_t job = submit(follower, write_document(design), at(sim::Fidelity::standard));
     const wire::JobEnded ended = end_of(follower, job);

@@ -51,6 +51,25 @@ TEST_CASE("a session is seen to relax, takes changes, and ends with a report") {
     }
 }
 
+TEST_CASE("radii that are led a long way are laid out once, as they will be") {
+    const Box box;
+    Followed session(box, document_of("layer-to-layer"), at(sim::Fidelity::standard));
+    const wire::Layout before = session.all<wire::Layout>().front();
+    session.change(wire::Parameters{{.strain = {}, .stiffness_scale = {}, .radius_scale = 0.3}, {}});  // seven parts of the way
+    REQUIRE(session.next<wire::Applied>());
+    session.run();
+    REQUIRE(session.until_rest());
+    const std::vector<wire::Layout> layouts = session.all<wire::Layout>();
+    REQUIRE(layouts.size() == 2);
+    CHECK(session.newest->head.layout == layouts.back().layout);
+    CHECK(layouts.back().seq == session.all<wire::Applied>().front().seq + 1);
+    const Yarns yarns = read_yarns(session.yarns()).value();
+    for (std::size_t y = 0; y < before.yarns.size(); ++y) {
+        CHECK(layouts.back().yarns[y].radius_mm == Approx((before.yarns[y].system == System::warp ? 0.3 : 1) * before.yarns[y].radius_mm));
+        CHECK(layouts.back().yarns[y].radius_mm == yarns.yarns[y].radius_mm);
+    }
+}
+
 TEST_CASE("a session goes so many steps, pauses, and goes on as one that never paused") {
     const Box box;
     Followed whole(box, document_of("layer-to-layer"), at(sim::Fidelity::standard)), pieces(box, document_of("layer-to-layer"), at(sim::Fidelity::standard));
@@ -196,6 +215,10 @@ TEST_CASE("a session to which nobody is attached ends after a while, and says so
     }
     std::this_thread::sleep_for(2500ms);
     auto client = wire::Client::connect(box.place(), "test").value();
+    const auto list = wire::answer_of<wire::SessionList>(client.ask(wire::ListSessions{wire::new_request_id()}, 10s)).value();
+    REQUIRE(list.sessions.size() == 1);
+    CHECK(list.sessions.front().ended == true);
+    CHECK((list.sessions.front().left_s.value() > 3500 && list.sessions.front().left_s.value() < 3600));  // an hour, if nobody comes
     REQUIRE(wire::answer_of<wire::Accepted>(client.ask(wire::Attach{wire::new_request_id(), number, 0, 0}, 10s)));
     bool expired = false;
     for (auto received = client.receive(500ms); received && *received && !expired; received = client.receive(500ms)) {
@@ -204,6 +227,24 @@ TEST_CASE("a session to which nobody is attached ends after a while, and says so
         expired = ended != nullptr && ended->why == wire::Why::expired;
     }
     CHECK(expired);
+}
+
+TEST_CASE("a list tells who looks on, and until when a session stays where nobody does") {
+    const Box box(Json{{"expire_seconds", 1000}});
+    wire::Follower other = box.follower();
+    const auto listed = [&] {
+        const auto list = wire::answer_of<wire::SessionList>(other.ask(wire::ListSessions{wire::new_request_id()}, 10s)).value();
+        REQUIRE(list.sessions.size() == 1);
+        return list.sessions.front();
+    };
+    {
+        Followed session(box, document_of("plain"), at(sim::Fidelity::draft));
+        const wire::SessionSummary seen = listed();
+        CHECK((seen.attached == 1 && seen.ended == false && !seen.left_s));
+    }
+    wire::SessionSummary alone = listed();
+    for (int tries = 0; alone.attached > 0 && tries < 100; ++tries) std::this_thread::sleep_for(20ms), alone = listed();
+    CHECK((alone.attached == 0 && alone.ended == false && alone.left_s.value_or(0) > 900 && alone.left_s.value_or(2000) <= 1000));
 }
 
 TEST_CASE("whoever attaches gets all events that are kept, more than one connection may have waiting") {

@@ -50,6 +50,8 @@ class ScriptedSimd {
     Work work;                             ///< of every job
     bool holds_jobs = false;               ///< jobs run on until they are cancelled, or let_go() is called
     bool holds_queue = false;              ///< jobs wait likewise
+    bool signs = true;                     ///< says that it has a key to sign with
+    std::uint64_t version = wire::protocol_version;  ///< of the protocol, the newest that it knows
     std::map<std::size_t, Mishap> mishaps;
     std::size_t break_every = 0;           ///< every so many messages the connection ends with break_code instead
     std::uint16_t break_code = 1001;
@@ -225,7 +227,7 @@ class ScriptedSimd {
         if constexpr (requires { message.request; }) answer(line, message.request, wire::Accepted{message.request, {}, {}, {}});
     }
     void hear_one(Line& line, const wire::Hello&) {
-        say(line, wire::Welcome{1, "scripted", "dora"});
+        say(line, wire::Welcome{version, "scripted", "dora"});
         line.greeted = true;
         for (const auto& [number, job] : m_jobs) {
             if (job.end && !acknowledged_jobs.contains(number)) say(line, *job.end);
@@ -248,6 +250,18 @@ class ScriptedSimd {
         last = std::max(last, known.seq);
         if (last >= events()) m_forgotten.insert(known.session);
     }
+    void hear_one(Line& line, const wire::ListSessions& list) {
+        wire::SessionList sessions{list.request, {}};
+        for (std::uint64_t number = 1; number <= m_sessions; ++number) {
+            if (m_forgotten.contains(number)) continue;
+            const bool ended = number % 2 == 0;
+            wire::SessionSummary one{number, "cloth", wire::Phase::at_rest, 20, 0.5, 136, number == 3 ? 2U : 0U, ended, ended ? 90000 : 3600};
+            if (number == 3) one.left_s.reset();
+            if (version < 2) one.ended.reset(), one.left_s.reset();
+            sessions.sessions.push_back(one);
+        }
+        answer(line, list.request, sessions);
+    }
     void hear_one(Line& line, const wire::Submit& submit) {
         const std::uint64_t number = m_jobs.size() + 1;
         Job& job = m_jobs[number];
@@ -257,7 +271,7 @@ class ScriptedSimd {
         if (!holds_jobs && !holds_queue) finish(number, job);
     }
     void hear_one(Line& line, const wire::ListJobs& list) {
-        wire::JobList jobs{list.request, {}};
+        wire::JobList jobs{list.request, {}, version >= 2 ? std::optional(signs) : std::nullopt};
         for (const auto& [number, job] : m_jobs)
             if (!acknowledged_jobs.contains(number)) jobs.jobs.push_back(state_of(number, job));
         answer(line, list.request, jobs);

@@ -117,6 +117,7 @@ void add_loom_commands(CLI::App& app, CommandOutcome& outcome);        // check,
 void add_simulation_commands(CLI::App& app, CommandOutcome& outcome);  // simulate, export-yarns
 void add_inspection_commands(CLI::App& app, CommandOutcome& outcome);  // inspect, compare
 void add_job_commands(CLI::App& app, CommandOutcome& outcome);         // jobs
+void add_session_commands(CLI::App& app, CommandOutcome& outcome);     // sessions
 void add_bench_commands(CLI::App& app, CommandOutcome& outcome);       // bench
 
 }  // namespace weave::program

@@ -1,12 +1,13 @@
 // Jobs on a server: what there are, their yarns, their end.
 
 #include "command.hpp"
+#include "on_server.hpp"
 #include "remote_job.hpp"
 #include "simulate_ending.hpp"
+#include "simulate_wish.hpp"
 
-#include <weave/command/server_wish.hpp>
 #include <weave/core/file.hpp>
-#include <weave/core/text.hpp>
+#include <weave/design/document.hpp>
 
 #include <algorithm>
 #include <chrono>
@@ -19,46 +20,25 @@ namespace weave::program {
 
 namespace {
 
-struct Wish {
-    ServerWish server;
-    std::uint64_t job = 0;
+struct Wish : NumberedWish {
     std::string out, evidence;
+    std::string design, save_design;  ///< what the job was made of; where it goes with the flips that were made
 };
 
-Result<wire::Follower> server_of(const Wish& wish) {
-    if (wish.server.host.empty()) return Error{ErrorCode::usage, "say on which server: --on HOST", ""};
-    WEAVE_TRY(const wire::ServerPlace place, place_of(wish.server));
-    return connected(place);
-}
-
-Result<wire::JobList> jobs_of(wire::Follower& follower) {
-    return wire::answer_of<wire::JobList>(follower.ask(wire::ListJobs{wire::new_request_id()}, answer_patience));
-}
-
 std::string line_of(const Json& job) {
-    const std::string phase = job.at("phase");
     std::string facts;
     char text[100];
     if (job.contains("place")) facts += ", place " + std::to_string(job.at("place").get<std::uint64_t>()) + " in the queue";
     if (job.contains("wait_s")) std::snprintf(text, sizeof text, ", begins in some %.0f s", job.at("wait_s").get<double>()), facts += text;
-    if (job.contains("residual")) {
-        std::snprintf(text, sizeof text, ", residual %.2e after %llu steps", job.at("residual").get<double>(),
-                      static_cast<unsigned long long>(job.at("step").get<std::uint64_t>()));
-        facts += text;
-    }
     if (job.contains("left_s")) std::snprintf(text, sizeof text, ", to go some %.0f s", job.at("left_s").get<double>()), facts += text;
-    return std::to_string(job.at("job").get<std::uint64_t>()) + "  " + on_one_line(job.at("title").get<std::string>()) + ": " + phase + facts + "\n";
+    return beginning_of(job, "job", job.at("phase").get<std::string>()) + facts;
 }
 
-Status list(CommandOutcome& outcome, const Wish& wish) {
+Status list(CommandOutcome& outcome, const ServerWish& wish) {
     WEAVE_TRY(wire::Follower follower, server_of(wish));
     WEAVE_TRY(wire::JobList jobs, jobs_of(follower));
     follower.close();
-    WEAVE_TRY(Json told, parse_json(wire::write_message(wire::ServerMessage(std::move(jobs)))));
-    std::string words = told.at("jobs").empty() ? "no jobs\n" : "";
-    for (const Json& job : told.at("jobs")) words += line_of(job);
-    outcome.answer({{"server", follower.place().name}, {"jobs", told.at("jobs")}}, words);
-    return {};
+    return tell_list(outcome, follower, "jobs", std::move(jobs), line_of);
 }
 
 /// The end of a job that has ended, which every connection is told of.
@@ -78,62 +58,100 @@ Result<wire::JobEnded> end_of(wire::Follower& follower, std::uint64_t job) {
     return system_fault("the server does not tell how it ended", where);
 }
 
-Status fetch(CommandOutcome& outcome, const Wish& wish) {
+/// What is read or written besides is not written over; the design may get its flips in place.
+Status check_files(const Wish& wish) {
     WEAVE_CHECK_OK(keep_apart(wish.evidence, wish.out, "the file for the yarns (-o)"));
-    WEAVE_CHECK_OK(keep_apart(wish.out, wish.server.token_file, "the file of the token"));
-    WEAVE_TRY(wire::Follower follower, server_of(wish));
-    WEAVE_TRY(const wire::JobEnded ended, end_of(follower, wish.job));
-    if (has_yarns(ended)) {
-        WEAVE_TRY(const RemoteYarns fetched, fetch_yarns(follower, ended));
-        std::optional<std::string> evidence;
-        if (!wish.evidence.empty()) {
-            WEAVE_TRY(evidence, fetch_evidence(follower, ended));
-        }
-        WEAVE_CHECK_OK(write_file(wish.out, fetched.bytes));
-        if (evidence) WEAVE_CHECK_OK(write_file(wish.evidence, *evidence));
-    }
-    WEAVE_CHECK_OK(follower.acknowledge_job(wish.job, answer_patience));
-    follower.close();
-    if (!has_yarns(ended)) return reason_of(ended);
-    Json answer = ended.report;
-    const auto undone = left_undone(answer, {answer.value("flips", Json::array()).size(), 0, false});
-    if (!undone.empty()) answer["left_undone"] = undone;
-    const Json report = answer;
-    answer["file"] = wish.out;
-    answer["job"] = wish.job;
-    answer["server"] = follower.place().name;
-    const Design none;
-    return tell_ending(outcome, report, std::move(answer), {none, {}, ""});
-}
-
-Status cancel(CommandOutcome& outcome, const Wish& wish) {
-    WEAVE_TRY(wire::Follower follower, server_of(wish));
-    const auto accepted = wire::answer_of<wire::Accepted>(follower.ask(wire::Cancel{wire::new_request_id(), wish.job}, answer_patience));
-    follower.close();
-    if (!accepted) return Error{accepted.error()}.in(follower.place().name + ": " + name_of(wish.job));
-    outcome.answer({{"server", follower.place().name}, {"job", wish.job}}, name_of(wish.job) + " is cancelled; weave jobs fetch gets its yarns as they lay, if it had begun\n");
+    WEAVE_CHECK_OK(keep_apart(wish.save_design, wish.out, "the file for the yarns (-o)"));
+    WEAVE_CHECK_OK(keep_apart(wish.evidence, wish.save_design, "the design that is written"));
+    for (const std::string& file : {wish.out, wish.evidence}) WEAVE_CHECK_OK(keep_apart(file, wish.design, "the design that is read"));
+    for (const std::string& file : {wish.out, wish.evidence, wish.save_design}) WEAVE_CHECK_OK(keep_apart(file, wish.server.token_file, "the file of the token"));
     return {};
 }
 
-CLI::App* add_job_command(CLI::App* jobs, CommandOutcome& outcome, const std::shared_ptr<Wish>& wish, const std::string& name, const std::string& help) {
-    CLI::App* command = add_command(*jobs, outcome, name, help);
-    command->add_option("N", wish->job, "the number of the job")->transform(between(std::int64_t{1}, static_cast<std::int64_t>(wire::most_number)))->required();
-    add_server_options(command, wish->server);
-    return command;
+/// The flips that a report tells of, where the job was given any.
+Result<std::vector<Flip>> flips_of(const Json& report, const std::string& where) {
+    std::vector<Flip> flips;
+    for (const Json& told : report.value("flips", Json::array())) {
+        const auto number = [&](const char* name) { return told.contains(name) && told.at(name).is_number_unsigned() ? told.at(name).get<std::size_t>() : 0; };
+        if (number("pick") == 0 || number("end") == 0 || !told.contains("weft_over") || !told.at("weft_over").is_boolean())
+            return bad_input("its report does not tell its flips as this program knows them", where);
+        flips.push_back({number("pick") - 1, number("end") - 1, told.at("weft_over").get<bool>()});
+    }
+    return flips;
+}
+
+/// The design that the job was made of, which with the flips that were made is the one of its yarns.
+Result<FlippedDesign> design_of(const Design& design, const Wish& wish, const wire::JobEnded& ended, const Yarns& yarns, const std::string& server) {
+    if (wish.save_design.empty()) return FlippedDesign{design, {}, ""};
+    WEAVE_TRY(const std::vector<Flip> flips, flips_of(ended.report, server + ": " + name_of(ended.job)));
+    if (flips.empty()) return usage_error("without flips the design stays as it is, and " + name_of(ended.job) + " was given none", "--save-design " + wish.save_design);
+    const auto made = with_flips_made(design, flips, ended.report);
+    if (!made || design_sha256(*made) != yarns.design_sha256)
+        return bad_input("is not the design that " + name_of(ended.job) + " was made of: with the flips that were made it is another than that of its yarns (SHA-256)", wish.design);
+    return FlippedDesign{design, flips, wish.save_design};
+}
+
+/// The files that a job leaves, and how it ended.
+Status keep(CommandOutcome& outcome, wire::Follower& follower, const wire::JobEnded& ended, const Design& design, const Wish& wish) {
+    const std::string& server = follower.place().name;
+    WEAVE_TRY(const RemoteYarns fetched, fetch_yarns(follower, ended));
+    WEAVE_TRY(const FlippedDesign flipped, design_of(design, wish, ended, fetched.yarns, server));
+    std::optional<std::string> evidence;
+    if (!wish.evidence.empty()) {
+        WEAVE_TRY(evidence, fetch_evidence(follower, ended));
+    }
+    WEAVE_CHECK_OK(write_file(wish.out, fetched.bytes));
+    if (evidence) WEAVE_CHECK_OK(write_file(wish.evidence, *evidence));
+    Json report = ended.report;
+    const auto undone = left_undone(report, {report.value("flips", Json::array()).size(), 0, false});
+    if (!undone.empty()) report["left_undone"] = undone;
+    Json answer = report;
+    answer["file"] = wish.out;
+    answer["job"] = wish.number;
+    answer["server"] = server;
+    return tell_ending(outcome, report, std::move(answer), flipped);
+}
+
+Status fetch(CommandOutcome& outcome, const Wish& wish) {
+    WEAVE_CHECK_OK(check_files(wish));
+    Design design;
+    if (!wish.design.empty()) {
+        WEAVE_TRY(design, load_design(wish.design));
+    }
+    WEAVE_TRY(wire::Follower follower, server_of(wish.server));
+    WEAVE_TRY(const wire::JobEnded ended, end_of(follower, wish.number));
+    if (has_yarns(ended)) WEAVE_CHECK_OK(keep(outcome, follower, ended, design, wish));
+    settle(outcome, follower, wish.number);
+    return has_yarns(ended) ? Status() : Status(reason_of(ended));
+}
+
+Status cancel(CommandOutcome& outcome, const NumberedWish& wish) {
+    WEAVE_TRY(wire::Follower follower, server_of(wish.server));
+    const auto accepted = wire::answer_of<wire::Accepted>(follower.ask(wire::Cancel{wire::new_request_id(), wish.number}, answer_patience));
+    follower.close();
+    if (!accepted) return Error{accepted.error()}.in(follower.place().name + ": " + name_of(wish.number));
+    outcome.answer({{"server", follower.place().name}, {"job", wish.number}}, name_of(wish.number) + " is cancelled; weave jobs fetch gets its yarns as they lay, if it had begun\n");
+    return {};
 }
 
 }  // namespace
 
 void add_job_commands(CLI::App& app, CommandOutcome& outcome) {
     const auto wish = std::make_shared<Wish>();
-    CLI::App* jobs = add_command(app, outcome, "jobs", "Your jobs on a server: list them (--on HOST), fetch or cancel one");
-    add_server_options(jobs, wish->server);
-    on_run(jobs, outcome, [=, &outcome] { return jobs->get_subcommands().empty() ? list(outcome, *wish) : Status(); });
-    CLI::App* fetching = add_job_command(jobs, outcome, wish, "fetch", "Fetch the yarns of a job that has ended; then the server forgets it (exit 1: as weave simulate)");
+    CLI::App* jobs = add_list_command(app, outcome, wish->server, "jobs", "Your jobs on a server: list them (--on HOST), fetch or cancel one",
+                                      [=, &outcome] { return list(outcome, wish->server); });
+    const auto add = [&](const std::string& name, const std::string& help) { return add_numbered_command(jobs, outcome, *wish, name, help, "the number of the job"); };
+    CLI::App* fetching = add("fetch", "Fetch the yarns of a job that has ended; then the server forgets it (exit 1: as weave simulate)");
     fetching->add_option("-o,--out", wish->out, "the .yarns file to write")->type_name("FILE")->required()->check(output_name());
     fetching->add_option("--evidence", wish->evidence, "the file for what the server signed of it")->type_name("FILE");
+    CLI::Option* of = fetching->add_option("--of", wish->design, "the .weave file that the job was made of, for --save-design")->type_name("FILE");
+    fetching->add_option("--save-design", wish->save_design, "the .weave file to write: that design with the flips that were made, if any was")
+        ->needs(of)
+        ->type_name("FILE")
+        ->check(output_name());
+    of->needs(fetching->get_option("--save-design"));
     on_run(fetching, outcome, [=, &outcome] { return fetch(outcome, *wish); });
-    CLI::App* cancelling = add_job_command(jobs, outcome, wish, "cancel", "End a job; one that had begun keeps its yarns as they lay");
+    CLI::App* cancelling = add("cancel", "End a job; one that had begun keeps its yarns as they lay");
     on_run(cancelling, outcome, [=, &outcome] { return cancel(outcome, *wish); });
 }
 

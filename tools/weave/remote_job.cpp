@@ -30,6 +30,7 @@ bool is_plain(const Json& value) {
 /// Whether a report has what every report of `weave simulate` has.
 bool is_report(const Json& report) {
     try {
+        if (report.contains("flips") && !report.at("flips").is_array()) return false;
         return is_plain(report) && !ending_in_words(report).empty() && (is_good(report) || !report.empty()) &&
                report.at("yarns_sha256").is_string() && report.at("ending").is_string();
     } catch (const Json::exception&) {
@@ -41,6 +42,22 @@ bool is_report(const Json& report) {
 
 Result<wire::Follower> connected(const wire::ServerPlace& place) {
     return wire::Follower::connect(place, "weave " WEAVE_VERSION, server_patience);
+}
+
+Result<wire::JobList> jobs_of(wire::Follower& follower) {
+    return wire::answer_of<wire::JobList>(follower.ask(wire::ListJobs{wire::new_request_id()}, answer_patience));
+}
+
+Status check_signs(wire::Follower& follower) {
+    WEAVE_TRY(const wire::JobList jobs, jobs_of(follower));
+    if (jobs.signs.value_or(true)) return {};
+    return Error{ErrorCode::refused, "the server has no key to sign evidence with (--evidence)", follower.place().name};
+}
+
+void settle(CommandOutcome& outcome, wire::Follower& follower, std::uint64_t job) {
+    const Status settled = follower.acknowledge_job(job, answer_patience);
+    if (!settled) outcome.note(settled.error().text() + "; " + name_of(job) + " is still kept there");
+    follower.close();
 }
 
 std::string name_of(std::uint64_t job) {
@@ -67,10 +84,16 @@ Result<RemoteYarns> fetch_yarns(wire::Follower& follower, const wire::JobEnded& 
     return RemoteYarns{std::move(bytes), std::move(*yarns)};
 }
 
+Status check_signed(const wire::Follower& follower, const wire::JobEnded& ended) {
+    if (ended.evidence) return {};
+    const bool is_done = ended.phase == wire::JobPhase::done;
+    return Error{ErrorCode::refused, is_done ? "the server had no key to sign evidence with" : "only of a job that is done there is evidence",
+                 follower.place().name + ": " + name_of(ended.job)};
+}
+
 Result<std::string> fetch_evidence(wire::Follower& follower, const wire::JobEnded& ended) {
     const std::string where = follower.place().name + ": " + name_of(ended.job);
-    if (!ended.evidence)
-        return Error{ErrorCode::refused, ended.phase == wire::JobPhase::done ? "the server has no key to sign evidence with" : "only of a job that is done there is evidence", where};
+    WEAVE_CHECK_OK(check_signed(follower, ended));
     WEAVE_TRY(std::string bytes, follower.download(wire::job_evidence(ended.job), most_evidence_bytes));
     if (canonical_json(*ended.evidence) != bytes) return bad_input("its evidence is another than was told", where);
     auto evidence = wire::read_evidence(bytes);

@@ -164,6 +164,7 @@ Status run_simulation(CommandOutcome& outcome, const SimulateWish& wish) {
     if (!wish.server.host.empty()) {
         WEAVE_TRY(const wire::ServerPlace place, place_of(wish.server));
         WEAVE_TRY(server, connected(place));
+        if (!wish.evidence.empty()) WEAVE_CHECK_OK(check_signs(*server));
     }
     WEAVE_TRY(const Cloth cloth, load_cloth(outcome, wish.file));
     const Block& block = *cloth.evaluation.block;
@@ -208,7 +209,7 @@ void add_simulate(CLI::App& app, CommandOutcome& outcome) {
         ->check(positive_number())
         ->type_name("N");
     command->add_option("--set", wish->set, "a number of the scene for this run, such as warp.strain=1.02 or friction=0.2")->type_name("NAME=N");
-    command->add_option("--backend", wish->backend, "what computes: cpu (if nothing is said) or cuda")->type_name("WORD");
+    command->add_option("--backend", wish->backend, "what computes: auto (if nothing is said: the best there is), cpu or cuda; a server has cpu")->type_name("WORD");
     command->add_option("--boundary", wish->boundaries, "the rim for this run: x= or y= with periodic, frozen, free or relaxing:FORCE")
         ->type_name("RIM")
         ->allow_extra_args(false);
@@ -246,7 +247,7 @@ void add_simulate(CLI::App& app, CommandOutcome& outcome) {
     on_run(command, outcome, [=, &outcome] {
         wish->no_plan_option = given_of(command, {"--out", "--solver", "--residual", "--backend", "--flip", "--save-design", "--resume", "--start-from", "--starts",
                                                   "--symmetry", "--seed", "--steps", "--seconds", "--threads", "--on"});
-        wish->no_server_option = given_of(command, {"--resume", "--starts", "--symmetry", "--seed", "--threads", "--backend"});
+        wish->no_server_option = given_of(command, {"--resume", "--starts", "--symmetry", "--seed", "--threads"});
         return run_simulation(outcome, *wish);
     });
 }

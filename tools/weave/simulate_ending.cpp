@@ -90,20 +90,19 @@ std::string rest_in_words(const Json& report) {
            report.at("fidelity").get<std::string>();
 }
 
-/// The design with the flips that were made, in the scene of its file.
-Status save_flipped(Design design, const std::vector<Flip>& flips, const Json& report, const std::string& file) {
-    for (std::size_t k = 0; k < report.at("flips").size(); ++k) {
-        if (report.at("flips").at(k).at("done").get<bool>())
-            WEAVE_CHECK_OK(apply_edit(design, PutFlip{design.root, flips[k]}));
-    }
-    return save_design(design, file);
-}
-
 bool is_any_flip_done(const Json& report) {
     return std::ranges::any_of(report.at("flips"), [](const Json& flip) { return flip.at("done").get<bool>(); });
 }
 
 }  // namespace
+
+Result<Design> with_flips_made(Design design, const std::vector<Flip>& flips, const Json& report) {
+    const Json told = report.value("flips", Json::array());
+    for (std::size_t k = 0; k < std::min(told.size(), flips.size()); ++k) {
+        if (told.at(k).at("done").get<bool>()) WEAVE_CHECK_OK(apply_edit(design, PutFlip{design.root, flips[k]}));
+    }
+    return design;
+}
 
 std::string ending_in_words(const Json& report) {
     const Json& goal = (report.contains("goes_on") ? report.at("coarser") : report).at("goal");
@@ -150,7 +149,8 @@ Status tell_ending(CommandOutcome& outcome, const Json& report, Json answer, con
         answer["saved_design"] = any ? Json(flipped.file) : Json(nullptr);
         if (!any) words += on_one_line(flipped.file) + " is NOT written: no flip was made\n";
         if (any) {
-            WEAVE_CHECK_OK(save_flipped(flipped.design, flipped.flips, report, flipped.file));
+            WEAVE_TRY(const Design made, with_flips_made(flipped.design, flipped.flips, report));
+            WEAVE_CHECK_OK(save_design(made, flipped.file));
         }
     }
     outcome.answer(answer, words);

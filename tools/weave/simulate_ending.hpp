@@ -27,6 +27,9 @@ std::string ending_in_words(const Json& report);
 /// At rest, every crossing as the card says, and all done that was asked for.
 bool is_good(const Json& report);
 
+/// A design with those of the flips that the report says were made.
+Result<Design> with_flips_made(Design design, const std::vector<Flip>& flips, const Json& report);
+
 /// Where the design goes that has the flips which were made; an empty file: nowhere.
 struct FlippedDesign {
     const Design& design;  ///< as its file has it

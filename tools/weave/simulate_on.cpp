@@ -5,6 +5,7 @@
 #include "simulate_ending.hpp"
 #include "teller.hpp"
 
+#include <weave/core/exit_code.hpp>
 #include <weave/core/file.hpp>
 #include <weave/design/document.hpp>
 
@@ -93,7 +94,7 @@ class JobWatch {
     /// Another client of the same person may have dealt with the end of the job.
     Status look() {
         m_heard = Clock::now();
-        auto list = wire::answer_of<wire::JobList>(m_follower.ask(wire::ListJobs{wire::new_request_id()}, answer_patience));
+        auto list = jobs_of(m_follower);
         if (!list) return m_follower.trouble() ? Status() : Status(std::move(list).error());
         for (const wire::JobState& state : list->jobs) {
             if (state.job == m_job) return hear(state), Status();
@@ -122,7 +123,8 @@ class JobWatch {
 /// Whether these are yarns of what was asked for.
 Status check_yarns(const RemoteYarns& fetched, const wire::JobEnded& ended, const SimulateTask& task) {
     const Yarns& yarns = fetched.yarns;
-    const bool same = yarns.scene_sha256 == scene_sha256(task.design) && (!task.flips.empty() || yarns.design_sha256 == design_sha256(task.design));
+    WEAVE_TRY(const Design woven, with_flips_made(task.design, task.flips, ended.report));
+    const bool same = yarns.scene_sha256 == scene_sha256(task.design) && yarns.design_sha256 == design_sha256(woven);
     const bool all_flips = ended.report.value("flips", Json::array()).size() == task.flips.size();
     if (!same || !all_flips) return bad_input("the server gives yarns of something else than was asked for", name_of(ended.job));
     return {};
@@ -147,12 +149,6 @@ Json report_of(const wire::JobEnded& ended, const SimulateTask& task) {
     if (!undone.empty()) report["left_undone"] = undone;
     if (!undone.empty() && ended.phase == wire::JobPhase::cancelled) report["interrupted"] = true;
     return report;
-}
-
-void settle(CommandOutcome& outcome, wire::Follower& follower, std::uint64_t job) {
-    const Status settled = follower.acknowledge_job(job, answer_patience);
-    if (!settled) outcome.note(settled.error().text() + "; " + name_of(job) + " is still kept there");
-    follower.close();
 }
 
 }  // namespace
@@ -180,10 +176,12 @@ Status simulate_on(CommandOutcome& outcome, wire::Follower& follower, const Desi
     answer["file"] = wish.out;
     answer["job"] = job;
     answer["server"] = follower.place().name;
+    Status evidence;
+    if (!wish.evidence.empty()) evidence = check_signed(follower, *ended);
+    if (!evidence) answer["error"] = error_json(evidence.error());
     WEAVE_CHECK_OK(tell_ending(outcome, report, std::move(answer), {design, task.flips, wish.save_design}));
     settle(outcome, follower, job);
-    if (wish.evidence.empty() || ended->evidence) return {};
-    return fetch_evidence(follower, *ended).error();  // why there is none
+    return evidence;
 }
 
 }  // namespace weave::program

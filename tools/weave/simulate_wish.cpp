@@ -12,10 +12,13 @@ namespace weave::program {
 
 namespace {
 
-Status check_backend(const std::string& backend) {
-    if (backend == "cpu") return {};
+/// The CPU is all that this program has, and a server (simd) too.
+Status check_backend(const std::string& backend, bool on_server) {
+    if (backend == "cpu" || backend == "auto") return {};
+    if (backend == "cuda" && on_server)
+        return usage_error("cannot be had from a server (--on), which computes on the CPU: cpu or auto", "--backend cuda");
     if (backend == "cuda") return system_fault("this program was built without CUDA: use the backend cpu", "--backend cuda");
-    return usage_error("backend is cpu or cuda", "--backend " + backend);
+    return usage_error("backend is auto, cpu or cuda", "--backend " + backend);
 }
 
 /// What is read or written besides is not written over. Two files may change in place: yarns that are gone on from, and
@@ -39,7 +42,7 @@ Error usage_error(std::string message, std::string where) {
 Status check_wish(const SimulateWish& wish) {
     if (!wish.server.host.empty() && !wish.no_server_option.empty())
         return usage_error("cannot be had from a server (--on): it computes alone, on what it has", wish.no_server_option);
-    WEAVE_CHECK_OK(check_backend(wish.backend));
+    WEAVE_CHECK_OK(check_backend(wish.backend, !wish.server.host.empty()));
     WEAVE_CHECK_OK(check_files(wish));
     if (!wish.explain && wish.out.empty()) return usage_error("say where the yarns go: -o OUT.yarns", "");
     if (wish.explain && !wish.no_plan_option.empty())
