@@ -47,8 +47,6 @@ class Client {
     [[nodiscard]] double frames_per_second() const;
     [[nodiscard]] std::uint64_t dropped_frames() const { return m_socket->dropped_frames(); }
 
-    /// The version of the protocol that it speaks. Only its connection sets it, before it has asked for anything.
-    std::uint64_t version = wire::oldest_version;
     /// The session that it is attached to; 0: none. Only the daemon sets it.
     std::uint64_t session = 0;
     /// How often in a row it asked for too much in a short time. Only the daemon uses it.

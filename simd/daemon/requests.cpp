@@ -137,9 +137,7 @@ void Daemon::attach(const ClientPtr& client, const wire::Attach& attach) {
 void Daemon::list_sessions(const ClientPtr& client, const std::string& request) {
     wire::SessionList list{request, {}};
     for (const auto& session : m_sessions) {
-        if (!session->is_accepted() || session->person() != client->person() || session->is_over()) continue;
-        list.sessions.push_back(session->summary(m_settings.expire));
-        if (client->version < 2) list.sessions.back().ended.reset(), list.sessions.back().left_s.reset();
+        if (session->is_accepted() && session->person() == client->person() && !session->is_over()) list.sessions.push_back(session->summary(m_settings.expire));
     }
     client->tell(list);
 }
@@ -165,7 +163,7 @@ void Daemon::submit(const ClientPtr& client, const wire::Submit& submit, const s
 }
 
 void Daemon::list_jobs(const ClientPtr& client, const std::string& request) {
-    wire::JobList list{request, {}, client->version >= 2 ? std::optional(m_settings.sign != nullptr) : std::nullopt};
+    wire::JobList list{request, {}, m_settings.sign != nullptr};
     const Outlook outlook = this->outlook();
     for (const auto& job : m_jobs) {
         if (job->person() == client->person()) list.jobs.push_back(told_state(*job, outlook));

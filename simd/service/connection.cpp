@@ -4,7 +4,6 @@
 #include <simd/service/connection.hpp>
 #include <utility>
 #include <variant>
-#include <vector>
 
 namespace weave::simd {
 
@@ -12,21 +11,6 @@ namespace {
 
 /// A connection may send so many messages that nobody can read.
 constexpr std::size_t most_not_understood = 100;
-
-/// The highest version that both know; 0: there is none.
-std::uint64_t common_version(const wire::Hello& hello) {
-    std::uint64_t highest = 0;
-    for (const std::uint64_t version : hello.versions) {
-        if (version >= wire::oldest_version && version <= wire::protocol_version) highest = std::max(highest, version);
-    }
-    return highest;
-}
-
-std::vector<std::uint64_t> all_versions() {
-    std::vector<std::uint64_t> versions;
-    for (std::uint64_t version = wire::oldest_version; version <= wire::protocol_version; ++version) versions.push_back(version);
-    return versions;
-}
 
 }  // namespace
 
@@ -60,14 +44,12 @@ void Connection::greet(const wire::ClientMessage& message) {
         m_client->tell(wire::Refused{id.empty() ? std::nullopt : std::optional(id), {ErrorCode::usage, "the first message is hello", "type"}, {}});
         return m_client->close(1002, "the first message is hello");
     }
-    const std::uint64_t version = common_version(*hello);
-    if (version == 0) {
-        m_client->tell(wire::Unsupported{all_versions()});
+    if (std::ranges::find(hello->versions, wire::protocol_version) == hello->versions.end()) {
+        m_client->tell(wire::Unsupported{{wire::protocol_version}});
         return m_client->close(1002, "there is no version that both speak");
     }
     m_is_greeted = true;
-    m_client->version = version;
-    m_client->tell(wire::Welcome{version, m_server, m_visitor.is_local ? std::nullopt : std::optional(m_visitor.person)});
+    m_client->tell(wire::Welcome{wire::protocol_version, m_server, m_visitor.is_local ? std::nullopt : std::optional(m_visitor.person)});
     m_daemon.greet(m_client);
 }
 

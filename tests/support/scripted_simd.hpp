@@ -51,7 +51,6 @@ class ScriptedSimd {
     bool holds_jobs = false;               ///< jobs run on until they are cancelled, or let_go() is called
     bool holds_queue = false;              ///< jobs wait likewise
     bool signs = true;                     ///< says that it has a key to sign with
-    std::uint64_t version = wire::protocol_version;  ///< of the protocol, the newest that it knows
     std::map<std::size_t, Mishap> mishaps;
     std::size_t break_every = 0;           ///< every so many messages the connection ends with break_code instead
     std::uint16_t break_code = 1001;
@@ -227,7 +226,7 @@ class ScriptedSimd {
         if constexpr (requires { message.request; }) answer(line, message.request, wire::Accepted{message.request, {}, {}, {}});
     }
     void hear_one(Line& line, const wire::Hello&) {
-        say(line, wire::Welcome{version, "scripted", "dora"});
+        say(line, wire::Welcome{1, "scripted", "dora"});
         line.greeted = true;
         for (const auto& [number, job] : m_jobs) {
             if (job.end && !acknowledged_jobs.contains(number)) say(line, *job.end);
@@ -257,7 +256,6 @@ class ScriptedSimd {
             const bool ended = number % 2 == 0;
             wire::SessionSummary one{number, "cloth", wire::Phase::at_rest, 20, 0.5, 136, number == 3 ? 2U : 0U, ended, ended ? 90000 : 3600};
             if (number == 3) one.left_s.reset();
-            if (version < 2) one.ended.reset(), one.left_s.reset();
             sessions.sessions.push_back(one);
         }
         answer(line, list.request, sessions);
@@ -271,7 +269,7 @@ class ScriptedSimd {
         if (!holds_jobs && !holds_queue) finish(number, job);
     }
     void hear_one(Line& line, const wire::ListJobs& list) {
-        wire::JobList jobs{list.request, {}, version >= 2 ? std::optional(signs) : std::nullopt};
+        wire::JobList jobs{list.request, {}, signs};
         for (const auto& [number, job] : m_jobs)
             if (!acknowledged_jobs.contains(number)) jobs.jobs.push_back(state_of(number, job));
         answer(line, list.request, jobs);

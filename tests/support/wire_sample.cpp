@@ -88,7 +88,7 @@ void record(const std::string& path) {
     Recording recording;
     recording.say(Welcome{1, "wire_sample", {}});
     recording.say(Accepted{"follow-1", {}, {}, {}});
-    recording.say(SessionList{"follow-2", {{session, "shoe", Phase::running, 0, {}, 136, 1, {}, {}}}});
+    recording.say(SessionList{"follow-2", {{session, "shoe", Phase::running, 0, {}, 136, 1, false, {}}}});
     recording.say(layout_of(1, 1, coarse));
     recording.say(PhaseChanged{session, 2, 0, Phase::running});
     for (std::uint64_t number = 1; number <= 40; ++number) {

@@ -147,7 +147,7 @@ TEST_CASE("a server that does not greet as the protocol says is none") {
     CHECK_THAT(greeted_with({{}, "nonsense", ""}).text(), Contains("cannot be read: message"));
     CHECK_THAT(greeted_with({{}, "", "nonsense"}).text(), Contains("cannot be read"));
     CHECK_THAT(greeted_with({{}, R"({"type":"unsupported","versions":[2]})", ""}).text(), Contains("other versions"));
-    CHECK_THAT(greeted_with({{}, R"({"type":"welcome","version":3,"server":"x"})", ""}).text(), Contains("was not offered"));
+    CHECK_THAT(greeted_with({{}, R"({"type":"welcome","version":2,"server":"x"})", ""}).text(), Contains("was not offered"));
     CHECK_THAT(greeted_with({{}, R"({"type":"gap","session":1,"first":1,"last":1})", ""}).text(), Contains("does not begin"));
     const Error refused = greeted_with({{}, R"({"type":"refused","error":{"kind":"refused","where":"","message":"not today"}})", ""});
     CHECK((refused.code == ErrorCode::refused && refused.message == "not today"));

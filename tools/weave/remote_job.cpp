@@ -50,7 +50,7 @@ Result<wire::JobList> jobs_of(wire::Follower& follower) {
 
 Status check_signs(wire::Follower& follower) {
     WEAVE_TRY(const wire::JobList jobs, jobs_of(follower));
-    if (jobs.signs.value_or(true)) return {};
+    if (jobs.signs) return {};
     return Error{ErrorCode::refused, "the server has no key to sign evidence with (--evidence)", follower.place().name};
 }
 

@@ -107,7 +107,7 @@ Result<Client> Client::connect(const ServerPlace& place, const std::string& name
 }
 
 Status Client::greet(const std::string& name, milliseconds patience) {
-    WEAVE_CHECK_OK(send(Hello{{oldest_version, protocol_version}, name}));
+    WEAVE_CHECK_OK(send(Hello{{protocol_version}, name}));
     WEAVE_TRY(const std::optional<Received> first, receive_new(patience));
     if (!first) return system_fault("the server does not answer in time", m_place);
     const auto* message = std::get_if<ServerMessage>(&*first);
@@ -117,7 +117,7 @@ Status Client::greet(const std::string& name, milliseconds patience) {
         return bad_input("the server speaks other versions of the protocol than this program", m_place);
     const auto* welcome = message != nullptr ? std::get_if<Welcome>(message) : nullptr;
     if (welcome == nullptr) return bad_input("the server does not begin as the protocol says", m_place);
-    if (welcome->version < oldest_version || welcome->version > protocol_version) return bad_input("the server chose a version that was not offered", m_place);
+    if (welcome->version != protocol_version) return bad_input("the server chose a version that was not offered", m_place);
     m_welcome = *welcome;
     return {};
 }

@@ -24,8 +24,8 @@
 
 namespace weave::wire {
 
-/// The versions of the protocol that are spoken here: the newest, and all down to the oldest.
-inline constexpr std::uint64_t protocol_version = 2, oldest_version = 1;
+/// The version of the protocol that is spoken here.
+inline constexpr std::uint64_t protocol_version = 1;
 /// No text message from a client is longer, nor one from the server.
 inline constexpr std::size_t most_client_bytes = std::size_t{16} << 20;
 inline constexpr std::size_t most_server_bytes = std::size_t{4} << 20;
@@ -195,7 +195,7 @@ struct JobState {
 struct JobList {
     std::string request;
     std::vector<JobState> jobs;
-    std::optional<bool> signs;  ///< whether what a job finds is signed; since version 2, and always there then
+    bool signs = false;  ///< whether what a job finds is signed
 };
 
 /// A session as a list has it.
@@ -207,8 +207,8 @@ struct SessionSummary {
     std::optional<double> residual;  ///< none: nothing was computed yet
     std::uint64_t points = 1;        ///< control points of a frame
     std::uint64_t attached = 0;      ///< connections now
-    std::optional<bool> ended;       ///< since version 2, and always there then
-    std::optional<double> left_s;    ///< the same, while nobody is attached: until it is ended, or one that has ended is forgotten
+    bool ended = false;
+    std::optional<double> left_s;  ///< while nobody is attached: until it is ended, or one that has ended is forgotten
 };
 struct SessionList {
     std::string request;

@@ -93,10 +93,6 @@ void maybe_count(Form& form, const char* key, T& value, std::uint64_t low = 0, s
     form.maybe(key, value, [&](auto& inner, auto& count) { inner.count(key, count, low, high); });
 }
 template <class Form, class T>
-void maybe_flag(Form& form, const char* key, T& value) {
-    form.maybe(key, value, [&](auto& inner, auto& flag) { inner.flag(key, flag); });
-}
-template <class Form, class T>
 void maybe_request(Form& form, T& value) {
     form.maybe("request", value, [](auto& inner, auto& request) { inner.request(request); });
 }
@@ -333,7 +329,7 @@ template <class Form, Either<JobList> M>
 void describe(Form& form, M& list) {
     form.request(list.request);
     form.parts("jobs", list.jobs, most_jobs);
-    maybe_flag(form, "signs", list.signs);
+    form.flag("signs", list.signs);
 }
 template <class Form, Either<SessionSummary> M>
 void describe(Form& form, M& session) {
@@ -344,7 +340,7 @@ void describe(Form& form, M& session) {
     maybe_number(form, "residual", session.residual, amount_range);
     form.count("points", session.points, 1, most_points);
     form.count("attached", session.attached);
-    maybe_flag(form, "ended", session.ended);
+    form.flag("ended", session.ended);
     maybe_number(form, "left_s", session.left_s, {0, most_seconds_told});
 }
 template <class Form, Either<SessionList> M>
