@@ -70,18 +70,19 @@ void Crew::start_some(Clock::time_point now) {
 void Crew::start(Id id, Member& member) {
     WorkOrder order = member.task->order();
     order.planning_bytes = m_rules.planning_bytes;
+    m_turns.add(id, member.person, member.is_job);  // before its thread may hear of a turn
     auto process = WorkerProcess::start(m_rules.program, to_json(order),
                                         {[this, id](LinkMessage message) { heard(id, std::move(message)); },
                                          [this, id](std::string how) { lost(id, std::move(how)); }});
     if (process) {
         member.process = std::move(*process);
         member.started = Clock::now();
-        m_turns.add(id, member.person, member.is_job);
-        const std::lock_guard links(m_links_lock);
+        const std::lock_guard links(m_links_lock);  // it gets no turn before it is admitted, which takes the daemon's lock
         m_links[id] = &member.process->link();
         return;
     }
     Task& task = *member.task;
+    m_turns.remove(id, Clock::now());
     m_members.erase(id);
     task.ended({"could not be started", process.error(), false});
 }
@@ -208,10 +209,11 @@ void Crew::end_stuck(Clock::time_point now) {
 
 void Crew::bury() {
     std::vector<std::unique_ptr<WorkerProcess>> dead;
-    const std::lock_guard lock(m_lock);
-    dead.swap(m_dead);
-    // Their threads have told of the end as the last that they do, so joining them here waits for nobody.
-    dead.clear();
+    {
+        const std::lock_guard lock(m_lock);
+        dead.swap(m_dead);
+    }
+    dead.clear();  // joins their threads, which may still be about to let go of the lock
 }
 
 std::optional<pid_t> Crew::process(Id id) const {

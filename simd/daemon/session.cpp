@@ -152,7 +152,8 @@ void Session::bring_up(Viewer& viewer) {
         for (const Event& event : *events) viewer.client->tell(net::make_bytes(event.text));
         viewer.sent = events->empty() ? m_saved_seq : events->back().seq;
     }
-    if (viewer.is_shown) return;
+    // No frame goes out before an event that waits for the disk: it may be the frame's layout.
+    if (viewer.is_shown || !m_unsaved.empty()) return;
     viewer.is_shown = true;
     if (m_newest && m_newest_number > viewer.frame + 1) viewer.client->tell(wire::Gap{m_number, viewer.frame + 1, m_newest_number - 1});
     if (m_newest && m_newest_number > viewer.frame) viewer.client->show(m_newest, true);
@@ -211,6 +212,11 @@ void Session::said(const std::string& what, const Json& message) {
         m_step = step;
         m_residual = std::min(message.at("residual").get<double>(), 1e300);
         if (message.contains("lost")) m_lost = message.at("lost").get<std::uint64_t>();
+    } else if (what == "pauses_at") {
+        if (message.at("id") != m_steps_id) return;  // somebody asked for something else meanwhile
+        m_pause_at = message.at("step").get<std::uint64_t>();
+        m_state_changed = true;
+        m_around.wants_writing();
     } else if (what == "event") {
         heard_event(message);
     } else if (what == "checkpoint") {

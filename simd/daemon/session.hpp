@@ -157,6 +157,7 @@ class Session final : public Task {
     wire::Phase m_phase = wire::Phase::paused;
     bool m_runs = false;
     std::optional<std::uint64_t> m_pause_at;
+    std::uint64_t m_steps_id = 0;  ///< of the steps that are being made one by one; 0: none are
     std::uint64_t m_checkpoint_step = 0;
     double m_residual = 0, m_pace = 0;  ///< steps a second
     std::optional<std::uint64_t> m_lost;

@@ -151,21 +151,27 @@ void Session::go_on(const ClientPtr& client, const std::string& request, std::op
     const auto before = std::pair(m_runs, m_pause_at);
     m_runs = true;
     m_pause_at.reset();
+    // Where the worker is it knows alone, and tells where it will pause; until then the last that is known stands for it.
     if (steps) m_pause_at = std::min(wire::most_number, m_step + std::min(*steps, wire::most_number));
     if (const Status saved = save_state(); !saved) {
         std::tie(m_runs, m_pause_at) = before;
         return refuse(client, request, no_disk(saved.error()));
     }
     answer(client, request);
-    post({{"do", "go_on"}, {"until", m_pause_at ? Json(*m_pause_at) : Json()}});
+    m_steps_id = steps ? ++m_last_id : 0;
+    post({{"do", "go_on"}, {"steps", steps ? Json(std::min(*steps, wire::most_number)) : Json()}, {"id", m_steps_id}});
 }
 
 void Session::pause(const ClientPtr& client, const std::string& request) {
     if (m_has_ended) return refuse(client, request, gone());
     m_runs = false;
     m_pause_at = m_step;
-    static_cast<void>(save_state());  // at worst it goes on after a fault of the daemon
-    answer(client, request);
+    m_steps_id = 0;
+    // With a full disk too: at worst it goes on after a fault of the daemon, and a repeated request pauses it again.
+    static_cast<void>(save_state());
+    const std::string text = wire::write_message(wire::Accepted{request, {}, {}, {}});
+    static_cast<void>(m_around.store.remember(client->person(), request, text));
+    client->tell(net::make_bytes(text));
     post({{"do", "pause"}});
 }
 

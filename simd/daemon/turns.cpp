@@ -83,6 +83,7 @@ void Turns::remove(Id id, Clock::time_point now) {
     const std::lock_guard lock(m_mutex);
     const auto found = m_workers.find(id);
     if (found == m_workers.end()) return;
+    take_back(found->second, now);  // what it had counts for its person
     const std::string person = found->second.person;
     m_workers.erase(found);
     if (--m_people[person].workers == 0) m_people.erase(person);

@@ -45,9 +45,11 @@ void Inbox::obey(const Json& message) {
     } else if (what == "go_on") {
         m_runs = true;
         m_pause_at.reset();
-        if (!message.at("until").is_null()) m_pause_at = message.at("until").get<std::uint64_t>();
+        m_steps.reset();
+        if (!message.at("steps").is_null()) m_steps = Steps{message.at("steps").get<std::uint64_t>(), message.at("id").get<std::uint64_t>()};
     } else if (what == "pause") {
         m_runs = false;
+        m_steps.reset();
     } else if (what == "change") {
         auto change = journaled_change_from(message.at("change"));
         if (change) m_changes.push_back(std::move(*change));
@@ -86,8 +88,16 @@ std::optional<Json> Inbox::admitted() {
 }
 
 bool Inbox::goes_on(std::uint64_t step) {
-    const std::lock_guard lock(m_mutex);
-    return m_runs && (!m_pause_at || step < *m_pause_at);
+    std::optional<Steps> asked;
+    bool goes_on = false;
+    {
+        const std::lock_guard lock(m_mutex);
+        asked = std::exchange(m_steps, {});
+        if (asked) m_pause_at = step + asked->count;
+        goes_on = m_runs && (!m_pause_at || step < *m_pause_at);
+    }
+    if (asked) static_cast<void>(m_link.send(Json{{"say", "pauses_at"}, {"step", step + asked->count}, {"id", asked->id}}));
+    return goes_on;
 }
 
 bool Inbox::change_is_due(std::uint64_t step) {

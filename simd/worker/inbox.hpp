@@ -44,7 +44,8 @@ class Inbox {
     /// What was granted once the plan was told: `bytes` of memory, `number` and `folder`; nothing before.
     std::optional<Json> admitted();
 
-    /// Whether the session is to go on from this step.
+    /// Whether the session is to go on from this step. Steps that were asked for since count from here, and the daemon is told
+    /// where they end.
     [[nodiscard]] bool goes_on(std::uint64_t step);
     /// The next change to be made before this step or later, if it is due: at its own step where it has one, else now.
     [[nodiscard]] bool change_is_due(std::uint64_t step);
@@ -66,6 +67,10 @@ class Inbox {
     bool take_newly_watched();
 
   private:
+    /// So many steps from where the work is, as the daemon asked for.
+    struct Steps {
+        std::uint64_t count, id;
+    };
     void read();
     void obey(const Json& message);
 
@@ -76,6 +81,7 @@ class Inbox {
     Finish m_finish = Finish::no;
     std::optional<Json> m_admitted;
     std::optional<std::uint64_t> m_pause_at;
+    std::optional<Steps> m_steps;
     bool m_runs = false;
     std::deque<JournaledChange> m_changes;
     std::optional<std::size_t> m_turn;

@@ -399,6 +399,7 @@ Status Work::finish() {
             return {};
         default: break;
     }
+    if (m_run->now().is_flipping()) m_run->now().end_flip();  // judged as it lies: the yarns have it, and so are they to say
     Yarns yarns = m_run->yarns();
     Json done{{"say", "done"}, {"step", m_run->steps()}};
     if (m_order.is_job) {

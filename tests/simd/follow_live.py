@@ -151,6 +151,7 @@ def follow_session(client, design):
     client.cut()
     client.ask(checkpoint)
     rested = until_rest(client)
+    client.until(lambda: said(client, "checkpointed"))  # may come after the answer: events go to the disk first
     written = [event for event in said(client, "checkpointed") if event.get("request") == checkpoint["request"]]
     need(len(written) == 1, "the checkpoint was written %d times" % len(written))
 

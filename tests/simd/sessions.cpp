@@ -204,6 +204,24 @@ TEST_CASE("one person has only so many sessions, and nobody sees another's") {
     CHECK_FALSE(third.attach(first.number + 100, 0, 0, 10s));
 }
 
+TEST_CASE("steps that are asked for count from where the cloth is, not from where it was told to be") {
+    const Box box;
+    Followed session(box, document_of("layer-to-layer"), at(sim::Fidelity::reference));
+    session.run();
+    constexpr std::uint64_t begun = 20, steps = 5;
+    REQUIRE(session.until([&](const wire::Received&) { return session.newest && session.newest->head.step >= begun; }));
+    session.ask(wire::Pause{wire::new_request_id(), session.number});
+    const std::uint64_t seen = session.newest->head.step;
+    session.ask(wire::Step{wire::new_request_id(), session.number, steps});
+    wire::State state = session.state();
+    for (int tries = 0; tries < 600 && (state.phase != wire::Phase::paused || state.step < seen + steps); ++tries) {
+        std::this_thread::sleep_for(50ms);
+        state = session.state();
+    }
+    CHECK(state.phase == wire::Phase::paused);
+    CHECK(state.step >= seen + steps);
+}
+
 TEST_CASE("a session to which nobody is attached ends after a while, and says so to whoever comes back") {
     const Box box(Json{{"expire_seconds", 1}});
     std::uint64_t number = 0;
