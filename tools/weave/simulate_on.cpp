@@ -45,6 +45,22 @@ Error kept(Error error, std::uint64_t job, const SimulateWish& wish) {
     return error;
 }
 
+/// Tells, as long as it lives, of connections that break and come back.
+class TroubleNotes {
+  public:
+    TroubleNotes(wire::Follower& follower, Teller& teller) : m_follower(follower) {
+        follower.on_trouble([&teller, name = follower.place().name](const Error* trouble) {
+            teller.note(trouble != nullptr ? trouble->text() + "; trying again" : name + ": connected again");
+        });
+    }
+    ~TroubleNotes() { m_follower.on_trouble({}); }
+    TroubleNotes(const TroubleNotes&) = delete;
+    TroubleNotes& operator=(const TroubleNotes&) = delete;
+
+  private:
+    wire::Follower& m_follower;
+};
+
 /// Follows one job to its end.
 class JobWatch {
   public:
@@ -56,7 +72,7 @@ class JobWatch {
                 WEAVE_CHECK_OK(cancel());
             }
             WEAVE_TRY(auto received, m_follower.receive(200ms));
-            tell_trouble();
+            notice_return();
             auto* message = received ? std::get_if<wire::ServerMessage>(&*received) : nullptr;
             if (message != nullptr && is_end(*message)) return std::get<wire::JobEnded>(std::move(*message));
             if (message != nullptr) hear(*message);
@@ -103,13 +119,10 @@ class JobWatch {
         return Error{ErrorCode::refused, "the server does not have it any more: it lost it, or the end was dealt with elsewhere", name_of(m_job)};
     }
 
-    void tell_trouble() {
+    /// Connected again, it sees whether the job is still there.
+    void notice_return() {
         const bool troubled = m_follower.trouble().has_value();
-        if (troubled && !m_troubled) m_teller.note(m_follower.trouble()->text() + "; trying again");
-        if (!troubled && m_troubled) {
-            m_teller.note(m_follower.place().name + ": connected again");
-            m_heard = {};  // see whether the job is still there
-        }
+        if (!troubled && m_troubled) m_heard = {};
         m_troubled = troubled;
     }
 
@@ -158,6 +171,7 @@ Status simulate_on(CommandOutcome& outcome, wire::Follower& follower, const Desi
     const HeldInterrupt held("the job is cancelled, and its yarns are fetched as they lie; again to end at once, and the job goes on");
     Teller teller(goal);
     teller.turn_to(" on " + follower.place().name);
+    const TroubleNotes notes(follower, teller);
     WEAVE_TRY(const wire::Submit order, order_of(task, wish));
     WEAVE_TRY(const wire::Accepted accepted, wire::answer_of<wire::Accepted>(follower.ask(order, answer_patience)));
     if (!accepted.job) return bad_input("the server gives the job no number", follower.place().name);

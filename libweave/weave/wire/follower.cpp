@@ -75,8 +75,14 @@ Status Follower::connect_once() {
     m_heard = false;
     m_connected = Clock::now();
     WEAVE_CHECK_OK(take_up());
-    m_trouble.reset();
+    note_trouble({});
     return {};
+}
+
+void Follower::note_trouble(std::optional<Error> trouble) {
+    const bool changed = trouble.has_value() != m_trouble.has_value();
+    m_trouble = std::move(trouble);
+    if (changed && m_on_trouble) m_on_trouble(m_trouble ? &*m_trouble : nullptr);
 }
 
 /// Attaches to the session that is followed, where the last connection left it.
@@ -109,8 +115,11 @@ Status Follower::lost(Error error) {
         m_since = now;
         m_pause = first_pause;
     }
-    m_trouble = error;
-    if (now - *m_since >= m_patience) return *(m_over = std::move(error));
+    if (now - *m_since >= m_patience) {
+        m_trouble = error;
+        return *(m_over = std::move(error));
+    }
+    note_trouble(std::move(error));
     m_next_try = now + jittered(m_pause);
     m_pause = std::min(2 * m_pause, longest_pause);
     return {};

@@ -5,9 +5,11 @@
 #include <chrono>
 #include <cstdint>
 #include <deque>
+#include <functional>
 #include <optional>
 #include <set>
 #include <string>
+#include <utility>
 
 namespace weave::wire {
 
@@ -44,6 +46,8 @@ class Follower {
 
     /// What keeps it from its server; nothing while it is connected.
     [[nodiscard]] const std::optional<Error>& trouble() const { return m_trouble; }
+    /// Told when trouble comes and when it is over (nullptr), by whichever call meets it, while it goes on trying.
+    void on_trouble(std::function<void(const Error*)> told) { m_on_trouble = std::move(told); }
     /// Says goodbye.
     void close();
 
@@ -66,6 +70,7 @@ class Follower {
     Status make_room();
     Status reconnect(Clock::time_point end);
     Status lost(Error error);
+    void note_trouble(std::optional<Error> trouble);
     Status pump(Clock::time_point end, const std::string& id, std::optional<ServerMessage>& answer);
     Result<ServerMessage> ask(const ClientMessage& message, std::chrono::milliseconds patience, int& times);
     Status tell(const ClientMessage& message);
@@ -89,6 +94,7 @@ class Follower {
     std::deque<Received> m_waiting;  ///< for the caller
     std::set<std::uint64_t> m_told_jobs, m_settled_jobs;  ///< whose end the caller was told; and has dealt with
     std::optional<Error> m_trouble, m_over;
+    std::function<void(const Error*)> m_on_trouble;
     std::optional<Clock::time_point> m_since;  ///< when the last connection that was of use broke
     Clock::time_point m_connected, m_next_try;
     bool m_heard = false;  ///< on this connection, something beside what every connection begins with
