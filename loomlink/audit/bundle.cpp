@@ -1,4 +1,5 @@
 #include <loomlink/audit/bundle.hpp>
+
 #include <loomlink/audit/bundle_layout.hpp>
 
 namespace weave::loomlink {

@@ -1,3 +1,5 @@
+#include <loomlink/audit/record.hpp>
+
 #include <weave/core/json_reader.hpp>
 #include <weave/core/text.hpp>
 #include <weave/keys/hex.hpp>
@@ -5,7 +7,6 @@
 #include <algorithm>
 #include <chrono>
 #include <cmath>
-#include <loomlink/audit/record.hpp>
 
 namespace weave::loomlink {
 

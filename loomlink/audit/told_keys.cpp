@@ -1,6 +1,7 @@
+#include <loomlink/audit/told_keys.hpp>
+
 #include <loomlink/audit/bundle_layout.hpp>
 #include <loomlink/audit/record.hpp>
-#include <loomlink/audit/told_keys.hpp>
 
 namespace weave::loomlink {
 

@@ -1,6 +1,7 @@
+#include <loomlink/audit/tree.hpp>
+
 #include <bit>
 #include <cassert>
-#include <loomlink/audit/tree.hpp>
 #include <string>
 
 namespace weave::loomlink {

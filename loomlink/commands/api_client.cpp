@@ -1,10 +1,11 @@
+#include <loomlink/commands/api_client.hpp>
+
 #include <weave/core/text.hpp>
 #include <weave/keys/codes.hpp>
 #include <weave/keys/secret_bytes.hpp>
 #include <weave/net/target.hpp>
 
 #include <chrono>
-#include <loomlink/commands/api_client.hpp>
 #include <loomlink/service/table.hpp>
 #include <thread>
 #include <utility>

@@ -1,7 +1,8 @@
+#include <loomlink/commands/bootstrap.hpp>
+
 #include <weave/core/text.hpp>
 
 #include <filesystem>
-#include <loomlink/commands/bootstrap.hpp>
 #include <loomlink/commands/site_folder.hpp>
 #include <loomlink/workflow/workflow.hpp>
 #include <memory>

@@ -1,4 +1,5 @@
 #include <loomlink/commands/client_command.hpp>
+
 #include <utility>
 
 namespace weave::loomlink {

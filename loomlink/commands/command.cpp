@@ -1,6 +1,6 @@
-#include <weave/core/text.hpp>
-
 #include <loomlink/commands/command.hpp>
+
+#include <weave/core/text.hpp>
 
 namespace weave::loomlink {
 

@@ -1,7 +1,8 @@
+#include <loomlink/commands/evidence_file.hpp>
+
 #include <weave/core/file.hpp>
 #include <weave/core/text.hpp>
 
-#include <loomlink/commands/evidence_file.hpp>
 #include <utility>
 
 namespace weave::loomlink {

@@ -1,6 +1,6 @@
-#include <weave/core/text.hpp>
-
 #include <loomlink/commands/finding_words.hpp>
+
+#include <weave/core/text.hpp>
 
 namespace weave::loomlink {
 

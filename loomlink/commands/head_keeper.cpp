@@ -1,9 +1,10 @@
+#include <loomlink/commands/head_keeper.hpp>
+
 #include <weave/core/descriptor.hpp>
 #include <weave/core/file.hpp>
 #include <weave/core/log.hpp>
 
 #include <fcntl.h>
-#include <loomlink/commands/head_keeper.hpp>
 #include <unistd.h>
 #include <utility>
 

@@ -13,6 +13,7 @@ namespace {
 
 Status make_new_site(const SiteFolder& folder, const ServeConfig& config, CommandOutcome& outcome) {
     WEAVE_CHECK_OK(check_config(config));
+    if (const Status hosts = check_hosts(config.hosts); !hosts) return bad_input(hosts.error().message, "--host");
     WEAVE_TRY(OpenSite site, open_site(folder, config));
     if (!site.is_new) return Error{ErrorCode::refused, "holds a site already", folder.path.string()};
     WEAVE_CHECK_OK(tls_of(folder.tls(), config));

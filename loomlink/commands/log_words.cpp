@@ -1,8 +1,9 @@
+#include <loomlink/commands/log_words.hpp>
+
 #include <weave/core/text.hpp>
 #include <weave/keys/hex.hpp>
 
 #include <algorithm>
-#include <loomlink/commands/log_words.hpp>
 #include <loomlink/commands/words.hpp>
 
 namespace weave::loomlink {

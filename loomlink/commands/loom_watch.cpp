@@ -1,7 +1,8 @@
+#include <loomlink/commands/loom_watch.hpp>
+
 #include <weave/net/websocket_client.hpp>
 
 #include <algorithm>
-#include <loomlink/commands/loom_watch.hpp>
 #include <loomlink/workflow/desk.hpp>
 #include <optional>
 #include <thread>

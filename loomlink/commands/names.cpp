@@ -1,6 +1,7 @@
+#include <loomlink/commands/names.hpp>
+
 #include <weave/core/text.hpp>
 
-#include <loomlink/commands/names.hpp>
 #include <loomlink/workflow/names.hpp>
 
 namespace weave::loomlink {

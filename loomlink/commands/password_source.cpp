@@ -1,3 +1,5 @@
+#include <loomlink/commands/password_source.hpp>
+
 #include <weave/core/descriptor.hpp>
 #include <weave/keys/private_file.hpp>
 #include <weave/keys/secret_bytes.hpp>
@@ -6,7 +8,6 @@
 #include <cerrno>
 #include <csignal>
 #include <fcntl.h>
-#include <loomlink/commands/password_source.hpp>
 #include <poll.h>
 #include <sys/stat.h>
 #include <termios.h>

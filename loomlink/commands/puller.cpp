@@ -1,3 +1,5 @@
+#include <loomlink/commands/puller.hpp>
+
 #include <weave/core/descriptor.hpp>
 #include <weave/core/exit_code.hpp>
 #include <weave/core/file.hpp>
@@ -9,7 +11,6 @@
 #include <cerrno>
 #include <fcntl.h>
 #include <loomlink/audit/tree.hpp>
-#include <loomlink/commands/puller.hpp>
 #include <loomlink/commands/trust_papers.hpp>
 #include <loomlink/workflow/desk.hpp>
 #include <sys/file.h>

@@ -1,8 +1,9 @@
+#include <loomlink/commands/revision_place.hpp>
+
 #include <weave/core/text.hpp>
 
 #include <loomlink/commands/api_client.hpp>
 #include <loomlink/commands/names.hpp>
-#include <loomlink/commands/revision_place.hpp>
 
 namespace weave::loomlink {
 

@@ -1,3 +1,5 @@
+#include <loomlink/commands/running_site.hpp>
+
 #include <weave/command/service_places.hpp>
 #include <weave/core/descriptor.hpp>
 #include <weave/net/certificate.hpp>
@@ -5,7 +7,6 @@
 
 #include <chrono>
 #include <loomlink/commands/head_keeper.hpp>
-#include <loomlink/commands/running_site.hpp>
 #include <loomlink/service/handlers.hpp>
 #include <loomlink/service/service.hpp>
 #include <optional>

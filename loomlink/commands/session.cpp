@@ -1,3 +1,5 @@
+#include <loomlink/commands/session.hpp>
+
 #include <weave/core/json_reader.hpp>
 #include <weave/keys/hex.hpp>
 #include <weave/keys/private_file.hpp>
@@ -5,7 +7,6 @@
 #include <algorithm>
 #include <cerrno>
 #include <cstdlib>
-#include <loomlink/commands/session.hpp>
 #include <sys/stat.h>
 
 namespace weave::loomlink {

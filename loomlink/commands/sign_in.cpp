@@ -1,6 +1,7 @@
+#include <loomlink/commands/sign_in.hpp>
+
 #include <weave/keys/secret_bytes.hpp>
 
-#include <loomlink/commands/sign_in.hpp>
 #include <utility>
 
 namespace weave::loomlink {

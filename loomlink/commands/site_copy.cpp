@@ -1,3 +1,5 @@
+#include <loomlink/commands/site_copy.hpp>
+
 #include <weave/core/descriptor.hpp>
 #include <weave/core/file.hpp>
 #include <weave/keys/private_file.hpp>
@@ -6,7 +8,6 @@
 
 #include <csignal>
 #include <fcntl.h>
-#include <loomlink/commands/site_copy.hpp>
 #include <loomlink/store/backup.hpp>
 #include <loomlink/store/signatures.hpp>
 #include <loomlink/workflow/retelling.hpp>

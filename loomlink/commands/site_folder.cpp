@@ -1,9 +1,10 @@
+#include <loomlink/commands/site_folder.hpp>
+
 #include <weave/keys/private_file.hpp>
 #include <weave/keys/server_key.hpp>
 
 #include <cerrno>
 #include <cstring>
-#include <loomlink/commands/site_folder.hpp>
 #include <loomlink/workflow/retelling.hpp>
 #include <sys/stat.h>
 #include <utility>

@@ -1,3 +1,5 @@
+#include <loomlink/commands/verify_audit.hpp>
+
 #include <weave/core/file.hpp>
 #include <weave/core/text.hpp>
 
@@ -5,7 +7,6 @@
 #include <loomlink/audit/told_keys.hpp>
 #include <loomlink/commands/finding_words.hpp>
 #include <loomlink/commands/head_keeper.hpp>
-#include <loomlink/commands/verify_audit.hpp>
 #include <loomlink/terminal/state.hpp>
 #include <memory>
 

@@ -1,7 +1,8 @@
+#include <loomlink/commands/words.hpp>
+
 #include <weave/core/text.hpp>
 
 #include <algorithm>
-#include <loomlink/commands/words.hpp>
 
 namespace weave::loomlink {
 

@@ -1,7 +1,8 @@
+#include <loomlink/export/hook_plan.hpp>
+
 #include <weave/core/text.hpp>
 
 #include <algorithm>
-#include <loomlink/export/hook_plan.hpp>
 
 namespace weave::loomlink {
 

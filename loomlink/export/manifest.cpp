@@ -1,7 +1,8 @@
+#include <loomlink/export/manifest.hpp>
+
 #include <weave/core/sha256.hpp>
 
 #include <algorithm>
-#include <loomlink/export/manifest.hpp>
 
 namespace weave::loomlink {
 

@@ -1,9 +1,10 @@
+#include <loomlink/export/package.hpp>
+
 #include <weave/design/document.hpp>
 #include <weave/io/export_parts.hpp>
 #include <weave/io/wif.hpp>
 
 #include <loomlink/export/manifest.hpp>
-#include <loomlink/export/package.hpp>
 #include <loomlink/export/read_back.hpp>
 #include <optional>
 

@@ -1,8 +1,9 @@
+#include <loomlink/export/read_back.hpp>
+
 #include <weave/design/evaluate.hpp>
 #include <weave/io/wif.hpp>
 
 #include <algorithm>
-#include <loomlink/export/read_back.hpp>
 
 namespace weave::loomlink {
 

@@ -1,6 +1,7 @@
+#include <loomlink/export/signed_manifest.hpp>
+
 #include <weave/core/text.hpp>
 
-#include <loomlink/export/signed_manifest.hpp>
 #include <loomlink/keys/file_name.hpp>
 #include <set>
 

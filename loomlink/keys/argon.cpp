@@ -1,7 +1,8 @@
+#include <loomlink/keys/argon.hpp>
+
 #include <weave/keys/sodium.hpp>
 
 #include <cassert>
-#include <loomlink/keys/argon.hpp>
 #include <new>
 #include <semaphore>
 #include <sodium.h>

@@ -1,9 +1,10 @@
+#include <loomlink/keys/file_name.hpp>
+
 #include <weave/core/text.hpp>
 
 #include <algorithm>
 #include <array>
 #include <cctype>
-#include <loomlink/keys/file_name.hpp>
 
 namespace weave::loomlink {
 

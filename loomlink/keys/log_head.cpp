@@ -1,7 +1,7 @@
+#include <loomlink/keys/log_head.hpp>
+
 #include <weave/core/json_reader.hpp>
 #include <weave/keys/members.hpp>
-
-#include <loomlink/keys/log_head.hpp>
 
 namespace weave::loomlink {
 

@@ -1,3 +1,5 @@
+#include <loomlink/keys/password.hpp>
+
 #include <weave/core/text.hpp>
 #include <weave/keys/codes.hpp>
 #include <weave/keys/sodium.hpp>
@@ -5,7 +7,6 @@
 #include <algorithm>
 #include <array>
 #include <cctype>
-#include <loomlink/keys/password.hpp>
 #include <new>
 #include <sodium.h>
 

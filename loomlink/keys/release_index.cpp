@@ -1,8 +1,9 @@
+#include <loomlink/keys/release_index.hpp>
+
 #include <weave/core/sha256.hpp>
 #include <weave/keys/members.hpp>
 
 #include <algorithm>
-#include <loomlink/keys/release_index.hpp>
 
 namespace weave::loomlink {
 

@@ -1,8 +1,9 @@
+#include <loomlink/keys/release_manifest.hpp>
+
 #include <weave/core/json_reader.hpp>
 #include <weave/keys/members.hpp>
 
 #include <loomlink/keys/file_name.hpp>
-#include <loomlink/keys/release_manifest.hpp>
 #include <set>
 
 namespace weave::loomlink {

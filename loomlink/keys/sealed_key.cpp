@@ -1,8 +1,9 @@
+#include <loomlink/keys/sealed_key.hpp>
+
 #include <weave/keys/hex.hpp>
 #include <weave/keys/members.hpp>
 #include <weave/keys/sodium.hpp>
 
-#include <loomlink/keys/sealed_key.hpp>
 #include <sodium.h>
 
 namespace weave::loomlink {

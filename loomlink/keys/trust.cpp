@@ -1,7 +1,8 @@
+#include <loomlink/keys/trust.hpp>
+
 #include <weave/core/text.hpp>
 
 #include <algorithm>
-#include <loomlink/keys/trust.hpp>
 #include <loomlink/keys/trust_form.hpp>
 #include <set>
 

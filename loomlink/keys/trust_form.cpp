@@ -1,9 +1,10 @@
+#include <loomlink/keys/trust_form.hpp>
+
 #include <weave/core/json_reader.hpp>
 #include <weave/keys/hex.hpp>
 #include <weave/keys/members.hpp>
 
 #include <algorithm>
-#include <loomlink/keys/trust_form.hpp>
 #include <set>
 
 namespace weave::loomlink {

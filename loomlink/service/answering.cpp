@@ -1,7 +1,8 @@
+#include <loomlink/service/answering.hpp>
+
 #include <weave/core/sha256.hpp>
 #include <weave/net/target.hpp>
 
-#include <loomlink/service/answering.hpp>
 #include <loomlink/service/gate.hpp>
 #include <utility>
 

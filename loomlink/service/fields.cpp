@@ -1,8 +1,9 @@
+#include <loomlink/service/fields.hpp>
+
 #include <weave/core/text.hpp>
 
 #include <algorithm>
 #include <cmath>
-#include <loomlink/service/fields.hpp>
 #include <optional>
 #include <set>
 

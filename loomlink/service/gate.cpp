@@ -1,6 +1,7 @@
+#include <loomlink/service/gate.hpp>
+
 #include <weave/keys/secret_bytes.hpp>
 
-#include <loomlink/service/gate.hpp>
 #include <loomlink/workflow/denial.hpp>
 #include <utility>
 #include <variant>

@@ -1,8 +1,9 @@
+#include <loomlink/service/page.hpp>
+
 #include <weave/core/sha256.hpp>
 
 #include <algorithm>
 #include <cassert>
-#include <loomlink/service/page.hpp>
 #include <memory>
 #include <string>
 

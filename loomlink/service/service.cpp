@@ -1,6 +1,7 @@
+#include <loomlink/service/service.hpp>
+
 #include <loomlink/service/gate.hpp>
 #include <loomlink/service/page.hpp>
-#include <loomlink/service/service.hpp>
 #include <utility>
 
 namespace weave::loomlink {

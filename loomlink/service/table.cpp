@@ -1,6 +1,7 @@
+#include <loomlink/service/table.hpp>
+
 #include <weave/core/text.hpp>
 
-#include <loomlink/service/table.hpp>
 #include <loomlink/workflow/caller.hpp>
 
 namespace weave::loomlink {

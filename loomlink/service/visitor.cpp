@@ -1,5 +1,6 @@
-#include <algorithm>
 #include <loomlink/service/visitor.hpp>
+
+#include <algorithm>
 
 namespace weave::loomlink {
 

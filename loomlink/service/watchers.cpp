@@ -1,7 +1,8 @@
+#include <loomlink/service/watchers.hpp>
+
 #include <weave/core/json.hpp>
 
 #include <algorithm>
-#include <loomlink/service/watchers.hpp>
 #include <mutex>
 #include <vector>
 

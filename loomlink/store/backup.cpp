@@ -1,9 +1,10 @@
+#include <loomlink/store/backup.hpp>
+
 #include <weave/sql/database.hpp>
 
 #include <cerrno>
 #include <cstring>
 #include <fcntl.h>
-#include <loomlink/store/backup.hpp>
 #include <loomlink/store/store.hpp>
 #include <unistd.h>
 

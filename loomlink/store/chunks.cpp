@@ -1,7 +1,8 @@
+#include <loomlink/store/chunks.hpp>
+
 #include <algorithm>
 #include <array>
 #include <cstdint>
-#include <loomlink/store/chunks.hpp>
 
 namespace weave::loomlink {
 

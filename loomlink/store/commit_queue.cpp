@@ -1,8 +1,9 @@
+#include <loomlink/store/commit_queue.hpp>
+
 #include <weave/core/log.hpp>
 
 #include <algorithm>
 #include <exception>
-#include <loomlink/store/commit_queue.hpp>
 #include <utility>
 
 namespace weave::loomlink {

@@ -1,5 +1,6 @@
-#include <loomlink/keys/trust.hpp>
 #include <loomlink/store/signatures.hpp>
+
+#include <loomlink/keys/trust.hpp>
 #include <map>
 #include <utility>
 

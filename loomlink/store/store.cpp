@@ -1,10 +1,11 @@
+#include <loomlink/store/store.hpp>
+
 #include <weave/sql/database.hpp>
 
 #include <condition_variable>
 #include <loomlink/store/backup.hpp>
 #include <loomlink/store/commit_queue.hpp>
 #include <loomlink/store/migrations.hpp>
-#include <loomlink/store/store.hpp>
 #include <mutex>
 
 namespace weave::loomlink {

@@ -1,3 +1,5 @@
+#include <loomlink/terminal/folder.hpp>
+
 #include <weave/core/file.hpp>
 #include <weave/core/sha256.hpp>
 #include <weave/core/text.hpp>
@@ -6,7 +8,6 @@
 #include <cerrno>
 #include <cstring>
 #include <fcntl.h>
-#include <loomlink/terminal/folder.hpp>
 #include <unistd.h>
 
 namespace weave::loomlink {

@@ -1,3 +1,5 @@
+#include <loomlink/terminal/state.hpp>
+
 #include <weave/core/file.hpp>
 #include <weave/core/text.hpp>
 #include <weave/keys/members.hpp>
@@ -6,7 +8,6 @@
 #include <algorithm>
 #include <loomlink/keys/file_name.hpp>
 #include <loomlink/keys/release_manifest.hpp>
-#include <loomlink/terminal/state.hpp>
 #include <set>
 
 namespace weave::loomlink {

@@ -1,3 +1,5 @@
+#include <loomlink/workflow/accounts.hpp>
+
 #include <weave/core/text.hpp>
 #include <weave/keys/codes.hpp>
 #include <weave/keys/hex.hpp>
@@ -5,7 +7,6 @@
 #include <algorithm>
 #include <loomlink/keys/file_name.hpp>
 #include <loomlink/keys/sealed_key.hpp>
-#include <loomlink/workflow/accounts.hpp>
 #include <loomlink/workflow/names.hpp>
 #include <loomlink/workflow/policy.hpp>
 #include <sstream>

@@ -1,6 +1,7 @@
+#include <loomlink/workflow/audit_desk.hpp>
+
 #include <algorithm>
 #include <loomlink/workflow/accounts.hpp>
-#include <loomlink/workflow/audit_desk.hpp>
 #include <loomlink/workflow/found.hpp>
 #include <loomlink/workflow/releases.hpp>
 

@@ -1,8 +1,9 @@
+#include <loomlink/workflow/cloths.hpp>
+
 #include <weave/design/document.hpp>
 #include <weave/picture/encode_png.hpp>
 
 #include <algorithm>
-#include <loomlink/workflow/cloths.hpp>
 
 namespace weave::loomlink {
 

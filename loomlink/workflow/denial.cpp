@@ -1,6 +1,7 @@
+#include <loomlink/workflow/denial.hpp>
+
 #include <algorithm>
 #include <array>
-#include <loomlink/workflow/denial.hpp>
 
 namespace weave::loomlink {
 

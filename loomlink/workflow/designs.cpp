@@ -1,8 +1,9 @@
+#include <loomlink/workflow/designs.hpp>
+
 #include <weave/design/document.hpp>
 
 #include <algorithm>
 #include <loomlink/workflow/accounts.hpp>
-#include <loomlink/workflow/designs.hpp>
 #include <loomlink/workflow/names.hpp>
 
 namespace weave::loomlink {

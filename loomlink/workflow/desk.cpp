@@ -1,10 +1,11 @@
+#include <loomlink/workflow/desk.hpp>
+
 #include <weave/core/log.hpp>
 #include <weave/core/text.hpp>
 #include <weave/keys/codes.hpp>
 
 #include <algorithm>
 #include <loomlink/keys/sealed_key.hpp>
-#include <loomlink/workflow/desk.hpp>
 
 namespace weave::loomlink {
 

@@ -1,3 +1,5 @@
+#include <loomlink/workflow/evidence.hpp>
+
 #include <weave/core/text.hpp>
 #include <weave/keys/codes.hpp>
 #include <weave/keys/hex.hpp>
@@ -5,7 +7,6 @@
 #include <algorithm>
 #include <iomanip>
 #include <loomlink/workflow/accounts.hpp>
-#include <loomlink/workflow/evidence.hpp>
 #include <loomlink/workflow/names.hpp>
 #include <set>
 #include <sstream>

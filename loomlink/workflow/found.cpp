@@ -1,5 +1,6 @@
-#include <algorithm>
 #include <loomlink/workflow/found.hpp>
+
+#include <algorithm>
 
 namespace weave::loomlink {
 

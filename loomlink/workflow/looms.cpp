@@ -1,8 +1,9 @@
+#include <loomlink/workflow/looms.hpp>
+
 #include <weave/core/text.hpp>
 
 #include <algorithm>
 #include <loomlink/workflow/accounts.hpp>
-#include <loomlink/workflow/looms.hpp>
 #include <loomlink/workflow/names.hpp>
 #include <loomlink/workflow/releases.hpp>
 #include <loomlink/workflow/validation.hpp>

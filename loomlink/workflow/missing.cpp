@@ -1,7 +1,8 @@
+#include <loomlink/workflow/missing.hpp>
+
 #include <weave/core/text.hpp>
 
 #include <algorithm>
-#include <loomlink/workflow/missing.hpp>
 
 namespace weave::loomlink {
 

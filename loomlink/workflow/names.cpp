@@ -1,8 +1,9 @@
+#include <loomlink/workflow/names.hpp>
+
 #include <weave/core/text.hpp>
 
 #include <algorithm>
 #include <array>
-#include <loomlink/workflow/names.hpp>
 #include <string_view>
 #include <utility>
 

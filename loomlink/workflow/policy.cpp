@@ -1,6 +1,6 @@
-#include <weave/core/json_reader.hpp>
-
 #include <loomlink/workflow/policy.hpp>
+
+#include <weave/core/json_reader.hpp>
 
 namespace weave::loomlink {
 

@@ -1,9 +1,10 @@
+#include <loomlink/workflow/refusals.hpp>
+
 #include <weave/core/sha256.hpp>
 #include <weave/core/text.hpp>
 
 #include <algorithm>
 #include <array>
-#include <loomlink/workflow/refusals.hpp>
 #include <string_view>
 
 namespace weave::loomlink {

@@ -1,5 +1,6 @@
-#include <loomlink/export/signed_manifest.hpp>
 #include <loomlink/workflow/release_files.hpp>
+
+#include <loomlink/export/signed_manifest.hpp>
 
 namespace weave::loomlink {
 

@@ -1,3 +1,5 @@
+#include <loomlink/workflow/releases.hpp>
+
 #include <algorithm>
 #include <loomlink/workflow/accounts.hpp>
 #include <loomlink/workflow/looms.hpp>
@@ -5,7 +7,6 @@
 #include <loomlink/workflow/names.hpp>
 #include <loomlink/workflow/policy.hpp>
 #include <loomlink/workflow/release_files.hpp>
-#include <loomlink/workflow/releases.hpp>
 #include <loomlink/workflow/rules.hpp>
 #include <loomlink/workflow/steps.hpp>
 #include <set>

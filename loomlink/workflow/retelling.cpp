@@ -1,8 +1,9 @@
+#include <loomlink/workflow/retelling.hpp>
+
 #include <algorithm>
 #include <functional>
 #include <iterator>
 #include <loomlink/store/store.hpp>
-#include <loomlink/workflow/retelling.hpp>
 #include <loomlink/workflow/told.hpp>
 
 namespace weave::loomlink {

@@ -1,7 +1,8 @@
+#include <loomlink/workflow/rules.hpp>
+
 #include <algorithm>
 #include <array>
 #include <loomlink/workflow/denial.hpp>
-#include <loomlink/workflow/rules.hpp>
 
 namespace weave::loomlink {
 

@@ -1,10 +1,11 @@
+#include <loomlink/workflow/steps.hpp>
+
 #include <weave/keys/codes.hpp>
 
 #include <algorithm>
 #include <loomlink/workflow/missing.hpp>
 #include <loomlink/workflow/names.hpp>
 #include <loomlink/workflow/release_files.hpp>
-#include <loomlink/workflow/steps.hpp>
 
 namespace weave::loomlink {
 

@@ -1,7 +1,8 @@
+#include <loomlink/workflow/trust_chain.hpp>
+
 #include <algorithm>
 #include <loomlink/workflow/accounts.hpp>
 #include <loomlink/workflow/policy.hpp>
-#include <loomlink/workflow/trust_chain.hpp>
 
 namespace weave::loomlink {
 

@@ -1,10 +1,11 @@
+#include <loomlink/workflow/validation.hpp>
+
 #include <weave/core/json_reader.hpp>
 #include <weave/core/text.hpp>
 
 #include <algorithm>
 #include <array>
 #include <loomlink/workflow/denial.hpp>
-#include <loomlink/workflow/validation.hpp>
 
 namespace weave::loomlink {
 

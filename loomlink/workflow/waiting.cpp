@@ -1,10 +1,11 @@
+#include <loomlink/workflow/waiting.hpp>
+
 #include <weave/core/text.hpp>
 
 #include <algorithm>
 #include <loomlink/workflow/looms.hpp>
 #include <loomlink/workflow/releases.hpp>
 #include <loomlink/workflow/rules.hpp>
-#include <loomlink/workflow/waiting.hpp>
 #include <set>
 
 namespace weave::loomlink {

@@ -1,7 +1,8 @@
+#include <simd/commands/config.hpp>
+
 #include <weave/core/text.hpp>
 
 #include <algorithm>
-#include <simd/commands/config.hpp>
 #include <thread>
 #include <unistd.h>
 

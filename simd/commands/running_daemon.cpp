@@ -1,3 +1,5 @@
+#include <simd/commands/running_daemon.hpp>
+
 #include <weave/command/serving.hpp>
 #include <weave/core/log.hpp>
 #include <weave/keys/signer.hpp>
@@ -7,7 +9,6 @@
 
 #include <chrono>
 #include <optional>
-#include <simd/commands/running_daemon.hpp>
 #include <simd/daemon/daemon.hpp>
 #include <simd/service/routes.hpp>
 #include <simd/store/store.hpp>

@@ -1,10 +1,11 @@
+#include <simd/commands/status_table.hpp>
+
 #include <weave/core/text.hpp>
 
 #include <algorithm>
 #include <array>
 #include <cstdint>
 #include <cstdio>
-#include <simd/commands/status_table.hpp>
 #include <simd/daemon/room.hpp>
 #include <simd/service/page.hpp>
 #include <vector>

@@ -1,5 +1,6 @@
-#include <algorithm>
 #include <simd/daemon/client.hpp>
+
+#include <algorithm>
 
 namespace weave::simd {
 

@@ -1,7 +1,8 @@
+#include <simd/daemon/crew.hpp>
+
 #include <weave/core/log.hpp>
 
 #include <algorithm>
-#include <simd/daemon/crew.hpp>
 #include <set>
 #include <simd/link/error_form.hpp>
 #include <utility>

@@ -1,8 +1,9 @@
+#include <simd/daemon/daemon.hpp>
+
 #include <weave/core/log.hpp>
 
 #include <algorithm>
 #include <future>
-#include <simd/daemon/daemon.hpp>
 #include <utility>
 
 namespace weave::simd {

@@ -1,7 +1,8 @@
+#include <simd/daemon/job.hpp>
+
 #include <weave/core/log.hpp>
 
 #include <algorithm>
-#include <simd/daemon/job.hpp>
 #include <simd/link/error_form.hpp>
 #include <utility>
 

@@ -1,7 +1,8 @@
+#include <simd/daemon/room.hpp>
+
 #include <array>
 #include <cstdio>
 #include <numeric>
-#include <simd/daemon/room.hpp>
 
 namespace weave::simd {
 

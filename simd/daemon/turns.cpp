@@ -1,5 +1,6 @@
-#include <algorithm>
 #include <simd/daemon/turns.hpp>
+
+#include <algorithm>
 
 namespace weave::simd {
 

@@ -1,3 +1,5 @@
+#include <simd/daemon/worker_process.hpp>
+
 #include <weave/core/log.hpp>
 
 #include <array>
@@ -6,7 +8,6 @@
 #include <cstring>
 #include <fcntl.h>
 #include <fstream>
-#include <simd/daemon/worker_process.hpp>
 #include <spawn.h>
 #include <sys/syscall.h>
 #include <sys/wait.h>

@@ -1,6 +1,6 @@
-#include <weave/core/sha256.hpp>
-
 #include <simd/link/work_order.hpp>
+
+#include <weave/core/sha256.hpp>
 
 #include <utility>
 #include <variant>

@@ -1,7 +1,8 @@
+#include <simd/service/connection.hpp>
+
 #include <weave/wire/client.hpp>
 
 #include <algorithm>
-#include <simd/service/connection.hpp>
 #include <utility>
 #include <variant>
 

@@ -1,3 +1,5 @@
+#include <simd/service/local_tokens.hpp>
+
 #include <weave/core/text.hpp>
 #include <weave/keys/codes.hpp>
 #include <weave/keys/hex.hpp>
@@ -6,7 +8,6 @@
 #include <algorithm>
 #include <cerrno>
 #include <cstring>
-#include <simd/service/local_tokens.hpp>
 #include <simd/service/visitors.hpp>
 #include <sstream>
 #include <sys/stat.h>

@@ -1,8 +1,9 @@
+#include <simd/service/page.hpp>
+
 #include <array>
 #include <cmath>
 #include <cstdio>
 #include <simd/daemon/room.hpp>
-#include <simd/service/page.hpp>
 #include <string>
 #include <utility>
 #include <vector>

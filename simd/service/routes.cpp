@@ -1,3 +1,5 @@
+#include <simd/service/routes.hpp>
+
 #include <weave/core/file.hpp>
 #include <weave/core/text.hpp>
 #include <weave/net/health.hpp>
@@ -9,7 +11,6 @@
 #include <mutex>
 #include <simd/service/connection.hpp>
 #include <simd/service/page.hpp>
-#include <simd/service/routes.hpp>
 #include <utility>
 
 namespace weave::simd {

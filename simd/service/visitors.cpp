@@ -1,9 +1,10 @@
+#include <simd/service/visitors.hpp>
+
 #include <weave/core/log.hpp>
 #include <weave/keys/access_token.hpp>
 #include <weave/keys/codes.hpp>
 
 #include <simd/service/local_tokens.hpp>
-#include <simd/service/visitors.hpp>
 #include <string_view>
 
 namespace weave::simd {

@@ -1,9 +1,10 @@
+#include <simd/store/store.hpp>
+
 #include <weave/core/log.hpp>
 #include <weave/sql/database.hpp>
 
 #include <exception>
 #include <simd/store/migrations.hpp>
-#include <simd/store/store.hpp>
 #include <utility>
 
 namespace weave::simd {

@@ -1,7 +1,8 @@
+#include <simd/worker/checkpoint.hpp>
+
 #include <weave/core/file.hpp>
 #include <weave/core/sha256.hpp>
 
-#include <simd/worker/checkpoint.hpp>
 #include <string>
 #include <string_view>
 #include <utility>

@@ -1,4 +1,5 @@
 #include <simd/worker/inbox.hpp>
+
 #include <simd/worker/memory.hpp>
 #include <utility>
 

@@ -1,6 +1,7 @@
+#include <simd/worker/memory.hpp>
+
 #include <cerrno>
 #include <cstring>
-#include <simd/worker/memory.hpp>
 #include <string>
 #include <sys/resource.h>
 

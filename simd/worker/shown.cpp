@@ -1,7 +1,8 @@
+#include <simd/worker/shown.hpp>
+
 #include <weave/loom/pick_table.hpp>
 
 #include <algorithm>
-#include <simd/worker/shown.hpp>
 
 namespace weave::simd {
 

@@ -1,3 +1,5 @@
+#include <simd/worker/work.hpp>
+
 #include <weave/core/file.hpp>
 #include <weave/core/log.hpp>
 #include <weave/core/sha256.hpp>
@@ -9,7 +11,6 @@
 #include <simd/link/error_form.hpp>
 #include <simd/worker/memory.hpp>
 #include <simd/worker/shown.hpp>
-#include <simd/worker/work.hpp>
 #include <utility>
 
 namespace weave::simd {
@@ -20,8 +21,9 @@ namespace {
 constexpr std::chrono::seconds between_checkpoints{3};
 constexpr std::chrono::milliseconds between_tellings{200};
 /// On a machine that is busy a leg may last long. It ends then before its steps are made, with a checkpoint, so that none gets too
-/// old; the run is another one from there on than on an idle machine, by as much as a leg's end changes it.
-constexpr std::chrono::seconds longest_leg{28};
+/// old; the run is another one from there on than on an idle machine, by as much as a leg's end changes it. One that was taken up
+/// with an old checkpoint gets less time, but never too little to come further.
+constexpr std::chrono::seconds longest_leg{20}, shortest_cut_leg{8};
 
 sim::RunRequest run_request(const WorkOrder& order) {
     sim::RunRequest request;
@@ -78,6 +80,9 @@ Status Work::begin() {
     m_saved = true;
     m_saved_step = m_kept.step;
     m_saved_changes = m_kept.changes;
+    std::error_code unknown;
+    const auto written = std::filesystem::last_write_time(checkpoint_path(m_folder), unknown);
+    if (!unknown) m_kept_at = Clock::now() - std::max(std::filesystem::file_time_type::clock::now() - written, std::filesystem::file_time_type::duration(0));
     return {};
 }
 
@@ -132,12 +137,19 @@ Status Work::loop() {
         tell_phase(wire::Phase::running);
         m_run->use_threads(m_inbox.turn().value_or(1));
         m_leg_began = m_step;
-        m_leg_start = Clock::now();
+        begin_to_count();
         m_shown_last = false;  // what was shown last is not what it comes to now, however short the leg
         WEAVE_CHECK_OK(m_run->advance(m_leg_steps, [this](const sim::Progress& progress) { return watch(progress); }));
+        m_kept_at.reset();
         m_residual = m_run->now().last().residual;
     }
     return {};
+}
+
+/// From now on a leg is under way.
+void Work::begin_to_count() {
+    const auto now = Clock::now();
+    m_leg_cut = std::max(m_kept_at.value_or(now) + longest_leg, now + shortest_cut_leg);
 }
 
 /// What comes between two relaxations and takes no step of its own: after it there is one place for changes at every step.
@@ -189,6 +201,7 @@ Status Work::make_changes() {
         if (flip == nullptr) continue;
         m_is_flipping = true;
         show_if_due();
+        begin_to_count();
         WEAVE_CHECK_OK(m_run->flip(*flip, [this](const sim::Progress& progress) { return watch(progress); }));
         if (m_run->now().is_flipping()) m_run->now().end_flip();  // looked at as it lies: the whole may be long in coming to rest
         m_is_flipping = false;
@@ -244,7 +257,7 @@ bool Work::watch(const sim::Progress& progress) {
     if (!made_a_step) return m_inbox.must_yield() && is_told ? stand_still() : true;
     if (m_inbox.change_is_due(m_step)) return false;
     show_if_due();
-    m_leg_was_long = may_cut_legs() && Clock::now() - m_leg_start > longest_leg;
+    m_leg_was_long = may_cut_legs() && Clock::now() > m_leg_cut;
     return !m_leg_was_long && stand_still();
 }
 

@@ -85,6 +85,11 @@ TEST_CASE("init makes a site once") {
     Program mistyped({"init", folder.path / "mils" / "site", "--json"}, told);
     CHECK(mistyped.exit_code() == 3);
     CHECK_FALSE(std::filesystem::exists(folder.path / "mils"));
+    Program strange({"init", folder.path / "strange", "--host", "loom.mill", "--host", "no such host", "--json"}, told);
+    const Json refused = parse_json(strange.line()).value().at("error");
+    CHECK(refused.at("where") == "--host");
+    CHECK(strange.exit_code() == 3);
+    CHECK_FALSE(std::filesystem::exists(folder.path / "strange"));
     Program second({"init", site, "--json"}, told);
     CHECK(parse_json(second.line()).value().at("error").at("exit") == 4);
     CHECK(second.exit_code() == 4);

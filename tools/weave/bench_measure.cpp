@@ -1,4 +1,5 @@
 #include "bench_measure.hpp"
+
 #include "interrupt.hpp"
 
 #include <weave/block/operations.hpp>

@@ -1,6 +1,7 @@
 // How time and memory grow with the cloth.
 
 #include "bench_scale.hpp"
+
 #include "interrupt.hpp"
 
 #include <weave/block/operations.hpp>

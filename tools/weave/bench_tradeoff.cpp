@@ -1,6 +1,7 @@
 // Speed against accuracy: every solver and fidelity on one structure, against a reference on the same branch.
 
 #include "bench_tradeoff.hpp"
+
 #include "interrupt.hpp"
 
 #include <algorithm>

@@ -1,4 +1,5 @@
 #include "command.hpp"
+
 #include "progress.hpp"
 
 #include <weave/block/flip.hpp>

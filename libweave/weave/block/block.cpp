@@ -1,4 +1,5 @@
 #include <weave/block/block.hpp>
+
 #include <weave/core/text.hpp>
 
 #include <algorithm>

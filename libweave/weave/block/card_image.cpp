@@ -1,4 +1,5 @@
 #include <weave/block/card_image.hpp>
+
 #include <weave/core/sha256.hpp>
 
 #include <algorithm>

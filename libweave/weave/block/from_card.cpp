@@ -1,5 +1,6 @@
-#include <weave/block/card_bits.hpp>
 #include <weave/block/from_card.hpp>
+
+#include <weave/block/card_bits.hpp>
 
 #include <algorithm>
 #include <map>

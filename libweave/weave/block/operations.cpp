@@ -1,5 +1,6 @@
-#include <weave/block/operation_checks.hpp>
 #include <weave/block/operations.hpp>
+
+#include <weave/block/operation_checks.hpp>
 #include <weave/block/stack_moves.hpp>
 #include <weave/core/text.hpp>
 

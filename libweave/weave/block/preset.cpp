@@ -1,4 +1,5 @@
 #include <weave/block/preset.hpp>
+
 #include <weave/block/preset_rules.hpp>
 
 #include <algorithm>

@@ -1,4 +1,5 @@
 #include <weave/block/slice.hpp>
+
 #include <weave/core/text.hpp>
 
 #include <algorithm>

@@ -1,4 +1,5 @@
 #include <weave/command/command_outcome.hpp>
+
 #include <weave/core/exit_code.hpp>
 #include <weave/core/text.hpp>
 

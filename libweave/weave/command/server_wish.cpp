@@ -1,4 +1,5 @@
 #include <weave/command/server_wish.hpp>
+
 #include <weave/core/file.hpp>
 #include <weave/keys/secret_bytes.hpp>
 

@@ -1,4 +1,5 @@
 #include <weave/command/service_places.hpp>
+
 #include <weave/core/log.hpp>
 #include <weave/core/text.hpp>
 #include <weave/keys/private_file.hpp>
@@ -19,13 +20,6 @@ Status at_member(const std::string& member, Status status) {
     return error;
 }
 
-Status check_hosts(const std::vector<std::string>& hosts) {
-    for (std::size_t k = 0; k < hosts.size(); ++k)
-        if (!net::can_be_certified(hosts[k]))
-            return bad_input(on_one_line(hosts[k]) + " is neither a host name nor an address", indexed("hosts", k));
-    return {};
-}
-
 Status check_certificate(const net::TlsFiles& files) {
     if (const auto read = net::read_certificate(files.certificate); !read) return at_member("certificate", read.error());
     WEAVE_CHECK_OK(at_member("key", check_private_file(files.key)));
@@ -41,6 +35,13 @@ Status check_place(const std::string& address, std::uint16_t port) {
 }
 
 }  // namespace
+
+Status check_hosts(const std::vector<std::string>& hosts) {
+    for (std::size_t k = 0; k < hosts.size(); ++k)
+        if (!net::can_be_certified(hosts[k]))
+            return bad_input(on_one_line(hosts[k]) + " is neither a host name nor an address", indexed("hosts", k));
+    return {};
+}
 
 Status check_service_places(const ServiceConfig& config) {
     WEAVE_CHECK_OK(check_hosts(config.hosts));

@@ -4,8 +4,13 @@
 #include <weave/net/server.hpp>
 
 #include <optional>
+#include <string>
+#include <vector>
 
 namespace weave {
+
+/// Whether a certificate can stand for these hosts. An error names the first that it cannot, as `hosts[0]`.
+Status check_hosts(const std::vector<std::string>& hosts);
 
 /// Whether what a service is told can be had, before anything is made: that address and port can be listened on, that a
 /// certificate can stand for the hosts, that certificate and key can be read and go together, and that the key is private.

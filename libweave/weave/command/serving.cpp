@@ -1,4 +1,5 @@
 #include <weave/command/serving.hpp>
+
 #include <weave/core/log.hpp>
 #include <weave/core/text.hpp>
 

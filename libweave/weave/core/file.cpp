@@ -1,5 +1,6 @@
-#include <weave/core/descriptor.hpp>
 #include <weave/core/file.hpp>
+
+#include <weave/core/descriptor.hpp>
 #include <weave/core/log.hpp>
 
 #include <cctype>

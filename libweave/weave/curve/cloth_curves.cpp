@@ -1,4 +1,5 @@
 #include <weave/curve/cloth_curves.hpp>
+
 #include <weave/curve/meeting.hpp>
 #include <weave/curve/passing.hpp>
 #include <weave/curve/settled_levels.hpp>

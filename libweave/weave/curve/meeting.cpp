@@ -3,6 +3,7 @@
 // first repeat that it falls on, with the number of the repeat in which it really lies.
 
 #include <weave/curve/meeting.hpp>
+
 #include <weave/curve/nearness.hpp>
 
 #include <algorithm>

@@ -9,8 +9,9 @@
 // cross only where the two change places, and they go round one another on half an ellipse: at levels d and D
 // apart in the stacks, when they are equally high they are 2 sqrt(dD)/(d + D) of their full distance aside.
 
-#include <weave/curve/nearness.hpp>
 #include <weave/curve/passing.hpp>
+
+#include <weave/curve/nearness.hpp>
 #include <weave/curve/spline.hpp>
 
 #include <algorithm>

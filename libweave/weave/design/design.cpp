@@ -1,5 +1,6 @@
-#include <weave/core/text.hpp>
 #include <weave/design/design.hpp>
+
+#include <weave/core/text.hpp>
 
 #include <algorithm>
 #include <cmath>

@@ -1,6 +1,7 @@
+#include <weave/design/document.hpp>
+
 #include <weave/core/file.hpp>
 #include <weave/core/sha256.hpp>
-#include <weave/design/document.hpp>
 #include <weave/design/node_json.hpp>
 #include <weave/design/plan_json.hpp>
 

@@ -1,4 +1,5 @@
 #include <weave/design/edit.hpp>
+
 #include <weave/design/node_json.hpp>
 #include <weave/design/plan_json.hpp>
 #include <weave/design/tree.hpp>

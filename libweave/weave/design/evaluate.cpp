@@ -1,5 +1,6 @@
-#include <weave/block/from_card.hpp>
 #include <weave/design/evaluate.hpp>
+
+#include <weave/block/from_card.hpp>
 #include <weave/design/extent_to_be.hpp>
 #include <weave/design/tree.hpp>
 

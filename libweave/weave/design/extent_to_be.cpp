@@ -1,5 +1,6 @@
-#include <weave/block/operation_checks.hpp>
 #include <weave/design/extent_to_be.hpp>
+
+#include <weave/block/operation_checks.hpp>
 
 #include <algorithm>
 

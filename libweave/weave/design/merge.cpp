@@ -1,4 +1,5 @@
 #include <weave/design/merge.hpp>
+
 #include <weave/design/tree.hpp>
 
 namespace weave {

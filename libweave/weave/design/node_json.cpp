@@ -1,5 +1,6 @@
-#include <weave/core/text.hpp>
 #include <weave/design/node_json.hpp>
+
+#include <weave/core/text.hpp>
 #include <weave/design/plan_json.hpp>
 
 #include <algorithm>

@@ -1,8 +1,9 @@
+#include <weave/design/outline.hpp>
+
 #include <weave/block/card_bits.hpp>
 #include <weave/block/from_card.hpp>
 #include <weave/block/stack_moves.hpp>
 #include <weave/design/extent_to_be.hpp>
-#include <weave/design/outline.hpp>
 #include <weave/design/tree.hpp>
 
 #include <algorithm>

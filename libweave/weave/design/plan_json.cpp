@@ -1,5 +1,6 @@
-#include <weave/design/design.hpp>
 #include <weave/design/plan_json.hpp>
+
+#include <weave/design/design.hpp>
 
 #include <algorithm>
 #include <charconv>

@@ -1,5 +1,6 @@
-#include <weave/block/card_bits.hpp>
 #include <weave/diff/card_diff.hpp>
+
+#include <weave/block/card_bits.hpp>
 
 #include <algorithm>
 #include <bit>

@@ -1,5 +1,6 @@
-#include <weave/core/text.hpp>
 #include <weave/diff/design_diff.hpp>
+
+#include <weave/core/text.hpp>
 #include <weave/diff/plan_diff.hpp>
 
 #include <utility>

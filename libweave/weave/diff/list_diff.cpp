@@ -1,5 +1,6 @@
-#include <weave/core/text.hpp>
 #include <weave/diff/list_diff.hpp>
+
+#include <weave/core/text.hpp>
 
 #include <algorithm>
 #include <deque>

@@ -1,6 +1,7 @@
+#include <weave/diff/plan_diff.hpp>
+
 #include <weave/core/text.hpp>
 #include <weave/design/plan_json.hpp>
-#include <weave/diff/plan_diff.hpp>
 
 #include <algorithm>
 

@@ -1,5 +1,6 @@
-#include <weave/core/file.hpp>
 #include <weave/io/bitmap.hpp>
+
+#include <weave/core/file.hpp>
 #include <weave/io/raster.hpp>
 
 #include <algorithm>

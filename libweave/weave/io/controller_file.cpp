@@ -1,3 +1,5 @@
+#include <weave/io/controller_file.hpp>
+
 #include <weave/core/text.hpp>
 #include <weave/io/controller_reader.hpp>
 

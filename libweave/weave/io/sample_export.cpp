@@ -1,7 +1,8 @@
+#include <weave/io/sample_export.hpp>
+
 #include <weave/core/sha256.hpp>
 #include <weave/design/document.hpp>
 #include <weave/io/export_parts.hpp>
-#include <weave/io/sample_export.hpp>
 #include <weave/loom/pick_table.hpp>
 
 namespace weave {

@@ -1,5 +1,6 @@
-#include <weave/core/text.hpp>
 #include <weave/io/wif.hpp>
+
+#include <weave/core/text.hpp>
 #include <weave/io/wif_plans.hpp>
 #include <weave/io/wif_private.hpp>
 

@@ -1,5 +1,6 @@
-#include <weave/core/text.hpp>
 #include <weave/io/wif_drawdown.hpp>
+
+#include <weave/core/text.hpp>
 
 #include <algorithm>
 #include <array>

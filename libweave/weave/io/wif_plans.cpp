@@ -1,6 +1,7 @@
+#include <weave/io/wif_plans.hpp>
+
 #include <weave/core/text.hpp>
 #include <weave/core/units.hpp>
-#include <weave/io/wif_plans.hpp>
 
 #include <algorithm>
 #include <array>

@@ -1,7 +1,8 @@
+#include <weave/io/wif_private.hpp>
+
 #include <weave/core/sha256.hpp>
 #include <weave/core/text.hpp>
 #include <weave/design/plan_json.hpp>
-#include <weave/io/wif_private.hpp>
 
 #include <algorithm>
 #include <iterator>

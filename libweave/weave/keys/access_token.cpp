@@ -1,5 +1,6 @@
-#include <weave/core/json_reader.hpp>
 #include <weave/keys/access_token.hpp>
+
+#include <weave/core/json_reader.hpp>
 #include <weave/keys/hex.hpp>
 #include <weave/keys/members.hpp>
 #include <weave/keys/sodium.hpp>

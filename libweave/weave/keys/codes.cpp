@@ -1,5 +1,6 @@
-#include <weave/core/sha256.hpp>
 #include <weave/keys/codes.hpp>
+
+#include <weave/core/sha256.hpp>
 #include <weave/keys/sodium.hpp>
 
 #include <array>

@@ -1,4 +1,5 @@
 #include <weave/keys/hash.hpp>
+
 #include <weave/keys/hex.hpp>
 
 #include <openssl/sha.h>

@@ -1,6 +1,7 @@
+#include <weave/keys/key.hpp>
+
 #include <weave/core/sha256.hpp>
 #include <weave/keys/hex.hpp>
-#include <weave/keys/key.hpp>
 #include <weave/keys/sodium.hpp>
 
 #include <sodium.h>

@@ -1,6 +1,7 @@
+#include <weave/keys/members.hpp>
+
 #include <weave/core/text.hpp>
 #include <weave/keys/hex.hpp>
-#include <weave/keys/members.hpp>
 
 namespace weave {
 

@@ -1,7 +1,8 @@
+#include <weave/keys/private_file.hpp>
+
 #include <weave/core/descriptor.hpp>
 #include <weave/core/file.hpp>
 #include <weave/keys/hex.hpp>
-#include <weave/keys/private_file.hpp>
 #include <weave/keys/sodium.hpp>
 
 #include <cerrno>

@@ -1,4 +1,5 @@
 #include <weave/keys/secret_bytes.hpp>
+
 #include <weave/keys/sodium.hpp>
 
 #include <new>

@@ -1,7 +1,8 @@
+#include <weave/keys/signed_document.hpp>
+
 #include <weave/core/json_reader.hpp>
 #include <weave/core/sha256.hpp>
 #include <weave/keys/members.hpp>
-#include <weave/keys/signed_document.hpp>
 
 #include <algorithm>
 

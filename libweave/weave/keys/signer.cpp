@@ -1,8 +1,9 @@
+#include <weave/keys/signer.hpp>
+
 #include <weave/core/file.hpp>
 #include <weave/core/json_reader.hpp>
 #include <weave/keys/members.hpp>
 #include <weave/keys/server_key.hpp>
-#include <weave/keys/signer.hpp>
 
 #include <utility>
 

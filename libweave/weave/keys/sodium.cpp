@@ -1,5 +1,6 @@
-#include <weave/core/log.hpp>
 #include <weave/keys/sodium.hpp>
+
+#include <weave/core/log.hpp>
 
 #include <cstdlib>
 #include <sodium.h>

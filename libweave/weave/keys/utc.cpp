@@ -1,5 +1,6 @@
-#include <weave/core/text.hpp>
 #include <weave/keys/utc.hpp>
+
+#include <weave/core/text.hpp>
 
 #include <cstdio>
 

@@ -1,4 +1,5 @@
 #include <weave/loom/check.hpp>
+
 #include <weave/loom/check_detail.hpp>
 
 #include <algorithm>

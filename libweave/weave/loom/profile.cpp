@@ -1,10 +1,11 @@
+#include <weave/loom/profile.hpp>
+
 #include <weave/core/file.hpp>
 #include <weave/core/json_reader.hpp>
 #include <weave/core/sha256.hpp>
 #include <weave/core/text.hpp>
 #include <weave/design/plan_json.hpp>
 #include <weave/loom/check.hpp>
-#include <weave/loom/profile.hpp>
 
 #include <algorithm>
 #include <array>

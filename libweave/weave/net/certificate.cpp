@@ -1,7 +1,8 @@
+#include <weave/net/certificate.hpp>
+
 #include <weave/core/file.hpp>
 #include <weave/core/sha256.hpp>
 #include <weave/core/text.hpp>
-#include <weave/net/certificate.hpp>
 
 #include <algorithm>
 #include <arpa/inet.h>

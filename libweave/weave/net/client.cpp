@@ -1,5 +1,6 @@
-#include <weave/core/text.hpp>
 #include <weave/net/client.hpp>
+
+#include <weave/core/text.hpp>
 #include <weave/net/dial.hpp>
 
 #include <array>

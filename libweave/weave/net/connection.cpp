@@ -1,6 +1,7 @@
+#include <weave/net/connection.hpp>
+
 #include <weave/core/log.hpp>
 #include <weave/core/text.hpp>
-#include <weave/net/connection.hpp>
 #include <weave/net/target.hpp>
 #include <weave/net/websocket_session.hpp>
 

@@ -1,5 +1,6 @@
-#include <weave/core/sha256.hpp>
 #include <weave/net/dial.hpp>
+
+#include <weave/core/sha256.hpp>
 #include <weave/net/unix_socket.hpp>
 
 #include <algorithm>

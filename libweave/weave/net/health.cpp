@@ -1,6 +1,7 @@
+#include <weave/net/health.hpp>
+
 #include <weave/core/log.hpp>
 #include <weave/core/text.hpp>
-#include <weave/net/health.hpp>
 
 namespace weave::net {
 

@@ -1,6 +1,7 @@
+#include <weave/net/message.hpp>
+
 #include <weave/core/log.hpp>
 #include <weave/core/text.hpp>
-#include <weave/net/message.hpp>
 
 #include <algorithm>
 #include <array>

@@ -1,5 +1,6 @@
-#include <weave/core/json.hpp>
 #include <weave/net/metrics.hpp>
+
+#include <weave/core/json.hpp>
 
 #include <algorithm>
 #include <cassert>

@@ -1,6 +1,7 @@
+#include <weave/net/server.hpp>
+
 #include <weave/core/log.hpp>
 #include <weave/net/connection.hpp>
-#include <weave/net/server.hpp>
 #include <weave/net/unix_socket.hpp>
 
 #include <boost/asio/basic_socket_acceptor.hpp>

@@ -1,5 +1,6 @@
-#include <weave/core/text.hpp>
 #include <weave/net/target.hpp>
+
+#include <weave/core/text.hpp>
 
 #include <algorithm>
 

@@ -1,8 +1,9 @@
+#include <weave/net/websocket_client.hpp>
+
 #include <weave/core/json.hpp>
 #include <weave/core/text.hpp>
 #include <weave/net/dial.hpp>
 #include <weave/net/teardown.hpp>
-#include <weave/net/websocket_client.hpp>
 
 #include <boost/asio/co_spawn.hpp>
 #include <boost/asio/detached.hpp>

@@ -1,6 +1,7 @@
+#include <weave/net/websocket_session.hpp>
+
 #include <weave/core/log.hpp>
 #include <weave/core/text.hpp>
-#include <weave/net/websocket_session.hpp>
 
 #include <boost/asio/co_spawn.hpp>
 #include <boost/asio/detached.hpp>

@@ -1,5 +1,6 @@
-#include <weave/core/text.hpp>
 #include <weave/picture/canvas.hpp>
+
+#include <weave/core/text.hpp>
 #include <weave/picture/encode_png.hpp>
 
 #include <cairo-svg.h>

@@ -1,5 +1,6 @@
-#include <weave/core/text.hpp>
 #include <weave/picture/cloth_view.hpp>
+
+#include <weave/core/text.hpp>
 #include <weave/picture/colour_map.hpp>
 #include <weave/picture/page.hpp>
 #include <weave/picture/tube_render.hpp>

@@ -1,5 +1,6 @@
-#include <weave/picture/canvas.hpp>
 #include <weave/picture/colour_map.hpp>
+
+#include <weave/picture/canvas.hpp>
 
 #include <algorithm>
 #include <cmath>

@@ -1,5 +1,6 @@
-#include <weave/picture/change_rings.hpp>
 #include <weave/picture/diff_view.hpp>
+
+#include <weave/picture/change_rings.hpp>
 #include <weave/picture/grid.hpp>
 
 #include <algorithm>

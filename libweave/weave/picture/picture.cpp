@@ -1,4 +1,5 @@
 #include <weave/picture/picture.hpp>
+
 #include <weave/picture/views.hpp>
 
 #include <charconv>

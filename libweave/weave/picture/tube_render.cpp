@@ -1,5 +1,6 @@
-#include <weave/picture/colour_map.hpp>
 #include <weave/picture/tube_render.hpp>
+
+#include <weave/picture/colour_map.hpp>
 #include <weave/picture/tube_shade.hpp>
 
 #include <algorithm>

@@ -1,6 +1,7 @@
+#include <weave/picture/tube_scene.hpp>
+
 #include <weave/design/yarns.hpp>
 #include <weave/picture/look.hpp>
-#include <weave/picture/tube_scene.hpp>
 #include <weave/sim/sampled.hpp>
 
 #include <Eigen/Geometry>

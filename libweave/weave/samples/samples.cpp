@@ -1,5 +1,6 @@
-#include <weave/samples/makers.hpp>
 #include <weave/samples/samples.hpp>
+
+#include <weave/samples/makers.hpp>
 
 #include <algorithm>
 

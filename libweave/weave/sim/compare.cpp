@@ -1,4 +1,5 @@
 #include <weave/sim/compare.hpp>
+
 #include <weave/sim/yarns_file.hpp>
 
 #include <Eigen/Cholesky>

@@ -1,4 +1,5 @@
 #include <weave/sim/descent.hpp>
+
 #include <weave/sim/safe_step.hpp>
 
 #include <algorithm>

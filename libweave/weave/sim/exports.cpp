@@ -1,4 +1,5 @@
 #include <weave/sim/exports.hpp>
+
 #include <weave/sim/sampled.hpp>
 
 #include <Eigen/Geometry>

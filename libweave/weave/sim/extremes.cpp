@@ -1,6 +1,7 @@
+#include <weave/sim/extremes.hpp>
+
 #include <weave/block/operations.hpp>
 #include <weave/design/evaluate.hpp>
-#include <weave/sim/extremes.hpp>
 #include <weave/sim/linking.hpp>
 #include <weave/sim/order.hpp>
 #include <weave/sim/paper.hpp>

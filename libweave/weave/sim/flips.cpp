@@ -1,4 +1,5 @@
 #include <weave/sim/flips.hpp>
+
 #include <weave/sim/neighbourhood.hpp>
 #include <weave/sim/order.hpp>
 #include <weave/sim/relax.hpp>

@@ -1,4 +1,5 @@
 #include <weave/sim/inspect.hpp>
+
 #include <weave/sim/inspect_detail.hpp>
 
 #include <algorithm>

@@ -1,5 +1,6 @@
-#include <weave/core/text.hpp>
 #include <weave/sim/measured.hpp>
+
+#include <weave/core/text.hpp>
 
 #include <charconv>
 #include <cmath>

@@ -1,5 +1,6 @@
-#include <weave/sim/fabric.hpp>
 #include <weave/sim/neighbourhood.hpp>
+
+#include <weave/sim/fabric.hpp>
 
 #include <algorithm>
 #include <cmath>

@@ -1,4 +1,5 @@
 #include <weave/sim/newton.hpp>
+
 #include <weave/sim/relax.hpp>
 #include <weave/sim/safe_step.hpp>
 

@@ -1,5 +1,6 @@
-#include <weave/sim/linking.hpp>
 #include <weave/sim/order.hpp>
+
+#include <weave/sim/linking.hpp>
 
 #include <Eigen/Geometry>
 
@@ -85,16 +86,21 @@ std::optional<CrossingSpot> spot_by_search(const Thread& weft, const Thread& war
 CrossingSpot nearest_spot(const Thread& weft, const Thread& warp, double t0, double s0) {
     constexpr int pieces = 12;
     constexpr double farthest = 1.5;  ///< key points
+    std::array<double, 2 * pieces + 1> t{}, s{};
+    std::array<Vec3, 2 * pieces + 1> a, b;
+    for (std::size_t k = 0; k < a.size(); ++k) {
+        const double keys = farthest * (static_cast<int>(k) - pieces) / pieces;
+        a[k] = weft.spline.place(t[k] = clamped(weft, t0 + keys * weft.per_key));
+        b[k] = warp.spline.place(s[k] = clamped(warp, s0 + keys * warp.per_key));
+    }
     double least = std::numeric_limits<double>::infinity();
     CrossingSpot spot;
-    for (int i = -pieces; i <= pieces; ++i) {
-        for (int j = -pieces; j <= pieces; ++j) {
-            const double t = clamped(weft, t0 + farthest * i / pieces * weft.per_key),
-                         s = clamped(warp, s0 + farthest * j / pieces * warp.per_key);
-            const Vec3 apart = weft.spline.place(t) - warp.spline.place(s);
+    for (std::size_t i = 0; i < a.size(); ++i) {
+        for (std::size_t j = 0; j < b.size(); ++j) {
+            const Vec3 apart = a[i] - b[j];
             if (apart.norm() >= least) continue;
             least = apart.norm();
-            spot = {t, s, apart.z()};
+            spot = {t[i], s[j], apart.z()};
         }
     }
     return spot;
@@ -107,13 +113,19 @@ Vec3 across_both(const Thread& weft, const Thread& warp, const CrossingSpot& at,
 
 /// Whether a crossing lies as the card says. Cloth that stands on edge or hangs over, as an opened pocket's
 /// does, shows nothing from above: there the yarns are looked at across both of them, where they are nearest.
-bool lies_as_planned(const Thread& weft, const Thread& warp, const std::optional<CrossingSpot>& spot,
-                     const CrossingSpot& nearest, double weft_way, bool weft_over) {
+bool lies_as_planned(const Thread& weft, const Thread& warp, const Crossing& crossing,
+                     const std::optional<CrossingSpot>& spot, double weft_way) {
     constexpr double steepest = 0.5;
-    const Vec3 up = across_both(weft, warp, spot.value_or(nearest), weft_way);
-    if (up.z() > steepest * up.norm()) return spot && (spot->height_mm > 0) == weft_over;
+    const auto shows = [&](const Vec3& up) { return up.z() > steepest * up.norm(); };
+    if (spot && shows(across_both(weft, warp, *spot, weft_way)))
+        return (spot->height_mm > 0) == crossing.weft_over;
+    const CrossingSpot nearest =
+        nearest_spot(weft, warp, weft.per_key * static_cast<double>(crossing.weft_key),
+                     warp.per_key * static_cast<double>(crossing.warp_key));
+    const Vec3 up = across_both(weft, warp, nearest, weft_way);
+    if (!spot && shows(up)) return false;
     const Vec3 apart = weft.spline.place(nearest.weft_at) - warp.spline.place(nearest.warp_at);
-    return (across_both(weft, warp, nearest, weft_way).dot(apart) > 0) == weft_over;
+    return (up.dot(apart) > 0) == crossing.weft_over;
 }
 
 }  // namespace
@@ -144,14 +156,13 @@ std::vector<LostCrossing> doubtful_crossings(const std::vector<Crossing>& crossi
             continue;
         const Thread weft{subject.now[crossing.weft], subject.per_key[crossing.weft]},
             warp{subject.now[crossing.warp], subject.per_key[crossing.warp]};
-        const double t = weft.per_key * static_cast<double>(crossing.weft_key),
-                     s = warp.per_key * static_cast<double>(crossing.warp_key);
+        const double t = weft.per_key * static_cast<double>(crossing.weft_key);
         const Spline& planned = subject.planned[crossing.weft];
         const double weft_way =
             planned.tangent(std::min(t, static_cast<double>(planned.segments()))).y() < 0 ? -1 : 1;
         const std::optional<CrossingSpot> spot =
             find_crossing(weft, warp, crossing.weft_key, crossing.warp_key);
-        if (!lies_as_planned(weft, warp, spot, nearest_spot(weft, warp, t, s), weft_way, crossing.weft_over))
+        if (!lies_as_planned(weft, warp, crossing, spot, weft_way))
             doubtful.push_back({crossing, spot.has_value()});
     }
     return doubtful;

@@ -1,10 +1,11 @@
+#include <weave/sim/plan.hpp>
+
 #include <weave/core/text.hpp>
 #include <weave/core/units.hpp>
 #include <weave/curve/spline.hpp>
 #include <weave/design/pins.hpp>
 #include <weave/loom/pick_table.hpp>
 #include <weave/sim/fabric.hpp>
-#include <weave/sim/plan.hpp>
 
 #include <Eigen/Geometry>
 

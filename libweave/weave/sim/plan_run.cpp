@@ -1,9 +1,10 @@
+#include <weave/sim/plan_run.hpp>
+
 #include <weave/design/edit.hpp>
 #include <weave/design/outline.hpp>
 #include <weave/sim/flips.hpp>
 #include <weave/sim/order.hpp>
 #include <weave/sim/paper.hpp>
-#include <weave/sim/plan_run.hpp>
 
 #include <algorithm>
 #include <chrono>

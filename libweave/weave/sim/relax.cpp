@@ -1,7 +1,8 @@
+#include <weave/sim/relax.hpp>
+
 #include <weave/sim/descent.hpp>
 #include <weave/sim/multigrid.hpp>
 #include <weave/sim/newton.hpp>
-#include <weave/sim/relax.hpp>
 #include <weave/sim/spread.hpp>
 
 #include <algorithm>

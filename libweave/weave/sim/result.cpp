@@ -1,6 +1,7 @@
+#include <weave/sim/result.hpp>
+
 #include <weave/design/document.hpp>
 #include <weave/loom/pick_table.hpp>
-#include <weave/sim/result.hpp>
 
 #include <algorithm>
 #include <cmath>

@@ -1,9 +1,10 @@
+#include <weave/sim/resume.hpp>
+
 #include <weave/core/text.hpp>
 #include <weave/curve/spline.hpp>
 #include <weave/sim/linking.hpp>
 #include <weave/sim/order.hpp>
 #include <weave/sim/periods.hpp>
-#include <weave/sim/resume.hpp>
 
 #include <algorithm>
 #include <map>

@@ -1,6 +1,7 @@
+#include <weave/sim/run.hpp>
+
 #include <weave/design/edit.hpp>
 #include <weave/sim/result.hpp>
-#include <weave/sim/run.hpp>
 
 #include <algorithm>
 #include <utility>

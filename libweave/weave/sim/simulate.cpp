@@ -1,5 +1,6 @@
-#include <weave/sim/result.hpp>
 #include <weave/sim/simulate.hpp>
+
+#include <weave/sim/result.hpp>
 
 #include <utility>
 

@@ -1,10 +1,11 @@
+#include <weave/sim/starts.hpp>
+
 #include <weave/core/text.hpp>
 #include <weave/sim/deviation.hpp>
 #include <weave/sim/energy.hpp>
 #include <weave/sim/inspect.hpp>
 #include <weave/sim/order.hpp>
 #include <weave/sim/report_words.hpp>
-#include <weave/sim/starts.hpp>
 
 #include <algorithm>
 #include <cmath>

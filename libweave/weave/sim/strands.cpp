@@ -1,5 +1,6 @@
-#include <weave/core/text.hpp>
 #include <weave/sim/strands.hpp>
+
+#include <weave/core/text.hpp>
 
 #include <algorithm>
 #include <cmath>

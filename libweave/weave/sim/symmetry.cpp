@@ -1,6 +1,7 @@
+#include <weave/sim/symmetry.hpp>
+
 #include <weave/sim/deviation.hpp>
 #include <weave/sim/report_words.hpp>
-#include <weave/sim/symmetry.hpp>
 
 #include <algorithm>
 #include <cmath>

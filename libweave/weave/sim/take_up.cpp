@@ -1,8 +1,9 @@
+#include <weave/sim/take_up.hpp>
+
 #include <weave/core/text.hpp>
 #include <weave/design/document.hpp>
 #include <weave/loom/pick_table.hpp>
 #include <weave/sim/report_words.hpp>
-#include <weave/sim/take_up.hpp>
 
 #include <algorithm>
 #include <cmath>

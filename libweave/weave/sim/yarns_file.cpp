@@ -1,7 +1,8 @@
+#include <weave/sim/yarns_file.hpp>
+
 #include <weave/core/json_reader.hpp>
 #include <weave/core/text.hpp>
 #include <weave/sim/plan.hpp>
-#include <weave/sim/yarns_file.hpp>
 
 #include <algorithm>
 #include <bit>

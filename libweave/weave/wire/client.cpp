@@ -1,6 +1,7 @@
+#include <weave/wire/client.hpp>
+
 #include <weave/core/json_reader.hpp>
 #include <weave/core/text.hpp>
-#include <weave/wire/client.hpp>
 
 #include <algorithm>
 #include <array>

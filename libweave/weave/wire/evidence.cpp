@@ -1,7 +1,8 @@
+#include <weave/wire/evidence.hpp>
+
 #include <weave/core/json_reader.hpp>
 #include <weave/keys/members.hpp>
 #include <weave/sim/plan.hpp>
-#include <weave/wire/evidence.hpp>
 
 #include <algorithm>
 #include <cmath>

@@ -1,4 +1,5 @@
 #include <weave/wire/message.hpp>
+
 #include <weave/wire/message_parts.hpp>
 
 namespace weave::wire {

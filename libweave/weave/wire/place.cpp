@@ -1,5 +1,6 @@
-#include <weave/core/text.hpp>
 #include <weave/wire/place.hpp>
+
+#include <weave/core/text.hpp>
 
 #include <algorithm>
 #include <utility>

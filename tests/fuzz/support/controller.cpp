@@ -1,5 +1,6 @@
-#include "../../support/controller_bytes.hpp"
 #include "controller.hpp"
+
+#include "../../support/controller_bytes.hpp"
 #include "must.hpp"
 
 #include <weave/io/controller_file.hpp>

@@ -1,5 +1,6 @@
-#include "must.hpp"
 #include "picture.hpp"
+
+#include "must.hpp"
 
 namespace weave::fuzz {
 

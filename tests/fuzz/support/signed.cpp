@@ -1,5 +1,6 @@
-#include "must.hpp"
 #include "signed.hpp"
+
+#include "must.hpp"
 
 #include <cstring>
 

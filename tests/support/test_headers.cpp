@@ -1,0 +1,2 @@
+// Stands for the headers that all tests have in common.
+int main() {}
