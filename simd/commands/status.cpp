@@ -90,7 +90,7 @@ CLI::App* add_status_command(CLI::App& app, CommandOutcome& outcome, const char*
 void add_status_commands(CLI::App& app, CommandOutcome& outcome) {
     const auto words = std::make_shared<StatusWords>();
     on_run(add_status_command(app, outcome, "status", "Tell what a daemon is doing", words), outcome, [words, &outcome] { return status(*words, outcome); });
-    on_run(add_status_command(app, outcome, "top", "Show what a daemon is doing, every second, until Ctrl-C", words), outcome,
+    on_run(add_status_command(app, outcome, "top", "Show on a terminal what a daemon is doing, every second, until Ctrl-C; elsewhere once", words), outcome,
            [words, &outcome] { return top(*words, outcome); });
 }
 

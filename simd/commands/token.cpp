@@ -1,7 +1,9 @@
 // token: who may come in where no loomlink gives out tokens.
 
 #include <weave/command/serving.hpp>
+#include <weave/core/text.hpp>
 
+#include <filesystem>
 #include <memory>
 #include <simd/commands/command.hpp>
 #include <simd/commands/running_daemon.hpp>
@@ -43,7 +45,10 @@ void add_token_commands(CLI::App& app, CommandOutcome& outcome) {
     const auto words = std::make_shared<TokenWords>();
     on_run(add_token_command(group, outcome, "add", "Make a token for a person, in place of an earlier one; it is told once", words, true), outcome,
            [words, &outcome]() -> Status {
+               std::error_code unknown;
+               const bool is_new = !std::filesystem::exists(words->folder, unknown);
                WEAVE_CHECK_OK(make_service_folder(words->folder));
+               if (is_new) outcome.note(on_one_line(words->folder) + ": made; no daemon has served there yet");
                WEAVE_TRY(const std::string token, add_local_token(DaemonFolder{words->folder}.tokens(), words->person));
                outcome.answer({{"person", words->person}, {"token", token}}, token + "\n");
                return {};

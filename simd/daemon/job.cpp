@@ -125,6 +125,7 @@ void Job::planned(const Json& plan) {
     }
     m_phase = wire::JobPhase::running;
     m_began = Clock::now();
+    m_pace.reset();
     const Status started = m_around.store.start_job(number());
     if (!started) log(LogLevel::warning, "job " + std::to_string(number()) + ": " + started.error().text());
 }

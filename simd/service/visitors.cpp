@@ -28,11 +28,10 @@ std::optional<std::string> shown_token(const net::Request& request) {
 
 Result<Visitor> Doorkeeper::let_in(const net::Request& request) {
     if (request.local) return Visitor{local_person_name, {}, true};
-    if (m_wrong.wait(request.peer).count() > 0) return Error{ErrorCode::refused, "too many tokens that do not count: wait a little", "Authorization"};
     const std::optional<std::string> token = shown_token(request);
-    if (token) {
+    if (token) {  // one that counts gets in, whatever others tried from the same address: none can be guessed
         if (auto visitor = visitor_of(*token)) return std::move(*visitor);
-        static_cast<void>(m_wrong.take(request.peer));
+        if (!m_wrong.take(request.peer)) return Error{ErrorCode::refused, "too many tokens that do not count: wait a little", "Authorization"};
     }
     return Error{ErrorCode::refused, token ? "this token does not count here, or no longer: get a new one" : "show a token: Authorization: Bearer …", "Authorization"};
 }

@@ -21,9 +21,9 @@ namespace {
 constexpr std::chrono::seconds between_checkpoints{3};
 constexpr std::chrono::milliseconds between_tellings{200};
 /// On a machine that is busy a leg may last long. It ends then before its steps are made, with a checkpoint, so that none gets too
-/// old; the run is another one from there on than on an idle machine, by as much as a leg's end changes it. One that was taken up
-/// with an old checkpoint gets less time, but never too little to come further.
-constexpr std::chrono::seconds longest_leg{20}, shortest_cut_leg{8};
+/// old; the run is another one from there on than on an idle machine, by as much as a leg's end changes it. Time for which it was
+/// paused does not count.
+constexpr std::chrono::seconds longest_leg{24};
 
 sim::RunRequest run_request(const WorkOrder& order) {
     sim::RunRequest request;
@@ -80,9 +80,7 @@ Status Work::begin() {
     m_saved = true;
     m_saved_step = m_kept.step;
     m_saved_changes = m_kept.changes;
-    std::error_code unknown;
-    const auto written = std::filesystem::last_write_time(checkpoint_path(m_folder), unknown);
-    if (!unknown) m_kept_at = Clock::now() - std::max(std::filesystem::file_time_type::clock::now() - written, std::filesystem::file_time_type::duration(0));
+    m_residual = m_run->now().last().residual;
     return {};
 }
 
@@ -137,19 +135,12 @@ Status Work::loop() {
         tell_phase(wire::Phase::running);
         m_run->use_threads(m_inbox.turn().value_or(1));
         m_leg_began = m_step;
-        begin_to_count();
+        m_leg_cut = Clock::now() + longest_leg;
         m_shown_last = false;  // what was shown last is not what it comes to now, however short the leg
         WEAVE_CHECK_OK(m_run->advance(m_leg_steps, [this](const sim::Progress& progress) { return watch(progress); }));
-        m_kept_at.reset();
         m_residual = m_run->now().last().residual;
     }
     return {};
-}
-
-/// From now on a leg is under way.
-void Work::begin_to_count() {
-    const auto now = Clock::now();
-    m_leg_cut = std::max(m_kept_at.value_or(now) + longest_leg, now + shortest_cut_leg);
 }
 
 /// What comes between two relaxations and takes no step of its own: after it there is one place for changes at every step.
@@ -201,7 +192,7 @@ Status Work::make_changes() {
         if (flip == nullptr) continue;
         m_is_flipping = true;
         show_if_due();
-        begin_to_count();
+        m_leg_cut = Clock::now() + longest_leg;
         WEAVE_CHECK_OK(m_run->flip(*flip, [this](const sim::Progress& progress) { return watch(progress); }));
         if (m_run->now().is_flipping()) m_run->now().end_flip();  // looked at as it lies: the whole may be long in coming to rest
         m_is_flipping = false;
@@ -278,7 +269,9 @@ bool Work::stand_still() {
             give_turn_back();
             tell_phase(wire::Phase::paused);
             show(true);
+            const auto paused = Clock::now();
             m_inbox.wait({});
+            m_leg_cut += Clock::now() - paused;
             if (m_inbox.take_newly_watched()) m_shown_last = false;
             continue;
         }

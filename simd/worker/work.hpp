@@ -45,7 +45,6 @@ class Work {
     void rest();
 
     // During a leg.
-    void begin_to_count();
     bool watch(const sim::Progress& progress);
     bool stand_still();
     [[nodiscard]] bool may_cut_legs() const;
@@ -83,8 +82,7 @@ class Work {
     } m_laid;
     std::optional<wire::Phase> m_phase;
     bool m_is_flipping = false, m_leg_was_long = false;
-    std::optional<Clock::time_point> m_kept_at;  ///< when the checkpoint was written that was taken up, until a leg has ended
-    Clock::time_point m_leg_cut{};               ///< when the leg under way ends at the latest
+    Clock::time_point m_leg_cut{};  ///< when the leg under way ends at the latest
     Checkpoint m_kept;  ///< the state at the end of the last leg
     std::uint64_t m_saved_step = 0, m_saved_changes = 0;
     bool m_saved = false, m_has_turn = false, m_shown_last = false;

@@ -47,7 +47,7 @@ Result<wire::JobEnded> end_of(wire::Follower& follower, std::uint64_t job) {
     WEAVE_TRY(const wire::JobList jobs, jobs_of(follower));
     const auto state = std::ranges::find(jobs.jobs, job, &wire::JobState::job);
     if (state == jobs.jobs.end()) return Error{ErrorCode::refused, "there is no such job, or its end was dealt with", where};
-    if (state->phase < wire::JobPhase::done) return Error{ErrorCode::refused, "has not ended yet", where};
+    if (state->phase < wire::JobPhase::done) return Error{ErrorCode::refused, "has not ended yet: weave jobs lists how far it is", where};
     const auto until = std::chrono::steady_clock::now() + answer_patience;
     while (std::chrono::steady_clock::now() < until) {
         WEAVE_TRY(auto received, follower.receive(std::chrono::seconds(1)));

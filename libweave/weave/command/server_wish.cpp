@@ -42,7 +42,7 @@ Status take_token(wire::ServerPlace& place, const ServerWish& wish) {
 CLI::Option* add_server_options(CLI::App* command, ServerWish& wish) {
     CLI::Option* on = command->add_option("--on", wish.host, "the server (simd) that computes: box, box:8444, https://box:8444 or unix:/path")
                           ->type_name("HOST");
-    command->add_option("--token-file", wish.token_file, "the file with the token that loomlink gave (loomlink token); without it WEAVE_TOKEN of the environment")
+    command->add_option("--token-file", wish.token_file, "the file with the token that loomlink gave (loomlink token), or simd (simd token add); without it WEAVE_TOKEN of the environment")
         ->needs(on)
         ->type_name("FILE");
     CLI::Option* pinned = command->add_option("--fingerprint", wish.fingerprint, "SHA-256 of the server's certificate, where no authority signed it")

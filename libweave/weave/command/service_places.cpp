@@ -39,7 +39,7 @@ Status check_place(const std::string& address, std::uint16_t port) {
 Status check_hosts(const std::vector<std::string>& hosts) {
     for (std::size_t k = 0; k < hosts.size(); ++k)
         if (!net::can_be_certified(hosts[k]))
-            return bad_input(on_one_line(hosts[k]) + " is neither a host name nor an address", indexed("hosts", k));
+            return bad_input("'" + on_one_line(hosts[k]) + "' is neither a host name nor an address", indexed("hosts", k));
     return {};
 }
 

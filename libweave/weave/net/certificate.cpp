@@ -54,12 +54,25 @@ bool is_address(const std::string& name) {
            ::inet_pton(AF_INET6, name.c_str(), bytes.data()) == 1;
 }
 
-bool is_host_name(const std::string& name) {
-    return !name.empty() && name.size() <= 253 && name.front() != '.' && name.front() != '-' &&
-           std::all_of(name.begin(), name.end(), [](char c) {
-               return (c >= 'a' && c <= 'z') || (c >= 'A' && c <= 'Z') || (c >= '0' && c <= '9') ||
-                      c == '-' || c == '.';
-           });
+bool is_letter_or_digit(char c) {
+    return (c >= 'a' && c <= 'z') || (c >= 'A' && c <= 'Z') || (c >= '0' && c <= '9');
+}
+
+bool is_label(std::string_view label) {
+    return !label.empty() && label.size() <= 63 && is_letter_or_digit(label.front()) && is_letter_or_digit(label.back()) &&
+           std::ranges::all_of(label, [](char c) { return is_letter_or_digit(c) || c == '-'; });
+}
+
+/// Labels with points between, the last of them not a number, or it would be an address (RFC 1123, 2.1).
+bool is_host_name(std::string_view name) {
+    if (name.size() > 253) return false;
+    while (true) {
+        const std::size_t point = name.find('.');
+        const std::string_view label = name.substr(0, point);
+        if (!is_label(label)) return false;
+        if (point == std::string_view::npos) return !std::ranges::all_of(label, [](char c) { return c >= '0' && c <= '9'; });
+        name.remove_prefix(point + 1);
+    }
 }
 
 std::string content_of(BIO* memory) {
