@@ -4,6 +4,7 @@
 #include <weave/command/service_places.hpp>
 #include <weave/command/serving.hpp>
 #include <weave/core/file.hpp>
+#include <weave/net/certificate.hpp>
 #include <weave/net/unix_socket.hpp>
 
 #include <catch2/catch.hpp>
@@ -92,6 +93,7 @@ TEST_CASE("clients come by the names that are told, or by this machine's") {
     const auto own = client_hosts(config);
     CHECK(std::ranges::count(own, "localhost") == 1);
     CHECK(std::ranges::count(own, "127.0.0.1") == 1);
+    CHECK(std::ranges::all_of(own, net::can_be_certified));
     config.hosts = {"box.mill"};
     CHECK(client_hosts(config) == std::vector<std::string>{"box.mill", "127.0.0.1"});
     for (const char* everywhere : {"0.0.0.0", "::", ""}) {
@@ -143,9 +145,9 @@ TEST_CASE("address and port are tried before anything is served") {
 
 TEST_CASE("hosts that no certificate can stand for are found") {
     ServiceConfig config = at_any_port();
-    config.hosts = {"box.mill", "10.0.0.7", "::1"};
+    config.hosts = {"box.mill", "10.0.0.7", "::1", "7.mill", "box-7"};
     CHECK(check_service_places(config));
-    for (const std::string wrong : {"", "a b", "https://box", "-box", ".box", "b\nx", "böx"}) {
+    for (const std::string& wrong : std::vector<std::string>{"", "a b", "https://box", "-box", ".box", "b\nx", "böx", "a..b", "box-.mill", "1.2.3.4.5", "10.0.0", std::string(64, 'a')}) {
         INFO(wrong);
         config.hosts = {"box", wrong};
         CHECK(error_of(config).code == ErrorCode::bad_input);

@@ -1,5 +1,7 @@
 #include <weave/command/service_config.hpp>
 
+#include <weave/net/certificate.hpp>
+
 #include <algorithm>
 #include <array>
 #include <unistd.h>
@@ -49,7 +51,8 @@ std::vector<std::string> client_hosts(const ServiceConfig& config) {
     std::vector<std::string> hosts = config.hosts;
     if (hosts.empty()) {
         std::array<char, 256> name{};
-        if (::gethostname(name.data(), name.size() - 1) == 0 && name[0] != '\0') hosts.emplace_back(name.data());
+        const bool named = ::gethostname(name.data(), name.size() - 1) == 0 && net::can_be_certified(name.data());
+        if (named) hosts.emplace_back(name.data());  // a machine may have a name that is no host's
         hosts.insert(hosts.end(), {"localhost", "127.0.0.1", "::1"});
     }
     const bool listed = std::ranges::find(hosts, config.address) != hosts.end();
