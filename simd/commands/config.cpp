@@ -3,6 +3,7 @@
 #include <weave/core/text.hpp>
 
 #include <algorithm>
+#include <simd/daemon/room.hpp>
 #include <thread>
 #include <unistd.h>
 
@@ -55,6 +56,8 @@ Result<ServeConfig> parse_config(std::string_view text, const std::filesystem::p
 
 Status check_config(const ServeConfig& config) {
     WEAVE_CHECK_OK(check_service(config));
+    if (config.memory_bytes > 0 && config.memory_bytes < expected_bytes(1))
+        return bad_input("is less than one cloth needs: at least " + std::to_string(expected_bytes(1) / mib + 1), "memory_mib");
     if (!config.site.empty() && config.access_keys.empty()) return bad_input("counts for tokens of its keys: give access_keys too", "site");
     if (config.site.empty() && !config.access_keys.empty()) return bad_input("are of a site: give its name too", "access_keys");
     return {};
@@ -64,10 +67,13 @@ std::size_t threads_of(const ServeConfig& config) {
     return config.threads > 0 ? config.threads : std::max(1U, std::thread::hardware_concurrency());
 }
 
-std::uint64_t memory_of(const ServeConfig& config) {
-    if (config.memory_bytes > 0) return config.memory_bytes;
+std::uint64_t machine_memory() {
     const auto pages = static_cast<std::uint64_t>(std::max(0L, ::sysconf(_SC_PHYS_PAGES))), page = static_cast<std::uint64_t>(std::max(0L, ::sysconf(_SC_PAGESIZE)));
-    return pages * page / 5 * 4;
+    return pages * page;
+}
+
+std::uint64_t memory_of(const ServeConfig& config) {
+    return config.memory_bytes > 0 ? config.memory_bytes : machine_memory() / 5 * 4;
 }
 
 }  // namespace weave::simd

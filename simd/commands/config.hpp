@@ -40,5 +40,7 @@ Status check_config(const ServeConfig& config);
 /// Threads and memory with what the machine has, where the configuration leaves that open.
 std::size_t threads_of(const ServeConfig& config);
 std::uint64_t memory_of(const ServeConfig& config);
+/// What this machine has, bytes.
+std::uint64_t machine_memory();
 
 }  // namespace weave::simd

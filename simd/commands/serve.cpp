@@ -40,6 +40,8 @@ Status serve(ServeOptions& options, CommandOutcome& outcome) {
     WEAVE_CHECK_OK(check_service_folder(options.folder));
     if (options.words.only_checks(outcome)) return {};
     log_to_stderr();
+    if (memory_of(options.config) > machine_memory())
+        log(LogLevel::warning, "memory_mib: is more than this machine has (" + memory_text(machine_memory()) + "): the system may end workers for want of it");
     WEAVE_TRY(const auto daemon, RunningDaemon::start(folder, options.config, std::filesystem::read_symlink("/proc/self/exe")));
     const Json started = daemon->introduction();
     outcome.answer(started, words_of(started));

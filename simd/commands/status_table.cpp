@@ -18,19 +18,23 @@ struct Column {
     const char* title;
     std::size_t width;
     bool is_text;
+    int spared;  ///< 0: never; else it is left out on narrow terminals, the highest first
 };
 
-constexpr std::array<Column, 11> columns_of_table{{{"", 4, true},
-                                                   {"STATE", 8, true},
-                                                   {"PERSON", 12, true},
-                                                   {"STEPS", 9, false},
-                                                   {"PER S", 7, false},
-                                                   {"RESIDUAL", 9, false},
-                                                   {"POINTS", 9, false},
-                                                   {"MEMORY", 9, false},
-                                                   {"COMPUTED", 11, false},
-                                                   {"LEFT", 11, false},
-                                                   {"TITLE", 30, true}}};
+constexpr std::array<Column, 11> columns_of_table{{{"", 4, true, 0},
+                                                   {"STATE", 8, true, 0},
+                                                   {"PERSON", 12, true, 0},
+                                                   {"STEPS", 9, false, 0},
+                                                   {"PER S", 7, false, 3},
+                                                   {"RESIDUAL", 9, false, 1},
+                                                   {"POINTS", 9, false, 5},
+                                                   {"MEMORY", 9, false, 4},
+                                                   {"COMPUTED", 11, false, 6},
+                                                   {"LEFT", 11, false, 2},
+                                                   {"TITLE", 12, true, 0}}};
+constexpr std::size_t longest_title = 30;
+using Row = std::array<std::string, columns_of_table.size()>;
+using Widths = std::array<std::size_t, columns_of_table.size()>;  ///< 0: the column is left out
 
 /// Columns that the character at the beginning takes at most: those of East Asia take two.
 std::size_t columns_of(std::string_view text) {
@@ -43,17 +47,43 @@ std::size_t width_of(std::string_view text) {
     return width;
 }
 
-std::string cell(std::string text, const Column& column) {
-    text = on_one_line(text);
-    if (width_of(text) > column.width) text = clipped(text, column.width - 1) + "~";
-    const std::string blanks(column.width - width_of(text), ' ');
-    return (column.is_text ? text + blanks : blanks + text) + " ";
+std::size_t sum_of(const Widths& widths) {
+    std::size_t sum = 0;
+    for (const std::size_t width : widths) sum += width > 0 ? width + 1 : 0;  // with a blank between
+    return sum - 1;
 }
 
-std::string row(const std::array<std::string, 11>& texts, std::size_t width) {
+/// The columns for a terminal so wide. The title has what is left.
+Widths widths_for(std::size_t columns) {
+    Widths widths{};
+    int most = 0;
+    for (std::size_t k = 0; k < widths.size(); ++k) {
+        widths[k] = columns_of_table[k].width;
+        most = std::max(most, columns_of_table[k].spared);
+    }
+    for (; most > 0 && sum_of(widths) > columns; --most) {
+        for (std::size_t k = 0; k < widths.size(); ++k) {
+            if (columns_of_table[k].spared == most) widths[k] = 0;
+        }
+    }
+    const std::size_t left = columns - std::min(columns, sum_of(widths));
+    widths.back() = std::min(longest_title, widths.back() + left);
+    return widths;
+}
+
+std::string cell(std::string text, std::size_t width, bool is_text) {
+    text = on_one_line(text);
+    if (width_of(text) > width) text = clipped(text, width - 1) + "~";
+    const std::string blanks(width - width_of(text), ' ');
+    return (is_text ? text + blanks : blanks + text) + " ";
+}
+
+std::string row(const Row& texts, const Widths& widths, std::size_t columns) {
     std::string line;
-    for (std::size_t k = 0; k < texts.size(); ++k) line += cell(texts[k], columns_of_table[k]);
-    line = clipped(line, width);
+    for (std::size_t k = 0; k < texts.size(); ++k) {
+        if (widths[k] > 0) line += cell(texts[k], widths[k], columns_of_table[k].is_text);
+    }
+    line = clipped(line, columns);
     while (!line.empty() && line.back() == ' ') line.pop_back();
     return line + "\n";
 }
@@ -69,14 +99,13 @@ std::string residual(const Json& work) {
     return value.is_null() || value.get<double>() <= 0 ? "-" : form("%.1e", value.get<double>());
 }
 
-std::array<std::string, 11> texts_of(const Json& work, bool is_job) {
-    const bool has_pace = work.contains("steps_per_second");
+Row texts_of(const Json& work, bool is_job) {
     const Json left = work.value("left_s", Json());
     return {(is_job ? "j" : "s") + std::to_string(work.at(is_job ? "job" : "session").get<std::uint64_t>()),
             work.at("phase"),
             work.value("person", std::string("-")),
             std::to_string(work.at("step").get<std::uint64_t>()),
-            has_pace ? form("%.0f", work.at("steps_per_second")) : "-",
+            form("%.0f", work.at("steps_per_second")),
             residual(work),
             std::to_string(work.at("points").get<std::uint64_t>()),
             memory_text(work.at("memory_bytes")),
@@ -113,15 +142,16 @@ std::string status_table(const Json& status, std::size_t columns, std::size_t li
                              counted(status.at("clients").get<std::size_t>(), "connection");
     told.push_back(clipped(head, columns) + "\n");
     told.emplace_back("\n");
-    std::array<std::string, 11> titles;
+    const Widths widths = widths_for(columns);
+    Row titles;
     for (std::size_t k = 0; k < titles.size(); ++k) titles[k] = columns_of_table[k].title;
-    told.push_back(row(titles, columns));
-    std::vector<std::pair<int, std::array<std::string, 11>>> rows;
+    told.push_back(row(titles, widths, columns));
+    std::vector<std::pair<int, Row>> rows;
     for (const Json& session : status.at("sessions")) rows.emplace_back(rank(session), texts_of(session, false));
     for (const Json& job : status.at("jobs")) rows.emplace_back(rank(job), texts_of(job, true));
     std::ranges::stable_sort(rows, {}, [](const auto& entry) { return entry.first; });
     const std::size_t room = lines - std::min(lines, told.size()), shown = rows.size() <= room ? rows.size() : room - std::min<std::size_t>(room, 1);
-    for (std::size_t k = 0; k < shown; ++k) told.push_back(row(rows[k].second, columns));
+    for (std::size_t k = 0; k < shown; ++k) told.push_back(row(rows[k].second, widths, columns));
     if (rows.empty()) told.push_back(clipped("nothing is simulated", columns) + "\n");
     if (shown < rows.size()) told.push_back(clipped("and " + std::to_string(rows.size() - shown) + " more", columns) + "\n");
     std::string text;

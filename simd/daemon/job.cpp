@@ -40,6 +40,7 @@ wire::JobState Job::state() const {
     state.title = m_kept.title;
     state.step = m_step;
     if (m_step > 0) state.residual = m_residual;
+    if (m_phase == wire::JobPhase::running) state.lost_crossings = m_lost;
     state.left_s = left_s();
     return state;
 }
@@ -67,6 +68,7 @@ Json Job::status(bool with_names) const {
     Json told{{"job", number()},
               {"phase", phase_names[static_cast<int>(m_phase)]},
               {"step", now.step},
+              {"steps_per_second", m_phase == wire::JobPhase::running ? m_rate.per_second() : 0.0},
               {"residual", now.residual ? Json(*now.residual) : Json()},
               {"left_s", now.left_s ? Json(*now.left_s) : Json()},
               {"points", m_points},
@@ -126,6 +128,7 @@ void Job::planned(const Json& plan) {
     m_phase = wire::JobPhase::running;
     m_began = Clock::now();
     m_pace.reset();
+    m_rate = {};
     const Status started = m_around.store.start_job(number());
     if (!started) log(LogLevel::warning, "job " + std::to_string(number()) + ": " + started.error().text());
 }
@@ -134,6 +137,9 @@ void Job::said(const std::string& what, const Json& message) {
     if (what == "progress") {
         m_step = message.at("step");
         m_residual = std::min(message.at("residual").get<double>(), 1e300);
+        m_lost.reset();
+        if (message.contains("lost")) m_lost = message.at("lost").get<std::uint64_t>();
+        m_rate.add(Clock::now(), m_step);
         const double goal = message.at("goal");
         if (!m_pace) m_pace.emplace(goal);
         m_pace->add(std::chrono::duration<double>(Clock::now() - m_began).count(), m_residual);

@@ -9,6 +9,7 @@
 #include <functional>
 #include <optional>
 #include <simd/daemon/crew.hpp>
+#include <simd/daemon/step_rate.hpp>
 #include <simd/daemon/task.hpp>
 #include <simd/store/store.hpp>
 #include <string>
@@ -80,6 +81,8 @@ class Job final : public Task {
     std::size_t m_points = 0, m_faults = 0;
     std::uint64_t m_step = 0, m_furthest = 0;
     double m_residual = 0;
+    std::optional<std::uint64_t> m_lost;  ///< crossings out of order, once they were looked up
+    StepRate m_rate;
     std::optional<sim::Pace> m_pace;
     Clock::time_point m_began{}, m_came = Clock::now();
     bool m_is_cancelled = false, m_is_put_away = false, m_is_done = false, m_is_saved = false;

@@ -68,6 +68,7 @@ void Session::planned(const Json& plan) {
         m_worker.reset();
         return;
     }
+    if (m_takes_up) m_checkpoint_step = plan.at("step");
     if (std::exchange(m_is_recovering, false)) emit(wire::Recovered{.step = plan.at("step"), .frame = m_frame}, EventKind::other);
     tell_rates();
     if (m_is_closing) post({{"do", "finish"}, {"with_report", true}});
@@ -204,12 +205,7 @@ void Session::acknowledge(std::uint64_t seq) {
 void Session::said(const std::string& what, const Json& message) {
     if (what == "progress") {
         const std::uint64_t step = message.at("step");
-        const Clock::time_point now = Clock::now();
-        const double passed = std::chrono::duration<double>(now - m_paced.first).count();
-        if (passed >= 1) {
-            m_pace = step > m_paced.second ? static_cast<double>(step - m_paced.second) / passed : 0;
-            m_paced = {now, step};
-        }
+        m_rate.add(Clock::now(), step);
         m_step = step;
         m_residual = std::min(message.at("residual").get<double>(), 1e300);
         if (message.contains("lost")) m_lost = message.at("lost").get<std::uint64_t>();

@@ -13,6 +13,7 @@
 #include <optional>
 #include <simd/daemon/client.hpp>
 #include <simd/daemon/crew.hpp>
+#include <simd/daemon/step_rate.hpp>
 #include <simd/daemon/task.hpp>
 #include <simd/store/store.hpp>
 #include <string>
@@ -159,7 +160,8 @@ class Session final : public Task {
     std::optional<std::uint64_t> m_pause_at;
     std::uint64_t m_steps_id = 0;  ///< of the steps that are being made one by one; 0: none are
     std::uint64_t m_checkpoint_step = 0;
-    double m_residual = 0, m_pace = 0;  ///< steps a second
+    double m_residual = 0;
+    StepRate m_rate;
     std::optional<std::uint64_t> m_lost;
     std::size_t m_points = 0, m_repeats = 1;
     net::Bytes m_newest;
@@ -175,7 +177,6 @@ class Session final : public Task {
     std::uint64_t m_last_id = 0;
     std::map<std::uint64_t, std::pair<ClientPtr, std::string>> m_checkpoint_requests;
     std::map<std::uint64_t, std::function<void(Result<std::filesystem::path>)>> m_yarns_requests;
-    std::pair<Clock::time_point, std::uint64_t> m_paced{};
 };
 
 }  // namespace weave::simd

@@ -74,7 +74,7 @@ Json Session::status(bool with_names) const {
               {"step", m_step},
               {"residual", m_residual},
               {"points", m_points},
-              {"steps_per_second", m_phase == wire::Phase::running ? m_pace : 0.0},
+              {"steps_per_second", m_phase == wire::Phase::running ? m_rate.per_second() : 0.0},
               {"clients", m_viewers.size()},
               {"memory_bytes", m_worker ? m_around.crew.memory_bytes(*m_worker) : 0},
               {"computed_s", m_worker ? m_around.crew.turns().spent_s(*m_worker, Clock::now()) : 0.0},

@@ -65,7 +65,9 @@ Status Work::run() {
 // ---- The beginning ----
 
 Status Work::begin() {
-    WEAVE_TRY(const Design design, read_document(m_order.document));
+    auto read_design = read_document(m_order.document);
+    if (!read_design) return std::move(read_design).error().in("document");
+    const Design design = std::move(*read_design);
     if (!m_order.takes_up) return begin_anew(design);
     auto read = read_checkpoint(m_folder);
     if (!read) log(LogLevel::warning, read.error().text() + ": it begins anew, with its changes at their steps");

@@ -113,6 +113,28 @@ TEST_CASE("a replaced file keeps its permissions and owner, and a write-protecte
     CHECK(folder.entries() == 1);
 }
 
+TEST_CASE("whether a file can be written shows before, and nothing is written for it") {
+    const Folder folder;
+    const fs::path file = folder.path / "design.weave", link = folder.path / "link";
+    CHECK(check_writable(file));
+    CHECK(check_writable("design.weave"));
+    CHECK(check_writable("/dev/null"));
+    fs::create_symlink("no/such", link);
+    for (const fs::path& wrong : {folder.path, folder.path / "no" / "such", link}) {
+        const Status asked = check_writable(wrong), tried = write_file(wrong, "bytes");
+        REQUIRE_FALSE(asked);
+        REQUIRE_FALSE(tried);
+        CHECK(asked.error().text() == tried.error().text());
+    }
+    REQUIRE(write_file(file, "old"));
+    CHECK(check_writable(file));
+    REQUIRE(::chmod(file.c_str(), 0444) == 0);
+    const Status refused = check_writable(file);
+    REQUIRE_FALSE(refused);
+    CHECK(refused.error().text() == file.string() + ": is write-protected");
+    CHECK(folder.entries() == 2);
+}
+
 TEST_CASE("a name as long as a name may be is written, file and folder") {
     const Folder folder;
     REQUIRE(write_file(folder.path / std::string(255, 'n'), "x"));

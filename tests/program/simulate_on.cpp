@@ -70,6 +70,8 @@ struct Mill {
     }
 };
 
+constexpr rlim_t full_disk = 100;  ///< bytes that a file may have at most: too few for yarns, which shows once they are written
+
 /// Words without figures of time.
 std::string timeless(std::string words) {
     for (std::size_t at = 0; (at = words.find(" s", at)) != std::string::npos; ++at) {
@@ -158,6 +160,14 @@ TEST_CASE("what a server cannot do is refused by name before anything is sent") 
     // What the plan would refuse is told without a queue.
     mill.shop.refused(mill.on({"simulate", "d.weave", "-o", "x", "--region", "picks:1-9,ends:1-2"}), 2, {"within 2 picks"});
     mill.shop.refused(mill.on({"simulate", "d.weave", "-o", "x", "--set", "friction=-1"}), 3, {"d.weave", "friction"});
+    CHECK(mill.simd.look([](ScriptedSimd& s) { return s.count_of<wire::Submit>(); }) == 0);
+    // So are files that could not be written once the job has ended.
+    mill.shop.put("there", "");
+    mill.shop.refused(mill.on({"simulate", "d.weave", "-o", "no/folder.yarns"}), 5, {"no/folder.yarns", "No such file or directory"});
+    mill.shop.refused(mill.on({"simulate", "d.weave", "-o", "x", "--evidence", "there/e.json"}), 5, {"there/e.json", "Not a directory"});
+    mill.shop.refused(mill.on({"simulate", "d.weave", "-o", "x", "--flip", "1,1", "--save-design", "."}), 5, {"is a folder"});
+    mill.shop.refused({"simulate", "d.weave", "-o", "no/folder.yarns"}, 5, {"no/folder.yarns", "No such file or directory"});
+    mill.shop.refused(mill.on({"jobs", "fetch", "1", "-o", "no/folder.yarns"}), 5, {"no/folder.yarns"});
     CHECK(mill.simd.look([](ScriptedSimd& s) { return s.count_of<wire::Submit>(); }) == 0);
     // And so is what the protocol does not take.
     mill.shop.refused(mill.on({"simulate", "d.weave", "-o", "x", "--residual", "2"}), 2, {"simulation.residual"});
@@ -371,9 +381,9 @@ TEST_CASE("a job that is fetched later leaves the flipped design too, made of th
     mill.shop.must({"tile", "d.weave", "--x", "2", "--y", "2", "-o", "other.weave"});
     mill.shop.must(mill.on({"simulate", "large.weave", "-o", "there.yarns", "--flip", "1,1", "--save-design", "there.weave"}));
     const auto left = [&](const std::vector<std::string>& more) {  // a job that is still there, as its files could not be written
-        std::vector<std::string> words{"simulate", "large.weave", "-o", "no/such/folder.yarns"};
+        std::vector<std::string> words{"simulate", "large.weave", "-o", "full.yarns"};
         words.insert(words.end(), more.begin(), more.end());
-        CHECK(mill.shop.run(mill.on(words)).exit == 5);
+        CHECK(mill.shop.run(mill.on(words), full_disk).exit == 5);
     };
     left({"--flip", "1,1"});
     left({});
@@ -398,7 +408,7 @@ TEST_CASE("a job that is fetched later leaves the flipped design too, made of th
 TEST_CASE("a flip that was not made leaves the design as it was, and is not written") {
     Mill mill;
     mill.simd.work = [](const wire::Submit& submit) { return relaxed(submit, 2); };  // over before its flips
-    CHECK(mill.shop.run(mill.on({"simulate", "d.weave", "-o", "no/such/folder.yarns", "--flip", "1,1"})).exit == 5);
+    CHECK(mill.shop.run(mill.on({"simulate", "d.weave", "-o", "full.yarns", "--flip", "1,1"}), full_disk).exit == 5);
     const Ended fetched = mill.shop.run(mill.on({"jobs", "fetch", "1", "-o", "d.yarns", "--of", "d.weave", "--save-design", "flipped.weave"}));
     INFO(fetched.err);
     CHECK(fetched.exit == 1);
@@ -434,14 +444,14 @@ TEST_CASE("sessions are listed, and closed for good") {
 TEST_CASE("jobs are listed, fetched and cancelled") {
     Mill mill;
     mill.simd.holds_jobs = true;
-    Workshop::Running running = mill.shop.start(mill.on({"simulate", "d.weave", "-o", "no/such/folder.yarns"}));
+    Workshop::Running running = mill.shop.start(mill.on({"simulate", "d.weave", "-o", "full.yarns"}), full_disk);
     while (mill.simd.look([](ScriptedSimd& s) { return s.count_of<wire::Submit>(); }) == 0) std::this_thread::sleep_for(std::chrono::milliseconds(5));
     CHECK(mill.shop.must(mill.on({"jobs"})).out == "1  cloth: running, residual 5.00e-01 after 20 steps, to go some 12 s\n");
     const Json list = mill.shop.json(mill.on({"jobs"}));
     CHECK((list.at("jobs").at(0).at("job") == 1 && list.at("jobs").at(0).at("phase") == "running" && list.at("server") == mill.simd.place().name));
     mill.shop.refused(mill.on({"jobs", "fetch", "1", "-o", "d.yarns"}), 4, {"job 1", "has not ended yet"});
     mill.shop.refused(mill.on({"jobs", "fetch", "7", "-o", "d.yarns"}), 4, {"job 7", "no such job"});
-    CHECK_THAT(mill.shop.must(mill.on({"jobs", "cancel", "1"})).out, Contains("job 1 is cancelled"));
+    CHECK_THAT(mill.shop.must(mill.on({"jobs", "cancel", "1"})).out, Contains("job 1 is cancelled; weave jobs fetch gets its yarns"));
     mill.shop.refused(mill.on({"jobs", "cancel", "9"}), 2, {"job 9", "there is no such job"});
     const Ended ended = running.finish();  // which could not write, so the job is kept
     CHECK(ended.exit == 5);

@@ -135,7 +135,7 @@ TEST_CASE("a configuration that is wrong is refused at its place, by the program
         {"", ""}, {"[]", ""}, {"{", ""}, {R"({"prot":1})", "prot"}, {R"({"port":1,"port":2})", ""}, {R"({"hosts":"x"})", "hosts"}, {R"({"hosts":["x",1]})", "hosts[1]"},
         {R"({"access_keys":[1]})", "access_keys[0]"}, {R"({"site":"m","access_keys":["xx"]})", "access_keys[0]"}, {R"({"site":"m","access_keys":[")" + key + R"("]})", "access_keys[0]"},
         {R"({"certificate":"x.pem"})", "key"}, {R"({"key":"x.key"})", "certificate"}, {R"({"plain":true,"certificate":"x","key":"y"})", "plain"},
-        {R"({"plain":true,"address":"0.0.0.0"})", "address"}, {R"({"site":"mill"})", "site"}};
+        {R"({"plain":true,"address":"0.0.0.0"})", "address"}, {R"({"site":"mill"})", "site"}, {R"({"memory_mib":40})", "memory_mib"}};
     for (const char* member : {"address", "certificate", "key", "unix_socket", "site", "evidence_key"}) {
         wrong.emplace_back("{\"" + std::string(member) + "\":1}", member);
         wrong.emplace_back("{\"" + std::string(member) + "\":\"" + std::string(5000, 'x') + "\"}", member);
@@ -323,6 +323,22 @@ TEST_CASE("a table is never wider or longer than it may be, whatever the texts i
             CHECK_NOTHROW(Json(table).dump());  // no character was cut in two
         }
     }
+}
+
+TEST_CASE("on a narrow terminal columns that say less are left out, and the title has what is left") {
+    const Json job{{"job", 7}, {"phase", "running"}, {"person", "alice"}, {"step", 1200}, {"residual", 1e-3}, {"points", 288}, {"steps_per_second", 84.0}, {"memory_bytes", 1 << 30},
+                   {"computed_s", 61.0}, {"left_s", 9.0}, {"title", "A shoe of three layers and a seam"}};
+    const Json status{{"up_s", 1}, {"threads", 2}, {"turns_waiting", 0}, {"clients", 1}, {"memory", {{"bytes", 1 << 30}, {"promised_bytes", 0}}}, {"sessions", Json::array()}, {"jobs", {job}}};
+    const auto line = [&](std::size_t columns, int number) {
+        std::string table = status_table(status, columns, 10);
+        for (; number > 0; --number) table.erase(0, table.find('\n') + 1);
+        return table.substr(0, table.find('\n'));
+    };
+    CHECK(line(80, 2) == "     STATE    PERSON           STEPS   PER S  RESIDUAL        LEFT TITLE");
+    CHECK(line(80, 3) == "j7   running  alice             1200      84   1.0e-03       9.0 s A shoe of t~");
+    CHECK(line(60, 3) == "j7   running  alice             1200   1.0e-03 A shoe of t~");
+    CHECK_THAT(line(140, 2), Catch::Contains("POINTS") && Catch::Contains("MEMORY") && Catch::Contains("COMPUTED"));
+    CHECK_THAT(line(140, 3), Catch::Contains("1 min 01 s") && Catch::Contains("A shoe of three layers and a "));
 }
 
 TEST_CASE("every command explains itself, and a call that makes no sense is a usage error") {

@@ -109,6 +109,7 @@ TEST_CASE("a design that cannot be simulated is refused with its place, and leav
         const auto made = follower.create(document, at(sim::Fidelity::draft), 60s);
         REQUIRE_FALSE(made);
         CHECK(made.error().code != ErrorCode::system);
+        CHECK(made.error().where.starts_with("document"));
     }
     wire::Simulation outside = at(sim::Fidelity::draft);
     outside.plan.region = Region{0, 500, 0, 500};

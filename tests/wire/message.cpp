@@ -137,7 +137,7 @@ TEST_CASE("a server's answers mean what the protocol says") {
     CHECK((state.seq == 41 && state.frame == 300 && state.layout == 3));
     for (const JobState& job : {server<JobList>("jobs").jobs.at(0), server<JobProgress>("job").state}) {
         CHECK((job.job == 12 && job.phase == JobPhase::running && job.title == "shoe"));
-        CHECK((job.step == 840 && job.residual == 0.02 && job.left_s == 95.5));
+        CHECK((job.step == 840 && job.residual == 0.02 && job.left_s == 95.5 && job.lost_crossings == 0U));
     }
     const JobState waiting = server<JobList>("jobs").jobs.at(1);
     CHECK((waiting.phase == JobPhase::waiting && waiting.place == 2U && waiting.wait_s == 240.0 && !waiting.left_s));

@@ -3,6 +3,7 @@
 #include "progress.hpp"
 
 #include <weave/block/flip.hpp>
+#include <weave/core/file.hpp>
 #include <weave/core/text.hpp>
 #include <weave/design/document.hpp>
 #include <weave/design/outline.hpp>
@@ -94,6 +95,13 @@ Status keep_apart(const std::string& out, const std::string& other, const std::s
     if (fs::exists(place, unknown) && !fs::is_regular_file(place, unknown)) return {};
     if (place != written_place(other)) return {};
     return Error{ErrorCode::usage, "is " + other_is + ", which would be lost; write to another file", out};
+}
+
+Status check_outputs(std::initializer_list<std::string> files) {
+    for (const std::string& file : files) {
+        if (!file.empty()) WEAVE_CHECK_OK(check_writable(file));
+    }
+    return {};
 }
 
 void note_lost_flips(const CommandOutcome& outcome, const std::vector<LostFlip>& lost_flips,

@@ -55,6 +55,9 @@ std::string given_of(const CLI::App* command, std::initializer_list<const char*>
 /// such as `the design that is read`. Devices and pipes are not overwritten; an empty name is no file.
 Status keep_apart(const std::string& out, const std::string& other, const std::string& other_is);
 
+/// Whether these files can be written, as far as that shows beforehand: for what comes after long work. An empty name is no file.
+Status check_outputs(std::initializer_list<std::string> files);
+
 /// An option that is a list such as 1,0,2: whole numbers within limits, none of them left out. `list` must outlive
 /// the command.
 template <class Whole>

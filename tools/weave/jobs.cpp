@@ -41,21 +41,28 @@ Status list(CommandOutcome& outcome, const ServerWish& wish) {
     return tell_list(outcome, follower, "jobs", std::move(jobs), line_of);
 }
 
-/// The end of a job that has ended, which every connection is told of.
+/// The end of a job, which every connection is told of, where it comes in time.
+Result<std::optional<wire::JobEnded>> told_end(wire::Follower& follower, std::uint64_t job) {
+    const auto until = std::chrono::steady_clock::now() + answer_patience;
+    while (std::chrono::steady_clock::now() < until) {
+        WEAVE_TRY(auto received, follower.receive(std::chrono::seconds(1)));
+        auto* message = received ? std::get_if<wire::ServerMessage>(&*received) : nullptr;
+        auto* ended = message != nullptr ? std::get_if<wire::JobEnded>(message) : nullptr;
+        if (ended != nullptr && ended->job == job) return std::optional(std::move(*ended));
+    }
+    return std::optional<wire::JobEnded>();
+}
+
+/// The end of a job that has ended.
 Result<wire::JobEnded> end_of(wire::Follower& follower, std::uint64_t job) {
     const std::string where = follower.place().name + ": " + name_of(job);
     WEAVE_TRY(const wire::JobList jobs, jobs_of(follower));
     const auto state = std::ranges::find(jobs.jobs, job, &wire::JobState::job);
     if (state == jobs.jobs.end()) return Error{ErrorCode::refused, "there is no such job, or its end was dealt with", where};
     if (state->phase < wire::JobPhase::done) return Error{ErrorCode::refused, "has not ended yet: weave jobs lists how far it is", where};
-    const auto until = std::chrono::steady_clock::now() + answer_patience;
-    while (std::chrono::steady_clock::now() < until) {
-        WEAVE_TRY(auto received, follower.receive(std::chrono::seconds(1)));
-        auto* message = received ? std::get_if<wire::ServerMessage>(&*received) : nullptr;
-        auto* ended = message != nullptr ? std::get_if<wire::JobEnded>(message) : nullptr;
-        if (ended != nullptr && ended->job == job) return std::move(*ended);
-    }
-    return system_fault("the server does not tell how it ended", where);
+    WEAVE_TRY(auto ended, told_end(follower, job));
+    if (!ended) return system_fault("the server does not tell how it ended", where);
+    return std::move(*ended);
 }
 
 /// What is read or written besides is not written over; the design may get its flips in place.
@@ -65,7 +72,7 @@ Status check_files(const Wish& wish) {
     WEAVE_CHECK_OK(keep_apart(wish.evidence, wish.save_design, "the design that is written"));
     for (const std::string& file : {wish.out, wish.evidence}) WEAVE_CHECK_OK(keep_apart(file, wish.design, "the design that is read"));
     for (const std::string& file : {wish.out, wish.evidence, wish.save_design}) WEAVE_CHECK_OK(keep_apart(file, wish.server.token_file, "the file of the token"));
-    return {};
+    return check_outputs({wish.out, wish.evidence, wish.save_design});
 }
 
 /// The flips that a report tells of, where the job was given any.
@@ -128,9 +135,16 @@ Status fetch(CommandOutcome& outcome, const Wish& wish) {
 Status cancel(CommandOutcome& outcome, const NumberedWish& wish) {
     WEAVE_TRY(wire::Follower follower, server_of(wish.server));
     const auto accepted = wire::answer_of<wire::Accepted>(follower.ask(wire::Cancel{wire::new_request_id(), wish.number}, answer_patience));
-    follower.close();
     if (!accepted) return Error{accepted.error()}.in(follower.place().name + ": " + name_of(wish.number));
-    outcome.answer({{"server", follower.place().name}, {"job", wish.number}}, name_of(wish.number) + " is cancelled; weave jobs fetch gets its yarns as they lay, if it had begun\n");
+    const auto ended = told_end(follower, wish.number);  // its worker first puts away what it has
+    follower.close();
+    const bool is_known = ended && *ended;
+    Json answer{{"server", follower.place().name}, {"job", wish.number}, {"ended", is_known}};
+    if (is_known) answer["yarns"] = has_yarns(**ended);
+    const char* const how = !is_known             ? " is being cancelled; weave jobs lists when it has ended"
+                            : has_yarns(**ended) ? " is cancelled; weave jobs fetch gets its yarns as they lay"
+                                                 : " is cancelled; it had not begun, so there are no yarns";
+    outcome.answer(answer, name_of(wish.number) + how + "\n");
     return {};
 }
 

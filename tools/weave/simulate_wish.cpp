@@ -59,7 +59,7 @@ Status check_wish(const SimulateWish& wish) {
         return usage_error("there is one start: without --resume", "--start-from " + wish.start_from);
     if (!wish.start_from.empty() && (wish.starts > 0 || wish.symmetry))
         return usage_error("what is looked at from other starts begins at the planned one", "--start-from " + wish.start_from);
-    return {};
+    return check_outputs({wish.out, wish.evidence, wish.save_design});
 }
 
 Result<SimulateTask> understand(Cloth cloth, const SimulateWish& wish) {

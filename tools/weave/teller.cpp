@@ -14,9 +14,9 @@ namespace weave::program {
 namespace {
 
 /// Nothing before crossings were looked up first.
-std::string order_of(const sim::Progress& progress) {
-    if (!progress.lost_crossings) return "";
-    return *progress.lost_crossings == 0 ? "order kept, " : counted(*progress.lost_crossings, "crossing") + " out of order, ";
+std::string order_of(std::optional<std::size_t> lost_crossings) {
+    if (!lost_crossings) return "";
+    return *lost_crossings == 0 ? "order kept, " : counted(*lost_crossings, "crossing") + " out of order, ";
 }
 
 std::string some_seconds(double seconds) {
@@ -43,7 +43,7 @@ void Teller::turn_to(std::string what, std::optional<double> goal) {
 }
 
 bool Teller::operator()(const sim::Progress& progress) {
-    if (is_due(progress.residual, progress.iteration)) tell_residual(progress.residual, progress.iteration, order_of(progress), m_pace.seconds_left());
+    if (is_due(progress.residual, progress.iteration)) tell_residual(progress.residual, progress.iteration, order_of(progress.lost_crossings), m_pace.seconds_left());
     return !interrupted();
 }
 
@@ -54,7 +54,7 @@ void Teller::operator()(const wire::JobState& job) {
         const std::string wait = job.wait_s ? "begins in " + some_seconds(*job.wait_s) + ", " : "";
         return tell("waiting" + m_what + " ... " + place + wait + so_far(seconds()));
     }
-    if (is_due(job.residual.value_or(0), job.step)) tell_residual(*job.residual, job.step, "", job.left_s ? job.left_s : m_pace.seconds_left());
+    if (is_due(job.residual.value_or(0), job.step)) tell_residual(*job.residual, job.step, order_of(job.lost_crossings), job.left_s ? job.left_s : m_pace.seconds_left());
 }
 
 void Teller::note(const std::string& line) {

@@ -145,7 +145,7 @@ Status write_through(const fs::path& path, std::string_view bytes) {
     return write_all(file, bytes, path);
 }
 
-Status check_writable(const fs::path& target, const struct stat& old, const fs::path& path) {
+Status check_replaceable(const fs::path& target, const struct stat& old, const fs::path& path) {
     const bool protected_for_all = (old.st_mode & 0222) == 0;
     if (!protected_for_all && ::faccessat(AT_FDCWD, target.c_str(), W_OK, AT_EACCESS) == 0) return {};
     return Error{ErrorCode::refused, "is write-protected", path.string()};
@@ -254,7 +254,7 @@ Status write_file(const fs::path& path, std::string_view bytes) {
     // A device or pipe: no rename. The name of a pipe in /proc is a link to no place, and leads there all the same.
     if (exists && !S_ISREG(old.st_mode)) return write_through(path, bytes);
     WEAVE_TRY(const fs::path target, real_target(path));
-    if (exists) WEAVE_CHECK_OK(check_writable(target, old, path));
+    if (exists) WEAVE_CHECK_OK(check_replaceable(target, old, path));
     Scaffold scaffold;
     const fs::path temporary = temporary_beside(target);
     WEAVE_CHECK_OK(seen_from(write_new(scaffold, temporary, bytes, exists ? &old : nullptr), path));
@@ -262,6 +262,18 @@ Status write_file(const fs::path& path, std::string_view bytes) {
     scaffold.keep();
     flush_parent(target);
     if (exists) tell_changes(target, old, path);
+    return {};
+}
+
+Status check_writable(const fs::path& path) {
+    struct stat old {};
+    const bool exists = ::stat(path.c_str(), &old) == 0;
+    if (exists && S_ISDIR(old.st_mode)) return system_fault("is a folder, not a file", path.string());
+    if (exists && !S_ISREG(old.st_mode)) return {};
+    WEAVE_TRY(const fs::path target, real_target(path));
+    if (exists) WEAVE_CHECK_OK(check_replaceable(target, old, path));
+    const fs::path folder = target.has_parent_path() ? target.parent_path() : fs::path(".");
+    if (::faccessat(AT_FDCWD, folder.c_str(), W_OK | X_OK, AT_EACCESS) != 0) return file_fault(path, "create");
     return {};
 }
 

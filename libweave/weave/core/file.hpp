@@ -26,6 +26,9 @@ Result<std::string> read_file(const std::filesystem::path& path, std::uint64_t l
 /// kept.
 Status write_file(const std::filesystem::path& path, std::string_view bytes);
 
+/// Whether write_file() could write there, as far as that shows beforehand: for what is written only after long work.
+Status check_writable(const std::filesystem::path& path);
+
 /// A folder of files that appears whole or not at all: each file and then the folder is flushed to disk before it is
 /// put into place. Refused: a `folder` that exists and holds anything, is
 /// the current one, or is a mount point. A symbolic link to an empty folder stays one. Each pair is a file

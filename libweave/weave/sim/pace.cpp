@@ -26,7 +26,8 @@ std::optional<double> Pace::seconds_left() const {
     const double third = m_past.front().seconds + (now.seconds - m_past.front().seconds) * 2 / 3;
     const auto then = std::ranges::find_if(m_past, [&](const Past& past) { return past.seconds >= third; });
     const double fell = then->log_residual - now.log_residual;
-    if (!(fell > 0.1)) return {};
+    constexpr double enough = 0.5;  // e-folds; from less than that estimates jump
+    if (!(fell > enough)) return {};
     return std::max(0.0, (now.log_residual - std::log(m_goal)) / fell * (now.seconds - then->seconds));
 }
 

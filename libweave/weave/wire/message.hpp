@@ -188,7 +188,8 @@ struct JobState {
     std::string title;  ///< of the design
     std::uint64_t step = 0;
     std::optional<double> residual;
-    std::optional<double> left_s;  ///< estimated until its end
+    std::optional<std::uint64_t> lost_crossings;  ///< of a running one: out of order; none: not looked up
+    std::optional<double> left_s;                 ///< estimated until its end
     std::optional<std::uint64_t> place;  ///< of a waiting one in the queue; 1: the next to begin
     std::optional<double> wait_s;        ///< of a waiting one: expected until it begins
 };

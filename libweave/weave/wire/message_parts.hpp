@@ -321,6 +321,7 @@ void describe(Form& form, M& job) {
     form.text("title", job.title, longest_title);
     form.count("step", job.step);
     maybe_number(form, "residual", job.residual, amount_range);
+    maybe_count(form, "lost_crossings", job.lost_crossings);
     maybe_number(form, "left_s", job.left_s, {0, most_seconds_told});
     maybe_count(form, "place", job.place, 1);
     maybe_number(form, "wait_s", job.wait_s, {0, most_seconds_told});
