@@ -99,7 +99,8 @@ std::string residual(const Json& work) {
     return value.is_null() || value.get<double>() <= 0 ? "-" : form("%.1e", value.get<double>());
 }
 
-Row texts_of(const Json& work, bool is_job) {
+Row texts_of(const Json& work) {
+    const bool is_job = work.contains("job");
     const Json left = work.value("left_s", Json());
     return {(is_job ? "j" : "s") + std::to_string(work.at(is_job ? "job" : "session").get<std::uint64_t>()),
             work.at("phase"),
@@ -112,12 +113,6 @@ Row texts_of(const Json& work, bool is_job) {
             time_text(work.at("computed_s")),
             left.is_null() ? "-" : time_text(left),
             work.value("title", std::string("-"))};
-}
-
-/// What computes comes first, then what waits, then what rests.
-int rank(const Json& work) {
-    const std::string phase = work.at("phase");
-    return phase == "running" ? 0 : phase == "waiting" ? 1 : phase == "paused" ? 2 : 3;
 }
 
 }  // namespace
@@ -146,12 +141,11 @@ std::string status_table(const Json& status, std::size_t columns, std::size_t li
     Row titles;
     for (std::size_t k = 0; k < titles.size(); ++k) titles[k] = columns_of_table[k].title;
     told.push_back(row(titles, widths, columns));
-    std::vector<std::pair<int, Row>> rows;
-    for (const Json& session : status.at("sessions")) rows.emplace_back(rank(session), texts_of(session, false));
-    for (const Json& job : status.at("jobs")) rows.emplace_back(rank(job), texts_of(job, true));
-    std::ranges::stable_sort(rows, {}, [](const auto& entry) { return entry.first; });
+    Json works = status.at("sessions");
+    for (const Json& job : status.at("jobs")) works.push_back(job);
+    const std::vector<Json> rows = busiest_first(works);
     const std::size_t room = lines - std::min(lines, told.size()), shown = rows.size() <= room ? rows.size() : room - std::min<std::size_t>(room, 1);
-    for (std::size_t k = 0; k < shown; ++k) told.push_back(row(rows[k].second, widths, columns));
+    for (std::size_t k = 0; k < shown; ++k) told.push_back(row(texts_of(rows[k]), widths, columns));
     if (rows.empty()) told.push_back(clipped("nothing is simulated", columns) + "\n");
     if (shown < rows.size()) told.push_back(clipped("and " + std::to_string(rows.size() - shown) + " more", columns) + "\n");
     std::string text;

@@ -1,5 +1,6 @@
 #include <simd/service/page.hpp>
 
+#include <algorithm>
 #include <array>
 #include <cmath>
 #include <cstdio>
@@ -68,7 +69,7 @@ std::string residual_text(const Json& residual) {
 std::string sessions_table(const Json& sessions) {
     if (sessions.empty()) return "<p>No session is open.</p>\n";
     Table table({"Session", "State", "Steps", "Steps a second", "Residual", "Points", "Memory", "Computed", "Watched by"});
-    for (const Json& session : sessions) {
+    for (const Json& session : busiest_first(sessions)) {
         table.add_row({whole_text(session.at("session")), session.at("phase"), whole_text(session.at("step")), number_text(session.at("steps_per_second"), "%.0f"),
                        residual_text(session.at("residual")), whole_text(session.at("points")), memory_text(session.at("memory_bytes")),
                        time_text(session.at("computed_s")), whole_text(session.at("clients"))});
@@ -78,11 +79,11 @@ std::string sessions_table(const Json& sessions) {
 
 std::string jobs_table(const Json& jobs) {
     if (jobs.empty()) return "<p>No job waits or runs.</p>\n";
-    Table table({"Job", "State", "Steps", "Residual", "Points", "Memory", "Computed", "Still takes"});
-    for (const Json& job : jobs) {
+    Table table({"Job", "State", "Steps", "Steps a second", "Residual", "Points", "Memory", "Computed", "Still takes"});
+    for (const Json& job : busiest_first(jobs)) {
         const Json& left = job.at("left_s");
         const bool has_begun = job.at("points") > 0;
-        table.add_row({whole_text(job.at("job")), job.at("phase"), whole_text(job.at("step")), residual_text(job.at("residual")),
+        table.add_row({whole_text(job.at("job")), job.at("phase"), whole_text(job.at("step")), number_text(job.at("steps_per_second"), "%.0f"), residual_text(job.at("residual")),
                        has_begun ? whole_text(job.at("points")) : "–", has_begun ? memory_text(job.at("memory_bytes")) : "–",
                        has_begun ? time_text(job.at("computed_s")) : "–", left.is_null() ? "–" : "about " + time_text(left)});
     }
@@ -90,6 +91,16 @@ std::string jobs_table(const Json& jobs) {
 }
 
 }  // namespace
+
+std::vector<Json> busiest_first(const Json& works) {
+    const auto rank = [](const Json& work) {
+        const std::string phase = work.at("phase");
+        return phase == "running" ? 0 : phase == "waiting" ? 1 : phase == "paused" ? 2 : 3;
+    };
+    std::vector<Json> sorted(works.begin(), works.end());
+    std::ranges::stable_sort(sorted, {}, rank);
+    return sorted;
+}
 
 std::string time_text(double seconds) {
     if (seconds < 10) return number_text(seconds, "%.1f s");

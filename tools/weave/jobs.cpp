@@ -135,7 +135,7 @@ Status fetch(CommandOutcome& outcome, const Wish& wish) {
 Status cancel(CommandOutcome& outcome, const NumberedWish& wish) {
     WEAVE_TRY(wire::Follower follower, server_of(wish.server));
     const auto accepted = wire::answer_of<wire::Accepted>(follower.ask(wire::Cancel{wire::new_request_id(), wish.number}, answer_patience));
-    if (!accepted) return Error{accepted.error()}.in(follower.place().name + ": " + name_of(wish.number));
+    if (!accepted) return Error{accepted.error().code, accepted.error().message, follower.place().name + ": " + name_of(wish.number)};
     const auto ended = told_end(follower, wish.number);  // its worker first puts away what it has
     follower.close();
     const bool is_known = ended && *ended;
