@@ -120,7 +120,8 @@ TEST_CASE("whether a file can be written shows before, and nothing is written fo
     CHECK(check_writable("design.weave"));
     CHECK(check_writable("/dev/null"));
     fs::create_symlink("no/such", link);
-    for (const fs::path& wrong : {folder.path, folder.path / "no" / "such", link}) {
+    REQUIRE(write_file(folder.path / "a file", ""));
+    for (const fs::path& wrong : {folder.path, folder.path / "no" / "such", folder.path / "a file" / "x", link}) {
         const Status asked = check_writable(wrong), tried = write_file(wrong, "bytes");
         REQUIRE_FALSE(asked);
         REQUIRE_FALSE(tried);
@@ -132,7 +133,7 @@ TEST_CASE("whether a file can be written shows before, and nothing is written fo
     const Status refused = check_writable(file);
     REQUIRE_FALSE(refused);
     CHECK(refused.error().text() == file.string() + ": is write-protected");
-    CHECK(folder.entries() == 2);
+    CHECK(folder.entries() == 3);
 }
 
 TEST_CASE("a name as long as a name may be is written, file and folder") {

@@ -335,8 +335,8 @@ TEST_CASE("on a narrow terminal columns that say less are left out, and the titl
         return table.substr(0, table.find('\n'));
     };
     CHECK(line(80, 2) == "     STATE    PERSON           STEPS   PER S  RESIDUAL        LEFT TITLE");
-    CHECK(line(80, 3) == "j7   running  alice             1200      84   1.0e-03       9.0 s A shoe of t~");
-    CHECK(line(60, 3) == "j7   running  alice             1200   1.0e-03 A shoe of t~");
+    CHECK(line(80, 3) == "j7   running  alice             1200      84   1.0e-03       9.0 s A shoe of th~");
+    CHECK(line(60, 3) == "j7   running  alice             1200   1.0e-03 A shoe of th~");
     CHECK_THAT(line(140, 2), Catch::Contains("POINTS") && Catch::Contains("MEMORY") && Catch::Contains("COMPUTED"));
     CHECK_THAT(line(140, 3), Catch::Contains("1 min 01 s") && Catch::Contains("A shoe of three layers and a "));
 }

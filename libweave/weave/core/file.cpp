@@ -273,7 +273,8 @@ Status check_writable(const fs::path& path) {
     WEAVE_TRY(const fs::path target, real_target(path));
     if (exists) WEAVE_CHECK_OK(check_replaceable(target, old, path));
     const fs::path folder = target.has_parent_path() ? target.parent_path() : fs::path(".");
-    if (::faccessat(AT_FDCWD, folder.c_str(), W_OK | X_OK, AT_EACCESS) != 0) return file_fault(path, "create");
+    const fs::path within = folder / ".";  // which is in no file
+    if (::faccessat(AT_FDCWD, within.c_str(), W_OK | X_OK, AT_EACCESS) != 0) return file_fault(path, "create");
     return {};
 }
 
