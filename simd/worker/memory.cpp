@@ -1,5 +1,7 @@
 #include <simd/worker/memory.hpp>
 
+#include <weave/core/sanitized.hpp>
+
 #include <cerrno>
 #include <cstring>
 #include <string>
@@ -7,10 +9,8 @@
 
 namespace weave::simd {
 
-#if defined(__SANITIZE_ADDRESS__) || defined(__SANITIZE_THREAD__)  // their shadow of the memory counts as ours
-Status limit_memory(std::uint64_t) { return {}; }
-#else
 Status limit_memory(std::uint64_t bytes) {
+    if (is_sanitized) return {};  // whose shadow of the memory would count as ours
     const rlim_t most = bytes == 0 ? RLIM_INFINITY : static_cast<rlim_t>(bytes);
     rlimit limit{};
     if (::getrlimit(RLIMIT_DATA, &limit) != 0) return system_fault(std::string("cannot read the memory limit: ") + std::strerror(errno));
@@ -19,6 +19,5 @@ Status limit_memory(std::uint64_t bytes) {
     if (::setrlimit(RLIMIT_DATA, &limit) != 0) return system_fault(std::string("cannot limit memory: ") + std::strerror(errno));
     return {};
 }
-#endif
 
 }  // namespace weave::simd

@@ -1,6 +1,7 @@
 #pragma once
 
 #include <weave/core/json.hpp>
+#include <weave/core/sanitized.hpp>
 #include <weave/design/document.hpp>
 #include <weave/samples/samples.hpp>
 #include <weave/wire/follower.hpp>
@@ -22,6 +23,9 @@
 namespace weave::simd::testing {
 
 using namespace std::chrono_literals;
+
+/// How long a test waits for what must come. Sanitizers take ten times the time.
+constexpr std::chrono::seconds patience_for_news{is_sanitized ? 600 : 120}, patience_for_rest{is_sanitized ? 1200 : 180};
 
 /// A daemon of its own, as people start it, in a folder that goes away with the test.
 class Box {
@@ -125,7 +129,7 @@ class Followed {
     wire::State state() { return std::get<wire::State>(ask(wire::ReadState{wire::new_request_id(), number})); }
 
     /// Takes what comes until `enough`; whether that came in time.
-    bool until(const std::function<bool(const wire::Received&)>& enough, std::chrono::milliseconds patience = 120s) {
+    bool until(const std::function<bool(const wire::Received&)>& enough, std::chrono::milliseconds patience = patience_for_news) {
         const auto end = std::chrono::steady_clock::now() + patience;
         while (std::chrono::steady_clock::now() < end) {
             auto received = m_follower.receive(100ms);
@@ -146,7 +150,7 @@ class Followed {
         return false;
     }
     template <class Message>
-    std::optional<Message> next(std::chrono::milliseconds patience = 120s, const std::function<bool(const Message&)>& fits = {}) {
+    std::optional<Message> next(std::chrono::milliseconds patience = patience_for_news, const std::function<bool(const Message&)>& fits = {}) {
         std::optional<Message> found;
         until(
             [&](const wire::Received& received) {
@@ -159,11 +163,11 @@ class Followed {
             patience);
         return found;
     }
-    bool until_phase(wire::Phase phase, std::chrono::milliseconds patience = 180s) {
+    bool until_phase(wire::Phase phase, std::chrono::milliseconds patience = patience_for_rest) {
         return next<wire::PhaseChanged>(patience, [&](const auto& changed) { return changed.phase == phase; }).has_value();
     }
     /// Until it rests, and shows so.
-    bool until_rest(std::chrono::milliseconds patience = 180s) {
+    bool until_rest(std::chrono::milliseconds patience = patience_for_rest) {
         return until(
             [](const wire::Received& one) {
                 const auto* frame = std::get_if<wire::Frame>(&one);
