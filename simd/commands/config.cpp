@@ -57,7 +57,7 @@ Result<ServeConfig> parse_config(std::string_view text, const std::filesystem::p
 Status check_config(const ServeConfig& config) {
     WEAVE_CHECK_OK(check_service(config));
     if (config.memory_bytes > 0 && config.memory_bytes < expected_bytes(1))
-        return bad_input("is less than one cloth needs: at least " + std::to_string(expected_bytes(1) / mib + 1), "memory_mib");
+        return bad_input("is less than the smallest cloth needs: at least " + std::to_string(expected_bytes(1) / mib + 1), "memory_mib");
     if (!config.site.empty() && config.access_keys.empty()) return bad_input("counts for tokens of its keys: give access_keys too", "site");
     if (config.site.empty() && !config.access_keys.empty()) return bad_input("are of a site: give its name too", "access_keys");
     return {};

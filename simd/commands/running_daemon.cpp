@@ -123,7 +123,7 @@ std::uint16_t RunningDaemon::port() const {
 
 Json RunningDaemon::introduction() const {
     const ServeConfig& config = m_parts->config;
-    Json told{{"unix_socket", m_parts->socket.string()}, {"threads", threads_of(config)}, {"memory_bytes", memory_of(config)}};
+    Json told{{"unix_socket", std::filesystem::absolute(m_parts->socket).string()}, {"threads", threads_of(config)}, {"memory_bytes", memory_of(config)}};
     if (!config.address.empty()) told["url"] = origin_of(config, port());
     if (!m_parts->tls) return told;
     if (const auto certificate = net::read_certificate(m_parts->tls->certificate)) told["certificate_sha256"] = certificate->fingerprint;

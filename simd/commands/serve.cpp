@@ -36,12 +36,12 @@ Status serve(ServeOptions& options, CommandOutcome& outcome) {
         WEAVE_CHECK_OK(check_config(config));
         return check_places(folder, config);
     };
-    WEAVE_CHECK_OK(options.words.complete<ServeConfig>(options.config, parse_config, check));
     WEAVE_CHECK_OK(check_service_folder(options.folder));
+    WEAVE_CHECK_OK(options.words.complete<ServeConfig>(options.config, parse_config, check));
+    if (memory_of(options.config) > machine_memory())
+        outcome.note("memory_mib: is more than this machine has (" + memory_text(machine_memory()) + "): the system may end workers for want of it");
     if (options.words.only_checks(outcome)) return {};
     log_to_stderr();
-    if (memory_of(options.config) > machine_memory())
-        log(LogLevel::warning, "memory_mib: is more than this machine has (" + memory_text(machine_memory()) + "): the system may end workers for want of it");
     WEAVE_TRY(const auto daemon, RunningDaemon::start(folder, options.config, std::filesystem::read_symlink("/proc/self/exe")));
     const Json started = daemon->introduction();
     outcome.answer(started, words_of(started));

@@ -25,12 +25,12 @@ constexpr std::array<Column, 11> columns_of_table{{{"", 4, true, 0},
                                                    {"STATE", 8, true, 0},
                                                    {"PERSON", 12, true, 0},
                                                    {"STEPS", 9, false, 0},
-                                                   {"PER S", 7, false, 3},
-                                                   {"RESIDUAL", 9, false, 1},
+                                                   {"PER S", 7, false, 1},
+                                                   {"RESIDUAL", 9, false, 3},
                                                    {"POINTS", 9, false, 5},
-                                                   {"MEMORY", 9, false, 4},
+                                                   {"MEMORY", 9, false, 2},
                                                    {"COMPUTED", 11, false, 6},
-                                                   {"LEFT", 11, false, 2},
+                                                   {"LEFT", 11, false, 4},
                                                    {"TITLE", 12, true, 0}}};
 constexpr std::size_t longest_title = 30;
 using Row = std::array<std::string, columns_of_table.size()>;
@@ -130,13 +130,12 @@ std::string clipped(std::string_view text, std::size_t columns) {
 std::string status_table(const Json& status, std::size_t columns, std::size_t lines) {
     const Json& memory = status.at("memory");
     std::vector<std::string> told;
-    const std::string head = "simd, up " + time_text(status.at("up_s")) + ": " + counted(status.at("sessions").size(), "session") + ", " +
-                             counted(status.at("jobs").size(), "job") + "; " + memory_text(memory.at("promised_bytes")) + " of " + memory_text(memory.at("bytes")) +
-                             " promised; " + counted(status.at("threads").get<std::size_t>(), "thread") + ", " +
-                             std::to_string(status.at("turns_waiting").get<std::size_t>()) + " waiting to compute; " +
-                             counted(status.at("clients").get<std::size_t>(), "connection");
-    told.push_back(clipped(head, columns) + "\n");
-    told.emplace_back("\n");
+    const std::string who = "simd, up " + time_text(status.at("up_s")) + ": " + counted(status.at("sessions").size(), "session") + ", " + counted(status.at("jobs").size(), "job") +
+                            ", " + counted(status.at("clients").get<std::size_t>(), "connection");
+    const std::string what = memory_text(memory.at("promised_bytes")) + " of " + memory_text(memory.at("bytes")) + " promised; " +
+                             counted(status.at("threads").get<std::size_t>(), "thread") + ", " + std::to_string(status.at("turns_waiting").get<std::size_t>()) + " waiting to compute";
+    told.push_back(clipped(who, columns) + "\n");
+    told.push_back(clipped(what, columns) + "\n");
     const Widths widths = widths_for(columns);
     Row titles;
     for (std::size_t k = 0; k < titles.size(); ++k) titles[k] = columns_of_table[k].title;

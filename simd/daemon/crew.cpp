@@ -174,6 +174,13 @@ void Crew::post(Id id, const Json& message) {
     static_cast<void>(found->second.process->link().post(message));  // the thread that listens finds out that it is gone
 }
 
+void Crew::ask_to_end(Id id, bool with_report) {
+    const auto found = m_members.find(id);
+    if (found == m_members.end()) return;
+    found->second.asked_to_end = Clock::now();
+    post(id, {{"do", "finish"}, {"with_report", with_report}});
+}
+
 void Crew::kill(Id id) {
     const auto found = m_members.find(id);
     if (found != m_members.end() && found->second.process) found->second.process->kill();
@@ -195,17 +202,26 @@ void Crew::tick(Clock::time_point now) {
 }
 
 void Crew::end_stuck(Clock::time_point now) {
-    const std::string time = " for " + std::to_string(m_rules.stall.count()) + " s";
     for (auto& [id, member] : m_members) {
-        if (member.end.failure) continue;
-        const auto kept = m_turns.kept_since_asked(id, now), planning = planning_for(member, now);
-        const bool plans_too_long = planning && *planning >= m_rules.stall;
-        if (!plans_too_long && (!kept || *kept < m_rules.stall)) continue;
-        member.end.failure = plans_too_long ? Error{ErrorCode::refused, "it was being planned" + time + ", as long as anything may: simulate a part of it", "simulation"}
-                                            : system_fault("it no longer answered" + time);
-        member.end.is_final = plans_too_long;
+        if (member.end.failure || !member.process) continue;
+        member.end.failure = why_stuck(id, member, now);
+        if (!member.end.failure) continue;
+        member.end.is_final = planning_for(member, now).has_value();  // it would plan as long again
         kill(id);
     }
+}
+
+std::optional<Error> Crew::why_stuck(Id id, const Member& member, Clock::time_point now) const {
+    const std::string time = " for " + std::to_string(m_rules.stall.count()) + " s";
+    const auto planning = planning_for(member, now);
+    if (planning && *planning >= m_rules.stall)
+        return Error{ErrorCode::refused, "it was being planned" + time + ", as long as anything may: simulate a part of it", "simulation"};
+    const auto kept = m_turns.kept_since_asked(id, now);
+    if (kept && *kept >= m_rules.stall) return system_fault("it no longer answered" + time);
+    const auto turn = m_turns.turn_for(id, now);
+    const bool is_to_speak = (turn && *turn >= m_rules.stall) || (member.asked_to_end && now - *member.asked_to_end >= m_rules.stall);
+    if (is_to_speak && member.process->silent_for(now) >= m_rules.stall) return system_fault("it said nothing" + time);
+    return {};
 }
 
 void Crew::bury() {

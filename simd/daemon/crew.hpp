@@ -32,7 +32,9 @@ class Crew {
         std::size_t planning_at_once = 2;
         /// One that plans for longer no longer keeps others waiting; its person's next ones wait for it.
         std::chrono::seconds planning_patience{10};
-        std::chrono::seconds stall{300};    ///< a worker that keeps a turn so long after it was asked back, or plans so long, is ended
+        /// A worker is ended that plans for so long, keeps its turn for so long after it was asked back, or for so long says nothing
+        /// where there is something to say: it computes, or was asked for its end.
+        std::chrono::seconds stall{300};
     };
 
     Crew(std::mutex& lock, const Rules& rules);
@@ -44,6 +46,8 @@ class Crew {
     /// Grants the planned points their memory; false where there is too little. `also` is told with it: number and folder.
     bool admit(Id id, std::size_t points, Json also);
     void post(Id id, const Json& message);
+    /// Asks a worker to put away what it has and end: with a report of where the cloth lies, or without.
+    void ask_to_end(Id id, bool with_report);
     /// Ends a worker at once; its task is told.
     void kill(Id id);
     /// The same, but nobody is told.
@@ -64,6 +68,7 @@ class Crew {
         Task* task = nullptr;  ///< null: dismissed
         std::string person;
         bool is_job = false, is_admitted = false;
+        std::optional<Clock::time_point> asked_to_end;
         std::unique_ptr<WorkerProcess> process;
         Clock::time_point started{};
         WorkerEnd end;
@@ -79,6 +84,7 @@ class Crew {
     void lost(Id id, std::string how);
     void start_some(Clock::time_point now);
     void end_stuck(Clock::time_point now);
+    [[nodiscard]] std::optional<Error> why_stuck(Id id, const Member& member, Clock::time_point now) const;
     [[nodiscard]] std::optional<Clock::duration> planning_for(const Member& member, Clock::time_point now) const;
 
     std::mutex& m_lock;

@@ -77,7 +77,7 @@ std::optional<double> Daemon::expected_wait_s() const {
         if (const auto left = job->left_s(); left && job->is_at_work()) take(*left);
     }
     for (const auto& session : m_sessions) {
-        const auto alone = session->has_ended() ? std::nullopt : session->left_alone();
+        const auto alone = session->has_ended() || !session->is_accepted() ? std::nullopt : session->left_alone();
         if (alone) take(std::chrono::duration<double>(m_settings.expire - *alone).count());
     }
     return least;

@@ -100,7 +100,7 @@ class Daemon {
     Session* session_of(const std::string& person, std::uint64_t number);
     Job* job_of(const std::string& person, std::uint64_t number);
     [[nodiscard]] bool serves_a_session(const ClientPtr& client) const;
-    bool answered_before(const ClientPtr& client, const std::string& request);
+    bool answered_before(const ClientPtr& client, const std::string& request, bool needs_disk);
 
     void create(const ClientPtr& client, const wire::Create& create);
     void submit(const ClientPtr& client, const wire::Submit& submit, const std::string& title);

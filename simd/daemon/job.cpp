@@ -46,7 +46,7 @@ wire::JobState Job::state() const {
 }
 
 std::optional<double> Job::left_s() const {
-    if (!m_pace || m_phase != wire::JobPhase::running) return {};
+    if (!m_pace || m_phase != wire::JobPhase::running || !m_rate.is_told(Clock::now())) return {};
     return m_pace->seconds_left();
 }
 
@@ -68,7 +68,7 @@ Json Job::status(bool with_names) const {
     Json told{{"job", number()},
               {"phase", phase_names[static_cast<int>(m_phase)]},
               {"step", now.step},
-              {"steps_per_second", m_phase == wire::JobPhase::running ? m_rate.per_second() : 0.0},
+              {"steps_per_second", m_phase == wire::JobPhase::running ? m_rate.per_second(Clock::now()) : 0.0},
               {"residual", now.residual ? Json(*now.residual) : Json()},
               {"left_s", now.left_s ? Json(*now.left_s) : Json()},
               {"points", m_points},
@@ -123,6 +123,8 @@ void Job::planned(const Json& plan) {
     if (code || !m_around.crew.admit(*m_worker, m_points, {{"number", number()}, {"folder", m_around.folder.string()}})) {
         m_around.crew.dismiss(*m_worker);  // its place in the queue is what it was
         m_worker.reset();
+        if (m_is_cancelled) return end(wire::JobPhase::cancelled, system_fault("there was no room to put away its yarns"), Json::object(), {});
+        m_phase = wire::JobPhase::waiting;
         return;
     }
     m_phase = wire::JobPhase::running;
@@ -131,6 +133,7 @@ void Job::planned(const Json& plan) {
     m_rate = {};
     const Status started = m_around.store.start_job(number());
     if (!started) log(LogLevel::warning, "job " + std::to_string(number()) + ": " + started.error().text());
+    if (m_is_cancelled) m_around.crew.ask_to_end(*m_worker, true);
 }
 
 void Job::said(const std::string& what, const Json& message) {
@@ -160,22 +163,25 @@ void Job::said(const std::string& what, const Json& message) {
 void Job::cancel() {
     if (is_over()) return;
     m_is_cancelled = true;
-    if (m_phase == wire::JobPhase::running && m_worker) m_around.crew.post(*m_worker, {{"do", "finish"}, {"with_report", true}});
+    if (m_phase == wire::JobPhase::running && m_worker) m_around.crew.ask_to_end(*m_worker, true);
     else end(wire::JobPhase::cancelled, {}, Json::object(), {});
 }
 
 void Job::put_away() {
     m_is_put_away = true;
-    if (m_phase == wire::JobPhase::running && m_worker) m_around.crew.post(*m_worker, {{"do", "finish"}, {"with_report", false}});
+    if (m_phase == wire::JobPhase::running && m_worker) m_around.crew.ask_to_end(*m_worker, false);
     else if (m_worker) m_around.crew.dismiss(*std::exchange(m_worker, {}));
 }
 
 void Job::ended(const WorkerEnd& end) {
     m_worker.reset();
     if (is_over() || m_is_put_away) return;
-    if (m_is_cancelled) return this->end(wire::JobPhase::cancelled, {}, Json::object(), {});
     const Error why = end.failure.value_or(system_fault("the worker " + end.how));
     log(LogLevel::warning, "job " + std::to_string(number()) + ": " + why.text());
+    if (m_is_cancelled) {  // once more, from its checkpoint: its yarns as they lay are promised
+        if (m_phase == wire::JobPhase::running && !end.is_final && !std::exchange(m_is_ended_again, true)) return begin();
+        return this->end(wire::JobPhase::cancelled, why, Json::object(), {});
+    }
     m_phase = wire::JobPhase::waiting;
     if (end.is_final) return this->end(wire::JobPhase::failed, why, Json::object(), {});
     m_faults = m_step > m_furthest ? 1 : m_faults + 1;

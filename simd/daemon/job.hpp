@@ -85,7 +85,7 @@ class Job final : public Task {
     StepRate m_rate;
     std::optional<sim::Pace> m_pace;
     Clock::time_point m_began{}, m_came = Clock::now();
-    bool m_is_cancelled = false, m_is_put_away = false, m_is_done = false, m_is_saved = false;
+    bool m_is_cancelled = false, m_is_ended_again = false, m_is_put_away = false, m_is_done = false, m_is_saved = false;
     Json m_report = Json::object();
     std::optional<Error> m_error;
 };

@@ -29,14 +29,14 @@ Result<std::string> title_of(const std::string& document) {
 }  // namespace
 
 /// A request that was answered before, be it over another connection, is answered the same way and done no second time. So is
-/// one that comes too soon after many others, but it may come again.
-bool Daemon::answered_before(const ClientPtr& client, const std::string& request) {
+/// one that comes too soon after many others, but it may come again. Where the disk fails, what needs none may be done twice.
+bool Daemon::answered_before(const ClientPtr& client, const std::string& request, bool needs_disk) {
     const auto answer = m_store->answer_of(client->person(), request);
-    if (!answer) {
+    if (!answer && needs_disk) {
         client->tell(wire::Refused{request, {ErrorCode::system, "the disk does not take it: " + answer.error().message, ""}, {}});
         return true;
     }
-    if (*answer) {
+    if (answer && *answer) {
         client->tell(net::make_bytes(**answer));
         return true;
     }
@@ -75,7 +75,8 @@ void Daemon::obey_one(const ClientPtr& client, const Message& message) {
                                        std::is_same_v<Message, wire::Checkpoint> || std::is_same_v<Message, wire::Close> ||
                                        std::is_same_v<Message, wire::Cancel>;
     if constexpr (changes_something) {
-        if (answered_before(client, message.request)) return;
+        constexpr bool needs_disk = !std::is_same_v<Message, wire::Pause>;
+        if (answered_before(client, message.request, needs_disk)) return;
     }
     const auto in_session = [&](auto what) { with_session(client, message, what); };
     if constexpr (std::is_same_v<Message, wire::Create>) create(client, message);
@@ -145,7 +146,7 @@ void Daemon::list_sessions(const ClientPtr& client, const std::string& request) 
 // ---- Jobs ----
 
 void Daemon::submit(const ClientPtr& client, const wire::Submit& submit, const std::string& title) {
-    if (answered_before(client, submit.request)) return;
+    if (answered_before(client, submit.request, true)) return;
     const auto refuse = [&](Error error) { client->tell(wire::Refused{submit.request, std::move(error), {}}); };
     if (m_is_stopping) return refuse({ErrorCode::refused, "the server is being stopped", "submit"});
     const auto own = [&](const auto& job) { return job->person() == client->person(); };

@@ -71,7 +71,7 @@ void Session::planned(const Json& plan) {
     if (m_takes_up) m_checkpoint_step = plan.at("step");
     if (std::exchange(m_is_recovering, false)) emit(wire::Recovered{.step = plan.at("step"), .frame = m_frame}, EventKind::other);
     tell_rates();
-    if (m_is_closing) post({{"do", "finish"}, {"with_report", true}});
+    if (m_is_closing) m_around.crew.ask_to_end(*m_worker, true);
 }
 
 Status Session::become_accepted() {
@@ -288,11 +288,15 @@ void Session::shown(std::string frame) {
     constexpr std::size_t flags_at = 6, number_at = 16, head = 80;
     constexpr std::uint64_t last_flag = 2;
     if (frame.size() < head) throw std::runtime_error("no frame");
-    m_frame = little_endian(frame, number_at, 8);
-    if (m_frame > m_frames_promised) {
-        m_frames_promised = m_frame + frames_at_once;
-        if (!save_state()) return;  // a number must not come twice, so it waits for the disk
+    const std::uint64_t number = little_endian(frame, number_at, 8);
+    if (number > m_frames_promised) {
+        const std::uint64_t promised = std::exchange(m_frames_promised, number + frames_at_once);
+        if (!save_state()) {  // a number must not come twice, so it waits for the disk
+            m_frames_promised = promised;
+            return;
+        }
     }
+    m_frame = number;
     const bool is_last = (little_endian(frame, flags_at, 2) & last_flag) != 0;
     m_newest = net::make_bytes(std::move(frame));
     m_newest_number = m_frame;

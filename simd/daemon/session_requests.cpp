@@ -74,7 +74,7 @@ Json Session::status(bool with_names) const {
               {"step", m_step},
               {"residual", m_residual},
               {"points", m_points},
-              {"steps_per_second", m_phase == wire::Phase::running ? m_rate.per_second() : 0.0},
+              {"steps_per_second", m_phase == wire::Phase::running ? m_rate.per_second(Clock::now()) : 0.0},
               {"clients", m_viewers.size()},
               {"memory_bytes", m_worker ? m_around.crew.memory_bytes(*m_worker) : 0},
               {"computed_s", m_worker ? m_around.crew.turns().spent_s(*m_worker, Clock::now()) : 0.0},
@@ -223,7 +223,7 @@ void Session::close(const ClientPtr& client, const std::string& request) {
     answer(client, request);
     m_is_closing = true;
     if (!m_worker) return end(wire::Why::closed, m_step, {}, Json::object());
-    post({{"do", "finish"}, {"with_report", true}});
+    m_around.crew.ask_to_end(*m_worker, true);
 }
 
 void Session::write_yarns(std::function<void(Result<std::filesystem::path>)> done) {
@@ -263,7 +263,7 @@ void Session::take_up() {
 
 void Session::put_away() {
     m_is_put_away = true;
-    post({{"do", "finish"}, {"with_report", false}});
+    if (m_worker) m_around.crew.ask_to_end(*m_worker, false);
 }
 
 void Session::ended(const WorkerEnd& end) {
@@ -272,7 +272,7 @@ void Session::ended(const WorkerEnd& end) {
     const Error why = end.failure.value_or(system_fault("the worker " + end.how));
     if (!is_accepted()) return refuse_creation(why, {});
     fail_waiting(why);
-    if (m_is_closing) return this->end(wire::Why::closed, m_step, {}, Json::object());
+    if (m_is_closing) return this->end(wire::Why::closed, m_step, why, Json::object());
     m_faults = m_step > m_furthest ? 1 : m_faults + 1;
     m_furthest = std::max(m_furthest, m_step);
     log(LogLevel::warning, "session " + std::to_string(m_number) + ": " + why.text());

@@ -1,5 +1,6 @@
 #pragma once
 
+#include <algorithm>
 #include <chrono>
 #include <cstdint>
 
@@ -11,17 +12,23 @@ class StepRate {
     using Clock = std::chrono::steady_clock;
 
     void add(Clock::time_point now, std::uint64_t step) {
-        const double passed = std::chrono::duration<double>(now - m_since).count();
-        if (passed < 1) return;
+        m_told = now;
+        const Clock::duration passed = now - m_since;
+        if (passed < std::chrono::seconds(1)) return;
         const bool is_known = m_since != Clock::time_point{};
-        m_per_second = is_known && step > m_step ? static_cast<double>(step - m_step) / passed : 0;
+        m_per_second = is_known && step > m_step ? static_cast<double>(step - m_step) / std::chrono::duration<double>(passed).count() : 0;
+        if (is_known) m_over = passed;
         m_since = now;
         m_step = step;
     }
-    [[nodiscard]] double per_second() const { return m_per_second; }
+    /// 0 where nothing was told of for long.
+    [[nodiscard]] double per_second(Clock::time_point now) const { return is_told(now) ? m_per_second : 0; }
+    /// Whether the worker has lately told how far it is: within ten seconds, or three times what its last steps took.
+    [[nodiscard]] bool is_told(Clock::time_point now) const { return now - m_told <= std::max<Clock::duration>(std::chrono::seconds(10), 3 * m_over); }
 
   private:
-    Clock::time_point m_since{};
+    Clock::time_point m_since{}, m_told{};
+    Clock::duration m_over{};
     std::uint64_t m_step = 0;
     double m_per_second = 0;
 };

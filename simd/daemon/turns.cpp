@@ -164,6 +164,13 @@ std::optional<Turns::Clock::duration> Turns::kept_since_asked(Id id, Clock::time
     return now - found->second.asked_back;
 }
 
+std::optional<Turns::Clock::duration> Turns::turn_for(Id id, Clock::time_point now) const {
+    const std::lock_guard lock(m_mutex);
+    const auto found = m_workers.find(id);
+    if (found == m_workers.end() || found->second.threads == 0) return {};
+    return now - found->second.since;
+}
+
 double Turns::spent_s(Id id, Clock::time_point now) const {
     const std::lock_guard lock(m_mutex);
     const auto found = m_workers.find(id);

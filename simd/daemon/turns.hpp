@@ -47,6 +47,8 @@ class Turns {
 
     /// How long the worker that was asked back longest ago has kept its turn since then; nothing where none was asked.
     [[nodiscard]] std::optional<Clock::duration> kept_since_asked(Id id, Clock::time_point now) const;
+    /// How long a worker has had its turn; nothing where it has none.
+    [[nodiscard]] std::optional<Clock::duration> turn_for(Id id, Clock::time_point now) const;
     [[nodiscard]] std::size_t waiting() const;
     /// Seconds of computing that a worker has had, times its threads.
     [[nodiscard]] double spent_s(Id id, Clock::time_point now) const;

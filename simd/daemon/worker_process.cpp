@@ -98,6 +98,7 @@ void WorkerProcess::listen(const Json& order) {
         auto message = m_link.receive();
         if (!message) log(LogLevel::warning, "a worker was ended: " + message.error().text());
         if (!message || !*message) break;
+        m_heard = std::chrono::steady_clock::now();
         m_listener.message(std::move(**message));
     }
     // Whoever has closed the link has nothing more to say, and must not go on computing.

@@ -2,6 +2,8 @@
 
 #include <weave/core/result.hpp>
 
+#include <atomic>
+#include <chrono>
 #include <cstdint>
 #include <filesystem>
 #include <functional>
@@ -31,6 +33,8 @@ class WorkerProcess {
 
     [[nodiscard]] Link& link() { return m_link; }
     [[nodiscard]] pid_t id() const { return m_id; }
+    /// Since it last said a word, or was started.
+    [[nodiscard]] std::chrono::steady_clock::duration silent_for(std::chrono::steady_clock::time_point now) const { return now - m_heard.load(); }
     /// Ends it at once; the listener is told.
     void kill();
     /// Memory that it has in use, bytes; 0 where the system does not say.
@@ -44,6 +48,7 @@ class WorkerProcess {
     int m_handle = -1;  ///< a pidfd: its number is never given to another process
     Link m_link;
     Listener m_listener;
+    std::atomic<std::chrono::steady_clock::time_point> m_heard = std::chrono::steady_clock::now();
     std::thread m_thread;
 };
 

@@ -62,6 +62,10 @@ std::string whole_text(const Json& number) {
     return std::to_string(number.get<std::uint64_t>());
 }
 
+std::string count_text(const Json& works) {
+    return works.empty() ? "" : " (" + std::to_string(works.size()) + ")";
+}
+
 std::string residual_text(const Json& residual) {
     return residual.is_null() || residual.get<double>() <= 0 ? "–" : number_text(residual.get<double>(), "%.1e");
 }
@@ -122,8 +126,8 @@ std::string status_page(const Json& status, const std::string& version) {
             " wait to compute; " + whole_text(status.at("clients")) + " connections</p>\n";
     page += "<h2>Memory</h2><div class=\"bar\"><i style=\"width:" + number_text(share, "%.1f") + "%\"></i></div><p>" + memory_text(promised) + " of " +
             memory_text(whole) + " promised</p>\n";
-    page += "<h2>Sessions</h2>\n" + sessions_table(status.at("sessions"));
-    page += "<h2>Jobs</h2>\n" + jobs_table(status.at("jobs"));
+    page += "<h2>Sessions" + count_text(status.at("sessions")) + "</h2>\n" + sessions_table(status.at("sessions"));
+    page += "<h2>Jobs" + count_text(status.at("jobs")) + "</h2>\n" + jobs_table(status.at("jobs"));
     return page + "</body></html>\n";
 }
 

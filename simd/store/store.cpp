@@ -71,6 +71,7 @@ Status Store::write(const Change& change) {
     if (status) status = connection->script("COMMIT");
     status = settled(std::move(status));
     m_trouble.reset();
+    if (status && std::exchange(m_failure_told, false)) log(LogLevel::info, "the store takes everything again");
     if (!status && status.error().code == ErrorCode::system) m_trouble = status.error();
     return status;
 }
@@ -92,7 +93,7 @@ Status Store::settled(Status outcome) {
     if (outcome) return outcome;
     if (m_connection->in_transaction()) static_cast<void>(m_connection->script("ROLLBACK"));
     if (outcome.error().code == ErrorCode::system) {
-        log(LogLevel::warning, "the store failed: " + outcome.error().text());
+        if (!std::exchange(m_failure_told, true)) log(LogLevel::warning, "the store failed, and is tried again: " + outcome.error().text());
         m_connection.reset();
     }
     return outcome;

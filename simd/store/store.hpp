@@ -118,6 +118,7 @@ class Store {
     std::mutex m_mutex;
     std::unique_ptr<sql::Connection> m_connection;  ///< none after the disk failed
     std::map<Number, Progress> m_progress;          ///< of jobs that run
+    bool m_failure_told = false;                    ///< in the log, since it last worked
     std::optional<Error> m_trouble;                 ///< of the disk, at the last call that wrote
 };
 

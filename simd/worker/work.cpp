@@ -46,6 +46,14 @@ std::size_t points_of(const sim::Plan& plan) {
     return points;
 }
 
+/// An error of planning at its place in what was asked for.
+Error in_message(Error error) {
+    if (error.where == "region") error.where = "simulation.plan.region";
+    if (error.where == "start_from") error.where = "simulation.start_from";
+    if (error.where == "pins") error.where = "simulation.plan.held";
+    return error;
+}
+
 }  // namespace
 
 Work::Work(Link& link, WorkOrder order)
@@ -88,7 +96,9 @@ Status Work::begin() {
 }
 
 Status Work::begin_anew(const Design& design) {
-    WEAVE_TRY(m_run, sim::Run::begin(design, m_request, 1));
+    auto run = sim::Run::begin(design, m_request, 1);
+    if (!run) return in_message(std::move(run).error());
+    m_run = std::move(*run);
     return {};
 }
 

@@ -193,6 +193,57 @@ TEST_CASE("a worker that answers no more is ended, and its session goes on") {
     CHECK(stuck.until_rest());
 }
 
+TEST_CASE("a worker that hangs while nobody else waits is ended too, and so is one that does not end when it is asked to") {
+    const Box box(Json{{"stall_seconds", 2}});
+    Followed stuck(box, document_of(long_cloth), long_run());
+    stuck.run();
+    std::this_thread::sleep_for(300ms);
+    const auto first = box.worker("session", stuck.number);
+    REQUIRE(first);
+    REQUIRE(::kill(*first, SIGSTOP) == 0);
+    CHECK(stuck.next<wire::Recovered>());
+    CHECK(stuck.until_rest());
+    const auto second = box.worker("session", stuck.number);
+    REQUIRE(second);
+    REQUIRE(::kill(*second, SIGSTOP) == 0);
+    stuck.ask(wire::Close{wire::new_request_id(), stuck.number});
+    const auto ended = stuck.next<wire::Ended>();
+    REQUIRE(ended);
+    CHECK(ended->why == wire::Why::closed);
+    REQUIRE(ended->error);
+    CHECK_THAT(ended->error->message, Catch::Contains("said nothing for 2 s"));
+}
+
+TEST_CASE("while the disk is full a session pauses when asked to, and shows no frame whose number could come twice") {
+    const auto is_frame = [](const wire::Received& one) { return std::holds_alternative<wire::Frame>(one); };
+    Box box;
+    wire::Simulation endless = long_run();
+    endless.residual = 1e-15;
+    Followed session(box, document_of(long_cloth), endless);
+    session.run();
+    REQUIRE(session.until(is_frame));
+    box.kill();
+    box.start();
+    limit(box.process(), RLIMIT_FSIZE, 100);  // its next frame needs numbers that the disk has not promised yet
+    session.until([](const wire::Received&) { return false; }, 2s);
+    for (int k = 0; k < 2; ++k) {
+        const auto refused = session.follower().ask(wire::Run{wire::new_request_id(), session.number}, 10s);
+        REQUIRE(refused);
+        CHECK(std::holds_alternative<wire::Refused>(*refused));
+        session.ask(wire::Pause{wire::new_request_id(), session.number});
+    }
+    CHECK_FALSE(session.until(is_frame, 1s));
+    limit(box.process(), RLIMIT_FSIZE, RLIM_INFINITY);
+    session.run();
+    REQUIRE(session.until(is_frame));
+    box.kill();
+    box.start();
+    REQUIRE(session.next<wire::Recovered>());
+    CHECK(session.state().frame >= session.last_frame);
+    REQUIRE(session.until(is_frame));
+    check_events(session);
+}
+
 TEST_CASE("clocks that jump by a day at every look change nothing") {
     ::setenv("LD_PRELOAD", WEAVE_JUMPING_CLOCK, 1);
     Box box(Json{{"expire_seconds", 60}});

@@ -126,6 +126,26 @@ TEST_CASE("jobs that wait are cancelled at once, one that runs keeps its yarns a
     CHECK_FALSE(wire::answer_of<wire::Accepted>(follower.ask(wire::Cancel{wire::new_request_id(), running}, 10s)));
 }
 
+TEST_CASE("a cancelled job whose worker dies meanwhile keeps its yarns as they lay all the same") {
+    const Box box;
+    wire::Follower follower = box.follower();
+    wire::Simulation endless = long_run();
+    endless.residual = 1e-15;
+    const std::uint64_t job = submit(follower, document_of(long_cloth), endless);
+    const auto is_running = [&] { return box.status().at("jobs").at(0).at("step") > 0; };
+    for (int k = 0; k < 1000 && !is_running(); ++k) std::this_thread::sleep_for(20ms);
+    const auto worker = box.worker("job", job);
+    REQUIRE(worker);
+    REQUIRE(::kill(*worker, SIGSTOP) == 0);
+    REQUIRE(wire::answer_of<wire::Accepted>(follower.ask(wire::Cancel{wire::new_request_id(), job}, 10s)));
+    REQUIRE(::kill(*worker, SIGKILL) == 0);
+    const wire::JobEnded ended = end_of(follower, job);
+    CHECK(ended.phase == wire::JobPhase::cancelled);
+    CHECK_FALSE(ended.error);
+    CHECK(ended.report.at("ending") == "stopped");
+    CHECK_FALSE(read_yarns(yarns_of(follower, job)).value().yarns.empty());
+}
+
 TEST_CASE("a job that is broken off by kills of its worker and of the daemon ends bit by bit as one that was not") {
     Box box;
     wire::Follower follower = box.follower();

@@ -54,6 +54,7 @@ TEST_CASE("what computes is told first, then what waits, then what rests") {
     const std::string page = simd::status_page(status, "7.1");
     CHECK(page.find(">running<") < page.find(">waiting<"));
     CHECK(page.find(">paused<") < page.find(">at rest<"));
+    CHECK(count_of(page, "Sessions (5)") == 1);
 }
 
 TEST_CASE("the status page lays rows out anew on a narrow screen, and an idle machine has no table") {

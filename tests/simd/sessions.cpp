@@ -190,6 +190,13 @@ TEST_CASE("a cloth for which there is no room is refused, with what it needs and
     const auto later = follower.create(document_of("plain"), at(sim::Fidelity::draft), 60s);
     REQUIRE_FALSE(later);
     CHECK_THAT(later.error().message, Catch::Contains("free now"));
+    auto asking = wire::Client::connect(box.place(), "test");
+    REQUIRE(asking);
+    const auto answer = asking->ask(wire::Create{wire::new_request_id(), document_of("plain"), at(sim::Fidelity::draft)}, 60s);
+    REQUIRE(answer);
+    const auto* refused = std::get_if<wire::Refused>(&*answer);
+    REQUIRE(refused != nullptr);
+    CHECK_FALSE(refused->wait_s);  // somebody is attached to each session: nobody knows for how long
     first.ask(wire::Close{wire::new_request_id(), first.number});
     REQUIRE(first.next<wire::Ended>());
     CHECK(follower.create(document_of("plain"), at(sim::Fidelity::draft), 60s));

@@ -12,6 +12,7 @@
 #include <algorithm>
 #include <chrono>
 #include <cstdio>
+#include <map>
 #include <memory>
 #include <optional>
 #include <utility>
@@ -19,6 +20,11 @@
 namespace weave::program {
 
 namespace {
+
+using namespace std::chrono_literals;
+
+/// How long a person who cancels a job waits for its worker to put away what it has.
+constexpr auto cancel_patience = 15s;
 
 struct Wish : NumberedWish {
     std::string out, evidence;
@@ -34,23 +40,43 @@ std::string line_of(const Json& job) {
     return beginning_of(job, "job", job.at("phase").get<std::string>()) + facts;
 }
 
-Status list(CommandOutcome& outcome, const ServerWish& wish) {
-    WEAVE_TRY(wire::Follower follower, server_of(wish));
-    WEAVE_TRY(wire::JobList jobs, jobs_of(follower));
-    follower.close();
-    return tell_list(outcome, follower, "jobs", std::move(jobs), line_of);
-}
-
 /// The end of a job, which every connection is told of, where it comes in time.
-Result<std::optional<wire::JobEnded>> told_end(wire::Follower& follower, std::uint64_t job) {
-    const auto until = std::chrono::steady_clock::now() + answer_patience;
+Result<std::optional<wire::JobEnded>> told_end(wire::Follower& follower, std::uint64_t job, std::chrono::milliseconds patience) {
+    const auto until = std::chrono::steady_clock::now() + patience;
     while (std::chrono::steady_clock::now() < until) {
-        WEAVE_TRY(auto received, follower.receive(std::chrono::seconds(1)));
+        WEAVE_TRY(auto received, follower.receive(std::min<std::chrono::milliseconds>(patience, std::chrono::seconds(1))));
         auto* message = received ? std::get_if<wire::ServerMessage>(&*received) : nullptr;
         auto* ended = message != nullptr ? std::get_if<wire::JobEnded>(message) : nullptr;
         if (ended != nullptr && ended->job == job) return std::optional(std::move(*ended));
     }
     return std::optional<wire::JobEnded>();
+}
+
+/// Why jobs failed, which every connection is told at its beginning.
+std::map<std::uint64_t, std::string> reasons_of(wire::Follower& follower, const wire::JobList& jobs) {
+    auto left = std::ranges::count(jobs.jobs, wire::JobPhase::failed, &wire::JobState::phase);
+    std::map<std::uint64_t, std::string> reasons;
+    while (left > 0) {
+        const auto received = follower.receive(2s);
+        if (!received || !*received) break;
+        const auto* message = std::get_if<wire::ServerMessage>(&**received);
+        const auto* ended = message != nullptr ? std::get_if<wire::JobEnded>(message) : nullptr;
+        if (ended == nullptr || ended->phase != wire::JobPhase::failed) continue;
+        if (ended->error) reasons[ended->job] = ended->error->text();
+        --left;
+    }
+    return reasons;
+}
+
+Status list(CommandOutcome& outcome, const ServerWish& wish) {
+    WEAVE_TRY(wire::Follower follower, server_of(wish));
+    WEAVE_TRY(wire::JobList jobs, jobs_of(follower));
+    const std::map<std::uint64_t, std::string> reasons = reasons_of(follower, jobs);
+    follower.close();
+    return tell_list(outcome, follower, "jobs", std::move(jobs), [&](const Json& job) {
+        const auto reason = reasons.find(job.at("job").get<std::uint64_t>());
+        return line_of(job) + (reason == reasons.end() ? "" : ": " + on_one_line(reason->second));
+    });
 }
 
 /// The end of a job that has ended.
@@ -60,7 +86,7 @@ Result<wire::JobEnded> end_of(wire::Follower& follower, std::uint64_t job) {
     const auto state = std::ranges::find(jobs.jobs, job, &wire::JobState::job);
     if (state == jobs.jobs.end()) return Error{ErrorCode::refused, "there is no such job, or its end was dealt with", where};
     if (state->phase < wire::JobPhase::done) return Error{ErrorCode::refused, "has not ended yet: weave jobs lists how far it is", where};
-    WEAVE_TRY(auto ended, told_end(follower, job));
+    WEAVE_TRY(auto ended, told_end(follower, job, answer_patience));
     if (!ended) return system_fault("the server does not tell how it ended", where);
     return std::move(*ended);
 }
@@ -132,18 +158,29 @@ Status fetch(CommandOutcome& outcome, const Wish& wish) {
     return has_yarns(ended) ? Status() : Status(reason_of(ended));
 }
 
+std::string how_cancelled(const wire::JobEnded& ended) {
+    if (ended.phase != wire::JobPhase::cancelled) return " had ended meanwhile; weave jobs fetch gets what came of it";
+    if (has_yarns(ended)) return " is cancelled; weave jobs fetch gets its yarns as they lay";
+    if (ended.error) return " is cancelled, without its yarns: " + on_one_line(ended.error->text());
+    return " is cancelled; it had not begun, so there are no yarns";
+}
+
 Status cancel(CommandOutcome& outcome, const NumberedWish& wish) {
     WEAVE_TRY(wire::Follower follower, server_of(wish.server));
     const auto accepted = wire::answer_of<wire::Accepted>(follower.ask(wire::Cancel{wire::new_request_id(), wish.number}, answer_patience));
     if (!accepted) return Error{accepted.error().code, accepted.error().message, follower.place().name + ": " + name_of(wish.number)};
-    const auto ended = told_end(follower, wish.number);  // its worker first puts away what it has
+    auto ended = told_end(follower, wish.number, 1s);
+    if (ended && !*ended) {
+        outcome.note(name_of(wish.number) + " puts away what it has ...");
+        ended = told_end(follower, wish.number, cancel_patience);
+    }
     follower.close();
-    const bool is_known = ended && *ended;
-    Json answer{{"server", follower.place().name}, {"job", wish.number}, {"ended", is_known}};
-    if (is_known) answer["yarns"] = has_yarns(**ended);
-    const char* const how = !is_known             ? " is being cancelled; weave jobs lists when it has ended"
-                            : has_yarns(**ended) ? " is cancelled; weave jobs fetch gets its yarns as they lay"
-                                                 : " is cancelled; it had not begun, so there are no yarns";
+    Json answer{{"server", follower.place().name}, {"job", wish.number}, {"ended", ended && *ended}};
+    std::string how = " is being cancelled; weave jobs lists when it has ended";
+    if (ended && *ended) {
+        answer["yarns"] = has_yarns(**ended);
+        how = how_cancelled(**ended);
+    }
     outcome.answer(answer, name_of(wish.number) + how + "\n");
     return {};
 }

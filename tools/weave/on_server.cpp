@@ -26,7 +26,9 @@ Status tell_list(CommandOutcome& outcome, const wire::Follower& follower, const 
 }
 
 std::string beginning_of(const Json& told, const char* what, const std::string& phase) {
-    std::string line = std::to_string(told.at(what).get<std::uint64_t>()) + "  " + on_one_line(told.at("title").get<std::string>()) + ": " + phase;
+    std::string title = on_one_line(told.at("title").get<std::string>());
+    if (title.empty()) title = "untitled";
+    std::string line = std::to_string(told.at(what).get<std::uint64_t>()) + "  " + title + ": " + phase;
     if (!told.contains("residual")) return line;
     char text[100];
     std::snprintf(text, sizeof text, ", residual %.2e after %llu steps", told.at("residual").get<double>(),

@@ -73,7 +73,7 @@ net::ServerOptions server_options(const ServiceConfig& config, const std::option
     options.address = config.address;
     options.port = config.port;
     options.tls = tls;
-    options.hosts = config.hosts;
+    options.hosts = config.plain ? client_hosts(config) : config.hosts;  // a page must not reach what has no certificate by a name of its own
     options.workers = config.workers;
     return options;
 }

@@ -40,7 +40,7 @@ void log_to_stderr() {
 
 EndingSignals::EndingSignals() {
     sigemptyset(&m_signals);
-    for (const int signal : {SIGINT, SIGTERM}) sigaddset(&m_signals, signal);
+    for (const int signal : {SIGINT, SIGTERM, SIGHUP}) sigaddset(&m_signals, signal);
     pthread_sigmask(SIG_BLOCK, &m_signals, nullptr);
 }
 
@@ -72,6 +72,7 @@ Status check_service_folder(const std::filesystem::path& folder) {
     std::error_code trouble;
     std::filesystem::path whole = std::filesystem::absolute(folder, trouble);
     if (!whole.has_filename()) whole = whole.parent_path();  // `box/` is `box`
+    if (std::filesystem::exists(whole, trouble) && !std::filesystem::is_directory(whole, trouble)) return system_fault("is a file, not a folder", folder.string());
     if (std::filesystem::exists(whole, trouble) || ::access(whole.parent_path().c_str(), W_OK | X_OK) == 0) return {};
     return cannot_make(folder);
 }
