@@ -87,7 +87,7 @@ std::string jobs_table(const Json& jobs) {
     for (const Json& job : busiest_first(jobs)) {
         const Json& left = job.at("left_s");
         const bool has_begun = job.at("points") > 0;
-        table.add_row({whole_text(job.at("job")), job.at("phase"), whole_text(job.at("step")), number_text(job.at("steps_per_second"), "%.0f"), residual_text(job.at("residual")),
+        table.add_row({whole_text(job.at("job")), job.at("phase"), whole_text(job.at("step")), has_begun ? number_text(job.at("steps_per_second"), "%.0f") : "–", residual_text(job.at("residual")),
                        has_begun ? whole_text(job.at("points")) : "–", has_begun ? memory_text(job.at("memory_bytes")) : "–",
                        has_begun ? time_text(job.at("computed_s")) : "–", left.is_null() ? "–" : "about " + time_text(left)});
     }
