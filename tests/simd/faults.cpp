@@ -132,7 +132,13 @@ TEST_CASE("asked to end, the daemon puts everything away, and takes it up at its
     CHECK(before.at("checkpoint_step") == before.at("step"));
     CHECK(box.stop() == 0);
     box.start();
-    CHECK(session.state().residual == rested);
+    REQUIRE(session.next<wire::Recovered>());
+    double residual = 0;  // its worker tells it, soon after
+    for (int k = 0; k < 100 && residual == 0; ++k) {
+        std::this_thread::sleep_for(50ms);
+        residual = session.state().residual;
+    }
+    CHECK(residual == rested);
     CHECK(box.status().at("sessions").at(0).at("checkpoint_step") == before.at("checkpoint_step"));
     check_events(session);
 }
@@ -245,6 +251,7 @@ TEST_CASE("while the disk is full a session pauses when asked to, and shows no f
 }
 
 TEST_CASE("clocks that jump by a day at every look change nothing") {
+    if (is_sanitized) return;  // a sanitizer's own library must be the first one
     ::setenv("LD_PRELOAD", WEAVE_JUMPING_CLOCK, 1);
     Box box(Json{{"expire_seconds", 60}});
     ::unsetenv("LD_PRELOAD");
