@@ -232,6 +232,16 @@ TEST_CASE("while the disk is full a session pauses when asked to, and shows no f
     box.start();
     limit(box.process(), RLIMIT_FSIZE, 100);  // its next frame needs numbers that the disk has not promised yet
     session.until([](const wire::Received&) { return false; }, 2s);
+    limit(box.process(), RLIMIT_FSIZE, RLIM_INFINITY);
+    REQUIRE(session.until(is_frame));
+    session.until([](const wire::Received&) { return false; }, 1s);
+    const std::uint64_t shown = session.last_frame;
+    box.kill();
+    box.start();
+    const auto recovered = session.next<wire::Recovered>();
+    REQUIRE(recovered);
+    CHECK(recovered->frame >= shown);  // else its next ones would have numbers that stood for others
+    limit(box.process(), RLIMIT_FSIZE, 100);
     for (int k = 0; k < 2; ++k) {
         const auto refused = session.follower().ask(wire::Run{wire::new_request_id(), session.number}, 10s);
         REQUIRE(refused);

@@ -151,6 +151,27 @@ Status check_replaceable(const fs::path& target, const struct stat& old, const f
     return Error{ErrorCode::refused, "is write-protected", path.string()};
 }
 
+/// Where a file is written, and what is there.
+struct Destination {
+    fs::path target;
+    struct stat old {};
+    bool exists = false;
+    /// A device or pipe: no rename. The name of a pipe in /proc is a link to no place, and leads there all the same.
+    bool is_through = false;
+};
+
+/// Refused: a folder, and a file that is write-protected.
+Result<Destination> destination_of(const fs::path& path) {
+    Destination to;
+    to.exists = ::stat(path.c_str(), &to.old) == 0;
+    if (to.exists && S_ISDIR(to.old.st_mode)) return system_fault("is a folder, not a file", path.string());
+    to.is_through = to.exists && !S_ISREG(to.old.st_mode);
+    if (to.is_through) return to;
+    WEAVE_TRY(to.target, real_target(path));
+    if (to.exists) WEAVE_CHECK_OK(check_replaceable(to.target, to.old, path));
+    return to;
+}
+
 /// What a replaced file lost that nothing could keep.
 void tell_changes(const fs::path& target, const struct stat& old, const fs::path& path) {
     if (old.st_nlink > 1)
@@ -248,31 +269,22 @@ Result<std::string> read_file(const fs::path& path, std::uint64_t limit) {
 }
 
 Status write_file(const fs::path& path, std::string_view bytes) {
-    struct stat old {};
-    const bool exists = ::stat(path.c_str(), &old) == 0;
-    if (exists && S_ISDIR(old.st_mode)) return system_fault("is a folder, not a file", path.string());
-    // A device or pipe: no rename. The name of a pipe in /proc is a link to no place, and leads there all the same.
-    if (exists && !S_ISREG(old.st_mode)) return write_through(path, bytes);
-    WEAVE_TRY(const fs::path target, real_target(path));
-    if (exists) WEAVE_CHECK_OK(check_replaceable(target, old, path));
+    WEAVE_TRY(const Destination to, destination_of(path));
+    if (to.is_through) return write_through(path, bytes);
     Scaffold scaffold;
-    const fs::path temporary = temporary_beside(target);
-    WEAVE_CHECK_OK(seen_from(write_new(scaffold, temporary, bytes, exists ? &old : nullptr), path));
-    if (::rename(temporary.c_str(), target.c_str()) != 0) return file_fault(path, "put into place");
+    const fs::path temporary = temporary_beside(to.target);
+    WEAVE_CHECK_OK(seen_from(write_new(scaffold, temporary, bytes, to.exists ? &to.old : nullptr), path));
+    if (::rename(temporary.c_str(), to.target.c_str()) != 0) return file_fault(path, "put into place");
     scaffold.keep();
-    flush_parent(target);
-    if (exists) tell_changes(target, old, path);
+    flush_parent(to.target);
+    if (to.exists) tell_changes(to.target, to.old, path);
     return {};
 }
 
 Status check_writable(const fs::path& path) {
-    struct stat old {};
-    const bool exists = ::stat(path.c_str(), &old) == 0;
-    if (exists && S_ISDIR(old.st_mode)) return system_fault("is a folder, not a file", path.string());
-    if (exists && !S_ISREG(old.st_mode)) return {};
-    WEAVE_TRY(const fs::path target, real_target(path));
-    if (exists) WEAVE_CHECK_OK(check_replaceable(target, old, path));
-    const fs::path folder = target.has_parent_path() ? target.parent_path() : fs::path(".");
+    WEAVE_TRY(const Destination to, destination_of(path));
+    if (to.is_through) return {};
+    const fs::path folder = to.target.has_parent_path() ? to.target.parent_path() : fs::path(".");
     const fs::path within = folder / ".";  // which is in no file
     if (::faccessat(AT_FDCWD, within.c_str(), W_OK | X_OK, AT_EACCESS) != 0) return file_fault(path, "create");
     return {};
