@@ -274,10 +274,16 @@ Status Follower::acknowledge() {
 
 Status Follower::acknowledge_job(std::uint64_t job, milliseconds patience) {
     m_settled_jobs.insert(job);
-    WEAVE_CHECK_OK(tell(AcknowledgeJob{job}));
-    // Its answer comes after that was read; where the connection broke before, the end is told again, and settled then.
-    const auto known = answer_of<JobList>(ask(ListJobs{new_request_id()}, patience));
-    return known ? Status() : Status(known.error());
+    const auto end = Clock::now() + patience;
+    std::uint64_t told_on = 0;
+    do {
+        told_on = m_client ? m_connections : 0;
+        WEAVE_CHECK_OK(tell(AcknowledgeJob{job}));
+        // An answer to what is sent behind it, on the same connection, comes after it was read.
+        const auto known = answer_of<JobList>(ask(ListJobs{new_request_id()}, until(end)));
+        if (!known) return known.error();
+    } while (told_on != m_connections);
+    return {};
 }
 
 Status Follower::take(Received received) {
