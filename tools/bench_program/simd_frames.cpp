@@ -60,13 +60,14 @@ class Looker {
     Json measure() {
         Frames moving, resting;
         for (std::size_t k = 0; k < pauses && !m_rests; ++k) {
-            ask(wire::Step{wire::new_request_id(), m_session, 3 * (k + 1)});
-            const wire::Frame last = until_last(moving);
+            const std::uint64_t steps = 3 * (k + 1);
+            ask(wire::Step{wire::new_request_id(), m_session, steps});
+            const wire::Frame last = until_last(moving, m_newest ? m_newest->head.step + steps : steps);
             if (!m_rests) moving.compare(last, yarns());
         }
         while (!m_rests) {
             ask(wire::Run{wire::new_request_id(), m_session});
-            until_last(moving);
+            until_last(moving, m_newest ? m_newest->head.step + 1 : 1);
         }
         const wire::Frame last = *m_newest;
         resting.take(last);
@@ -77,8 +78,9 @@ class Looker {
 
   private:
     void ask(const wire::ClientMessage& message) { must(wire::answer_of<wire::Accepted>(m_follower.ask(message, patience)), "simd refuses"); }
-    /// Takes frames until one is the last; those before it are counted.
-    wire::Frame until_last(Frames& counted) {
+    /// Takes frames until one is the last, at rest or at this step; those before it are counted. One that shows an earlier
+    /// stop again is none: the cloth has moved on.
+    wire::Frame until_last(Frames& counted, std::uint64_t step) {
         while (true) {
             const auto received = must(m_follower.receive(patience), "the connection");
             if (!received) throw std::runtime_error("simd says nothing for minutes");
@@ -87,7 +89,7 @@ class Looker {
             m_newest = *frame;
             m_rests = frame->head.at_rest;
             if (!m_rests) counted.take(*frame);
-            if (frame->head.is_last) return *frame;
+            if (frame->head.is_last && (m_rests || frame->head.step >= step)) return *frame;
         }
     }
     Yarns yarns() {
