@@ -103,7 +103,7 @@ Row texts_of(const Json& work) {
     const bool is_job = work.contains("job");
     const Json left = work.value("left_s", Json());
     return {(is_job ? "j" : "s") + std::to_string(work.at(is_job ? "job" : "session").get<std::uint64_t>()),
-            work.at("phase"),
+            phase_text(work),
             work.value("person", std::string("-")),
             std::to_string(work.at("step").get<std::uint64_t>()),
             form("%.0f", work.at("steps_per_second")),

@@ -68,7 +68,7 @@ std::optional<double> Session::left_s(std::chrono::seconds expire) const {
 }
 
 Json Session::status(bool with_names) const {
-    constexpr const char* phases[]{"running", "paused", "at rest"};
+    constexpr const char* phases[]{"running", "paused", "at_rest"};
     Json told{{"session", m_number},
               {"phase", m_has_ended ? "ended" : !m_worker ? "waiting" : phases[static_cast<int>(m_phase)]},
               {"step", m_step},

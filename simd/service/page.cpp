@@ -74,7 +74,7 @@ std::string sessions_table(const Json& sessions) {
     if (sessions.empty()) return "<p>No session is open.</p>\n";
     Table table({"Session", "State", "Steps", "Steps a second", "Residual", "Points", "Memory", "Computed", "Watched by"});
     for (const Json& session : busiest_first(sessions)) {
-        table.add_row({whole_text(session.at("session")), session.at("phase"), whole_text(session.at("step")), number_text(session.at("steps_per_second"), "%.0f"),
+        table.add_row({whole_text(session.at("session")), phase_text(session), whole_text(session.at("step")), number_text(session.at("steps_per_second"), "%.0f"),
                        residual_text(session.at("residual")), whole_text(session.at("points")), memory_text(session.at("memory_bytes")),
                        time_text(session.at("computed_s")), whole_text(session.at("clients"))});
     }
@@ -87,7 +87,7 @@ std::string jobs_table(const Json& jobs) {
     for (const Json& job : busiest_first(jobs)) {
         const Json& left = job.at("left_s");
         const bool has_begun = job.at("points") > 0;
-        table.add_row({whole_text(job.at("job")), job.at("phase"), whole_text(job.at("step")), has_begun ? number_text(job.at("steps_per_second"), "%.0f") : "–", residual_text(job.at("residual")),
+        table.add_row({whole_text(job.at("job")), phase_text(job), whole_text(job.at("step")), has_begun ? number_text(job.at("steps_per_second"), "%.0f") : "–", residual_text(job.at("residual")),
                        has_begun ? whole_text(job.at("points")) : "–", has_begun ? memory_text(job.at("memory_bytes")) : "–",
                        has_begun ? time_text(job.at("computed_s")) : "–", left.is_null() ? "–" : "about " + time_text(left)});
     }
@@ -104,6 +104,12 @@ std::vector<Json> busiest_first(const Json& works) {
     std::vector<Json> sorted(works.begin(), works.end());
     std::ranges::stable_sort(sorted, {}, rank);
     return sorted;
+}
+
+std::string phase_text(const Json& work) {
+    std::string phase = work.at("phase");
+    std::ranges::replace(phase, '_', ' ');
+    return phase;
 }
 
 std::string time_text(double seconds) {

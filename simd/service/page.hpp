@@ -13,6 +13,9 @@ std::string status_page(const Json& status, const std::string& version);
 /// Sessions or jobs of a status for people: what computes comes first, then what waits, then what rests.
 std::vector<Json> busiest_first(const Json& works);
 
+/// What a session or a job does, for people: `at rest`.
+std::string phase_text(const Json& work);
+
 /// A time for people, such as `3 min 20 s`.
 std::string time_text(double seconds);
 

@@ -127,6 +127,7 @@ TEST_CASE("depth and members are bounded, whatever a file holds") {
     REQUIRE(parse_json(nested(64)));
     REQUIRE_THAT(refusal(nested(65)), Catch::Contains("deeper than 64"));
     REQUIRE_FALSE(parse_json(std::string(10000000, '[')));
+    REQUIRE_THAT(refusal("yarns" + std::string(100, '[')), Catch::Contains("is not JSON: line 1, column 1"));  // what is no JSON nests nowhere
     REQUIRE(parse_json("\"" + std::string(100, '[') + "\\\"[\""));  // brackets in a text are no depth
     const auto members = [](std::size_t count) {
         std::string text = "{";

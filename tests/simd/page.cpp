@@ -42,14 +42,14 @@ TEST_CASE("every cell of the status page says what it is, since a narrow screen 
 TEST_CASE("what computes is told first, then what waits, then what rests") {
     Json status = busy_machine();
     const Json first = status["sessions"][0];
-    for (const char* phase : {"at rest", "paused", "waiting", "running"}) {
+    for (const char* phase : {"at_rest", "paused", "waiting", "running"}) {
         status["sessions"].push_back(first);
         status["sessions"].back()["phase"] = phase;
         status["sessions"].back()["session"] = 13;
     }
     std::vector<std::string> phases;
     for (const Json& session : simd::busiest_first(status["sessions"])) phases.push_back(session.at("phase"));
-    CHECK(phases == std::vector<std::string>{"running", "running", "waiting", "paused", "at rest"});
+    CHECK(phases == std::vector<std::string>{"running", "running", "waiting", "paused", "at_rest"});
     CHECK(simd::busiest_first(status["sessions"])[0].at("session") == 12);
     const std::string page = simd::status_page(status, "7.1");
     CHECK(page.find(">running<") < page.find(">waiting<"));

@@ -10,31 +10,9 @@ namespace weave {
 
 namespace {
 
-constexpr int deepest_level = 64;
+constexpr std::size_t deepest_level = 64;
 constexpr std::size_t most_members =
     4096;  // who reads ordered objects searches linearly: a bound keeps hostile files cheap
-
-/// The parser recurses nowhere, but whoever walks the result does: so depth is bounded before parsing starts.
-bool nests_too_deep(std::string_view text) {
-    int depth = 0;
-    bool in_string = false;
-    for (std::size_t i = 0; i < text.size(); ++i) {
-        const char c = text[i];
-        if (in_string) {
-            if (c == '\\')
-                ++i;
-            else if (c == '"')
-                in_string = false;
-        } else if (c == '"') {
-            in_string = true;
-        } else if (c == '[' || c == '{') {
-            if (++depth > deepest_level) return true;
-        } else if (c == ']' || c == '}') {
-            --depth;
-        }
-    }
-    return false;
-}
 
 /// nlohmann's message without its own error number, so that it starts with the place: "line 3, column 7:
 /// ...".
@@ -90,7 +68,9 @@ class Builder final : public nlohmann::json_sax<Json> {
         place() = std::move(value);
         return true;
     }
+    /// The parser recurses nowhere, but whoever walks the result does: so depth is bounded.
     bool open(Json::value_t type) {
+        if (m_open.size() == deepest_level) return refuse("nests deeper than " + std::to_string(deepest_level) + " levels");
         Json& value = place();
         value = Json(type);
         m_open.push_back({&value, {}});
@@ -226,9 +206,6 @@ void append(std::string& out, const Json& value) {
 }  // namespace
 
 Result<Json> parse_json(std::string_view text) {
-    if (nests_too_deep(text)) {
-        return bad_input("nests deeper than " + std::to_string(deepest_level) + " levels");
-    }
     Builder builder;
     Json::sax_parse(text.begin(), text.end(), &builder);
     return std::move(builder).result();
