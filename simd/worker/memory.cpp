@@ -1,6 +1,6 @@
 #include <simd/worker/memory.hpp>
 
-#include <weave/core/sanitized.hpp>
+#include <weave/core/instrumented.hpp>
 
 #include <cerrno>
 #include <cstring>

@@ -1,8 +1,8 @@
 #include <simd/worker/work.hpp>
 
 #include <weave/core/file.hpp>
+#include <weave/core/instrumented.hpp>
 #include <weave/core/log.hpp>
-#include <weave/core/sanitized.hpp>
 #include <weave/core/sha256.hpp>
 #include <weave/design/document.hpp>
 #include <weave/sim/yarns_file.hpp>
@@ -24,7 +24,7 @@ constexpr std::chrono::milliseconds between_tellings{200};
 /// On a machine that is busy a leg may last long. It ends then before its steps are made, with a checkpoint, so that none gets too
 /// old; the run is another one from there on than on an idle machine, by as much as a leg's end changes it. Time for which it was
 /// paused does not count. Under a sanitizer, at a tenth of the pace, legs are to last as they do without it.
-constexpr std::chrono::seconds longest_leg{is_sanitized ? 600 : 24};
+constexpr std::chrono::seconds longest_leg{is_instrumented ? 600 : 24};
 
 sim::RunRequest run_request(const WorkOrder& order) {
     sim::RunRequest request;

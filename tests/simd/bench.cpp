@@ -1,5 +1,6 @@
 // The benchmarks of simd, made short: they measure what they say, and tell what they do not know.
 
+#include <weave/core/instrumented.hpp>
 #include <weave/core/json.hpp>
 
 #include <catch2/catch.hpp>
@@ -63,7 +64,7 @@ TEST_CASE("bench simd-latency times every change, flip and cancelled job that it
 }
 
 TEST_CASE("bench simd-sessions measures a crowd with and without trouble") {
-    const Json said = measured({"simd-sessions", "--sessions", "3", "--points", "100", "--seconds", "2", "--rounds", "1", "--threads", "1"});
+    const Json said = measured({"simd-sessions", "--sessions", "3", "--points", "100", "--seconds", is_instrumented ? "20" : "2", "--rounds", "1", "--threads", "1"});
     REQUIRE(said.at("side_by_side").size() == 2);
     CHECK(said.at("side_by_side").at(0).at("sessions") == 1);
     CHECK(said.at("side_by_side").at(1).at("sessions") == 3);

@@ -1,7 +1,7 @@
 #pragma once
 
 #include <weave/core/json.hpp>
-#include <weave/core/sanitized.hpp>
+#include <weave/core/instrumented.hpp>
 #include <weave/design/document.hpp>
 #include <weave/samples/samples.hpp>
 #include <weave/wire/follower.hpp>
@@ -24,8 +24,8 @@ namespace weave::simd::testing {
 
 using namespace std::chrono_literals;
 
-/// How long a test waits for what must come. Sanitizers take ten times the time.
-constexpr std::chrono::seconds patience_for_news{is_sanitized ? 600 : 120}, patience_for_rest{is_sanitized ? 1200 : 180};
+/// How long a test waits for what must come. What is watched takes ten times the time.
+constexpr std::chrono::seconds patience_for_news{is_instrumented ? 600 : 120}, patience_for_rest{is_instrumented ? 1200 : 180};
 
 /// A daemon of its own, as people start it, in a folder that goes away with the test.
 class Box {

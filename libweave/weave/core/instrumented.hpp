@@ -15,4 +15,11 @@ inline constexpr bool is_sanitized = false;
 inline constexpr bool is_sanitized = false;
 #endif
 
+/// Whether this is compiled to be watched at all, by those or by who counts the lines that run: it takes several times the time.
+#if defined(WEAVE_COUNTS_LINES)
+inline constexpr bool is_instrumented = true;
+#else
+inline constexpr bool is_instrumented = is_sanitized;
+#endif
+
 }  // namespace weave
