@@ -23,7 +23,7 @@ constexpr std::chrono::seconds between_checkpoints{3};
 constexpr std::chrono::milliseconds between_tellings{200};
 /// On a machine that is busy a leg may last long. It ends then before its steps are made, with a checkpoint, so that none gets too
 /// old; the run is another one from there on than on an idle machine, by as much as a leg's end changes it. Time for which it was
-/// paused does not count. Under a sanitizer, at a tenth of the pace, legs are to last as they do without it.
+/// paused does not count. In a build that is watched, at some tenth of the pace, legs are to last as they do in others.
 constexpr std::chrono::seconds longest_leg{is_instrumented ? 600 : 24};
 
 sim::RunRequest run_request(const WorkOrder& order) {

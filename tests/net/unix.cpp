@@ -322,7 +322,8 @@ TEST_CASE("unix: and a path stand for a Unix socket") {
     REQUIRE(local);
     REQUIRE(local->unix_socket == "/run/simd/s");
     REQUIRE_FALSE(local->tls);
-    for (const char* bad : {"unix:", "unix:s", "unix:/", "unix:/run/", "unix:/a\nb", "UNIX:/a"}) {
+    CHECK(parse_origin("unix:run/s").value().unix_socket == "run/s");  // from the working folder on, which may lie deeper than a socket's name reaches
+    for (const char* bad : {"unix:", "unix:/", "unix:run/", "unix:/run/", "unix:/a\nb", "UNIX:/a"}) {
         INFO(bad);
         REQUIRE_FALSE(parse_origin(bad));
     }

@@ -1,7 +1,7 @@
 #pragma once
 
-#include <weave/core/json.hpp>
 #include <weave/core/instrumented.hpp>
+#include <weave/core/json.hpp>
 #include <weave/design/document.hpp>
 #include <weave/samples/samples.hpp>
 #include <weave/wire/follower.hpp>

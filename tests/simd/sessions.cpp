@@ -30,6 +30,7 @@ TEST_CASE("a session is seen to relax, takes changes, and ends with a report") {
     CHECK(applied->request == request);
     CHECK_FALSE(applied->error);
     REQUIRE(session.until_phase(wire::Phase::at_rest));
+    CHECK(box.status().at("sessions").at(0).at("phase") == "at_rest");
     const std::vector<wire::Layout> layouts = session.all<wire::Layout>();
     CHECK(layouts.back().yarns.back().radius_mm == Approx(1.15 * layout.yarns.back().radius_mm));
     const Yarns yarns = read_yarns(session.yarns()).value();

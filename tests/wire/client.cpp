@@ -65,7 +65,7 @@ TEST_CASE("a place is named as people write it") {
     CHECK((place("[::1]").options.host == "::1" && place("[::1]").options.port == 8444 && place("[::1]:9000").name == "[::1]:9000"));
     CHECK(place("http://[::1]:9000").options.host == "::1");
     CHECK(place("unix:/run/simd/simd.sock").options.unix_socket == "/run/simd/simd.sock");
-    CHECK(place("unix:box/simd.sock").options.unix_socket == std::filesystem::current_path() / "box/simd.sock");
+    CHECK(place("unix:box/simd.sock").options.unix_socket == "box/simd.sock");
     for (const char* wrong : {"", "unix:", "unix:/", "unix:box/", "unix:a\nb", "box:", "box:0", "box:70000", "ftp://box", "two words", "box/path", "dora@box"}) {
         INFO(wrong);
         CHECK_FALSE(place_of(wrong));

@@ -40,7 +40,7 @@ Status take_token(wire::ServerPlace& place, const ServerWish& wish) {
 }  // namespace
 
 CLI::Option* add_server_options(CLI::App* command, ServerWish& wish) {
-    CLI::Option* on = command->add_option("--on", wish.host, "the server (simd) that computes: box, box:8444, https://box:8444 or unix:/path")
+    CLI::Option* on = command->add_option("--on", wish.host, "the server (simd) that computes: box, box:8444, https://box:8444 or unix:PATH")
                           ->type_name("HOST");
     command->add_option("--token-file", wish.token_file, "the file with the token that loomlink gave (loomlink token), or simd (simd token add); without it WEAVE_TOKEN of the environment")
         ->needs(on)

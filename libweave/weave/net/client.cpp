@@ -188,13 +188,13 @@ Result<Response> HttpClient::transfer(const ClientRequest& request, const Sink* 
 
 Result<ClientOptions> parse_origin(const std::string& origin) {
     const auto wrong = [&] {
-        return bad_input("is no http:// or https:// address, nor unix:/ and a path", on_one_line(origin));
+        return bad_input("is no http:// or https:// address, nor unix: and a path", on_one_line(origin));
     };
     ClientOptions options;
     std::string_view rest = origin;
     if (rest.starts_with("unix:")) {
         rest.remove_prefix(5);
-        if (!rest.starts_with('/') || rest.ends_with('/') || on_one_line(origin) != origin) return wrong();
+        if (rest.empty() || rest.ends_with('/') || on_one_line(origin) != origin) return wrong();
         options.unix_socket = rest;
         return options;
     }

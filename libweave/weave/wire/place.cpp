@@ -3,8 +3,6 @@
 #include <weave/core/text.hpp>
 
 #include <algorithm>
-#include <filesystem>
-#include <string_view>
 #include <utility>
 
 namespace weave::wire {
@@ -23,15 +21,6 @@ std::string with_scheme(const std::string& text) {
     return "https://" + text + (has_port ? "" : ":" + std::to_string(usual_port));
 }
 
-/// A socket's path may start from where the person is.
-std::string from_root(const std::string& text) {
-    constexpr std::string_view scheme = "unix:";
-    if (!text.starts_with(scheme) || text == scheme) return text;
-    std::error_code lost;
-    const auto path = std::filesystem::absolute(text.substr(scheme.size()), lost);
-    return lost ? text : std::string(scheme) + path.string();
-}
-
 std::string bracketed(const std::string& host) {
     return host.find(':') == std::string::npos ? host : "[" + host + "]";
 }
@@ -48,8 +37,8 @@ bool is_token(std::string_view text) {
 
 Result<ServerPlace> place_of(const std::string& text) {
     const bool is_whole = text.find("://") != std::string::npos || text.starts_with("unix:");
-    auto options = net::parse_origin(is_whole ? from_root(text) : with_scheme(text));
-    if (!options) return bad_input("is no place of a server: write box, box:8444, https://box:8444 or unix:/path", on_one_line(text));
+    auto options = net::parse_origin(is_whole ? text : with_scheme(text));
+    if (!options) return bad_input("is no place of a server: write box, box:8444, https://box:8444 or unix:PATH", on_one_line(text));
     if (text.starts_with("http://") && !is_this_machine(options->host))
         return bad_input("plain HTTP stays within this machine, as everybody on the way could read it: https://", on_one_line(text));
     const bool has_path = text.starts_with("unix:");

@@ -23,8 +23,8 @@ struct ServerPlace {
 };
 
 /// The place that a person names: `box` and `box:9000` (TLS; port 8444 where none is said), `https://box:8444`,
-/// `http://127.0.0.1:9000` (plain, within this machine alone), `unix:/path/of/socket` (or from the working folder on). Errors (bad_input): none of these;
-/// plain HTTP to another machine, where everybody on the way could read the token.
+/// `http://127.0.0.1:9000` (plain, within this machine alone), `unix:/path/of/socket` (or a path from the working
+/// folder on). Errors (bad_input): none of these; plain HTTP to another machine, where everybody on the way could read the token.
 Result<ServerPlace> place_of(const std::string& text);
 
 /// Speaks with a token from here on, as a file holds it: white space around it is left away. Errors (bad_input), which
