@@ -33,8 +33,8 @@ struct ClientOptions {
 };
 
 /// `https://host:port`, `http://host:port` (an IPv6 address in brackets; a slash may follow) or
-/// `unix:/path/of/socket` (`unix:socket`: in the working folder), as a person writes it, taken apart. Over TLS the system's authorities are trusted.
-/// Errors: bad_input.
+/// `unix:/path/of/socket` (`unix:socket`: in the working folder), as a person writes it, taken apart. Over TLS the
+/// system's authorities are trusted. Errors: bad_input.
 Result<ClientOptions> parse_origin(const std::string& origin);
 
 /// What a client asks.
