@@ -8,8 +8,10 @@
 
 #include <cstddef>
 #include <cstdint>
+#include <memory>
 #include <optional>
 #include <string>
+#include <studio/document/card_picture.hpp>
 #include <vector>
 
 namespace weave::studio {
@@ -22,6 +24,7 @@ struct Cloth {
     std::optional<Error> error;  ///< why there is none
     /// The cells, row by row, whose stacks differ from the block of this name that was told before; nothing where all may.
     std::optional<std::vector<std::size_t>> changed_cells;
+    std::shared_ptr<const CardPicture> card;  ///< of the block that is shown; null of others
     QImage thumbnail;  ///< its face, small; null where there is no block
 };
 

@@ -73,8 +73,17 @@ void ClothMaker::tell(const Wish& wish, const std::string& block, bool always) {
         cloth.changed_cells = changed_cells(*before->second, *cloth.block);
     }
     if (cloth.block) cloth.thumbnail = thumbnail(wish.design, *cloth.block, thumbnail_side);
+    if (cloth.block && block == wish.first) picture(cloth, block);
     m_told[block] = cloth.block;
     Q_EMIT made(QString::fromStdString(block), cloth);
+}
+
+void ClothMaker::picture(Cloth& cloth, const std::string& block) {
+    // m_picture is of the block of this name that was told last: that one was shown, too.
+    const bool continues = m_pictured == block && m_picture && cloth.changed_cells;
+    cloth.card = continues ? card_picture(*cloth.block, *m_picture, *cloth.changed_cells) : card_picture(*cloth.block);
+    m_picture = cloth.card;
+    m_pictured = block;
 }
 
 Cloth ClothMaker::made_of(const Wish& wish, const std::string& block) {
