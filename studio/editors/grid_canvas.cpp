@@ -127,7 +127,6 @@ void GridCanvas::paint_lines(QPainter& painter) const {
     };
     if (all) lines(false);
     if (m_mapping.cell() >= cells_with_lines / 2) lines(true);
-    const QRectF once(m_mapping.x_of(0), m_mapping.y_of(0), 0, 0);
     painter.setPen(QPen(palette().color(QPalette::WindowText), 1));
     painter.drawRect(grid);
     if (m_picture.rows() == m_mapping.rows() && m_picture.columns() == m_mapping.columns()) return;

@@ -9,6 +9,7 @@
 #include <weave/design/document.hpp>
 #include <weave/io/bitmap.hpp>
 #include <weave/io/controller_file.hpp>
+#include <weave/io/open_design.hpp>
 #include <weave/io/wif.hpp>
 #include <weave/loom/profile.hpp>
 
@@ -48,11 +49,7 @@ struct Imported {
 
 Result<Imported> design_from_bitmap(const ImportRequest& request, const std::string& bytes) {
     WEAVE_TRY(CardFromBitmap read, read_bitmap(bytes, request.reading));
-    Imported result{{}, std::move(read.warnings)};
-    result.design.root = "card";
-    const CardLeaf leaf{std::make_shared<const CardImage>(std::move(read.card)), {1}, {1}};
-    result.design.blocks["card"] = std::make_shared<const Node>(Node{leaf, {}});
-    return result;
+    return Imported{design_of_card(std::move(read.card)), std::move(read.warnings)};
 }
 
 /// A kind of file as people write it.

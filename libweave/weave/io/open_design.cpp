@@ -1,0 +1,45 @@
+#include <weave/io/open_design.hpp>
+
+#include <weave/core/file.hpp>
+#include <weave/design/document.hpp>
+#include <weave/io/bitmap.hpp>
+#include <weave/io/wif.hpp>
+
+#include <memory>
+#include <utility>
+
+namespace weave {
+
+Design design_of_card(CardImage card) {
+    Design design;
+    design.root = "card";
+    const CardLeaf leaf{std::make_shared<const CardImage>(std::move(card)), {1}, {1}};
+    design.blocks["card"] = std::make_shared<const Node>(Node{leaf, {}});
+    return design;
+}
+
+namespace {
+
+Result<OpenedDesign> from_bytes(std::string_view bytes) {
+    if (is_bitmap(bytes)) {
+        WEAVE_TRY(CardFromBitmap read, read_bitmap(bytes));
+        return OpenedDesign{design_of_card(std::move(read.card)), false, std::move(read.warnings)};
+    }
+    if (is_wif(bytes)) {
+        WEAVE_TRY(DesignFromWif read, read_wif(bytes));
+        return OpenedDesign{std::move(read.design), false, std::move(read.warnings)};
+    }
+    WEAVE_TRY(Design design, read_document(bytes));
+    return OpenedDesign{std::move(design), true, {}};
+}
+
+}  // namespace
+
+Result<OpenedDesign> open_design(const std::filesystem::path& path) {
+    WEAVE_TRY(const std::string bytes, read_file(path));
+    auto opened = from_bytes(bytes);
+    if (!opened) return std::move(opened).error().in(path.string());
+    return opened;
+}
+
+}  // namespace weave

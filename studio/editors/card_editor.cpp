@@ -1,0 +1,252 @@
+#include <studio/editors/card_editor.hpp>
+
+#include <weave/block/flip.hpp>
+#include <weave/picture/layer_map.hpp>
+
+#include <QComboBox>
+#include <QHBoxLayout>
+#include <QLabel>
+#include <QMenu>
+#include <QSignalBlocker>
+#include <QSpinBox>
+#include <QToolButton>
+#include <QToolTip>
+
+#include <algorithm>
+#include <studio/jobs/background.hpp>
+
+namespace weave::studio {
+
+namespace {
+
+/// What the modes' list holds as data: the mode, and the layer behind it.
+int data_of(CardMode mode, std::size_t layer) {
+    return static_cast<int>(mode) * 1000 + static_cast<int>(layer);
+}
+
+QSpinBox* times_box(const QString& tip, const QString& prefix) {
+    auto* box = new QSpinBox;
+    box->setRange(1, 20);
+    box->setPrefix(prefix);
+    box->setToolTip(tip);
+    box->setAccessibleName(tip);
+    return box;
+}
+
+}  // namespace
+
+CardEditor::CardEditor(QWidget* parent) : QWidget(parent), m_canvas(new GridCanvas), m_state(new QLabel) {
+    auto* layout = new QVBoxLayout(this);
+    layout->setContentsMargins(0, 0, 0, 0);
+    layout->setSpacing(2);
+    auto* tools = new QHBoxLayout;
+    tools->setContentsMargins(4, 4, 4, 0);
+    make_tools(*tools);
+    layout->addLayout(tools);
+    layout->addWidget(m_canvas, 1);
+    m_canvas->setObjectName("card");
+    m_canvas->setAccessibleName(tr("Card"));
+    m_canvas->set_empty_text(tr("No card yet: start a design, or open one."));
+    connect(m_canvas, &GridCanvas::stroked, this, &CardEditor::flip);
+    connect(m_canvas, &GridCanvas::hovered, this, &CardEditor::tell_of);
+    connect(m_canvas, &GridCanvas::menu_wanted, this, &CardEditor::offer);
+    connect(m_canvas, &GridCanvas::chosen, this, [this](const GridCell& cell) {
+        tell_of(cell);
+        if (m_document != nullptr && m_block) m_document->focus().go_to(place_of(cell));
+    });
+}
+
+void CardEditor::make_tools(QHBoxLayout& tools) {
+    m_modes = new QComboBox;
+    m_modes->setObjectName("card-mode");
+    m_modes->setToolTip(tr("What is shown of the block"));
+    m_modes->setAccessibleName(m_modes->toolTip());
+    connect(m_modes, &QComboBox::currentIndexChanged, this, [this] {
+        const int chosen = m_modes->currentData().toInt();
+        show_mode(static_cast<CardMode>(chosen / 1000), static_cast<std::size_t>(chosen % 1000));
+    });
+    m_corners = new QComboBox;
+    for (const QString& corner : {tr("Pick 1 bottom, end 1 left"), tr("Pick 1 bottom, end 1 right"), tr("Pick 1 top, end 1 left"), tr("Pick 1 top, end 1 right")}) m_corners->addItem(corner);
+    m_corners->setToolTip(tr("The corner at which the card begins. It changes how the card is drawn, never what is woven"));
+    m_corners->setAccessibleName(tr("Corner of pick 1 and end 1"));
+    connect(m_corners, &QComboBox::currentIndexChanged, this, [this](int corner) { m_canvas->set_corner(static_cast<Corner>(corner)); });
+    m_times_columns = times_box(tr("Repeats shown side by side"), tr("across "));
+    m_times_rows = times_box(tr("Repeats shown above each other"), tr("along "));
+    for (QSpinBox* box : {m_times_columns, m_times_rows}) connect(box, &QSpinBox::valueChanged, this, [this] { show_block(); });
+    const auto button = [&](const QString& text, const QString& tip, auto action) {
+        auto* made = new QToolButton;
+        made->setText(text);
+        made->setToolTip(tip);
+        made->setAccessibleName(tip);
+        made->setAutoRaise(true);
+        connect(made, &QToolButton::clicked, this, action);
+        tools.addWidget(made);
+    };
+    tools.addWidget(m_modes);
+    tools.addWidget(m_corners);
+    auto* repeats = new QLabel(tr("Repeat"));
+    repeats->setContentsMargins(6, 0, 0, 0);
+    tools.addWidget(repeats);
+    tools.addWidget(m_times_columns);
+    tools.addWidget(m_times_rows);
+    tools.addStretch();
+    tools.addWidget(m_state);
+    button("−", tr("Smaller (−)"), [this] { m_canvas->zoom_by(1 / 1.4); });
+    button("+", tr("Larger (+)"), [this] { m_canvas->zoom_by(1.4); });
+    button(tr("Fit"), tr("Show all of it (F)"), [this] { m_canvas->fit(); });
+    list_modes();
+}
+
+void CardEditor::list_modes() {
+    const QSignalBlocker quiet(m_modes);
+    const int now = data_of(m_mode, m_layer);
+    m_modes->clear();
+    m_modes->addItem(tr("Card (black: end lifted)"), data_of(CardMode::card, 0));
+    for (std::size_t layer = 0; layer < std::min<std::size_t>(m_layers, 16) && m_layers > 1; ++layer) {
+        const QString where = layer == 0 ? tr(" (face)") : layer + 1 == m_layers ? tr(" (back)") : QString();
+        m_modes->addItem(tr("Layer %1 of %2%3").arg(layer + 1).arg(m_layers).arg(where), data_of(CardMode::layer, layer));
+    }
+    m_modes->addItem(tr("Face, as it will look"), data_of(CardMode::face, 0));
+    m_modes->addItem(tr("Back, seen through the cloth"), data_of(CardMode::back, 0));
+    m_modes->addItem(tr("Floats on the face"), data_of(CardMode::face_floats, 0));
+    m_modes->addItem(tr("Floats on the back"), data_of(CardMode::back_floats, 0));
+    m_modes->setCurrentIndex(std::max(0, m_modes->findData(now)));
+    const int chosen = m_modes->currentData().toInt();
+    m_mode = static_cast<CardMode>(chosen / 1000);
+    m_layer = static_cast<std::size_t>(chosen % 1000);
+}
+
+void CardEditor::show_document(Document* document) {
+    if (m_document != nullptr) {
+        m_document->disconnect(this);
+        m_document->focus().disconnect(this);
+    }
+    m_document = document;
+    m_block.reset();
+    if (document == nullptr) return m_canvas->show_picture({});
+    connect(document, &Document::shown_made, this, &CardEditor::show_block);
+    connect(&document->focus(), &Focus::place_changed, this, [this] {
+        if (m_block && m_document->focus().place()) m_canvas->set_cursor_cell(cell_of(*m_document->focus().place()));
+    });
+    show_block();
+}
+
+void CardEditor::show_mode(CardMode mode, std::size_t layer) {
+    m_mode = mode;
+    m_layer = layer;
+    const QSignalBlocker quiet(m_modes);
+    m_modes->setCurrentIndex(std::max(0, m_modes->findData(data_of(mode, layer))));
+    show_block();
+}
+
+void CardEditor::show_block() {
+    if (m_document == nullptr) return;
+    const Cloth& shown = m_document->shown();
+    if (!shown.block) {
+        m_block.reset();
+        m_canvas->set_empty_text(shown.error ? tr("This block cannot be made: %1").arg(QString::fromStdString(shown.error->text())) : tr("The block is being made …"));
+        return m_canvas->show_picture({});
+    }
+    const bool is_same_grid = m_block && m_block->t() == shown.block->t() && m_block->p() == shown.block->p();
+    m_block = shown.block;
+    if (!is_same_grid || m_layers == 0) {
+        m_layers = layer_count(*m_block);
+        list_modes();
+    }
+    m_state->setText(tr("%1 picks × %2 ends").arg(m_block->picks()).arg(m_block->ends()));
+    const std::uint64_t wanted = ++m_wanted;
+    if (m_mode == CardMode::card) return show_picture(CellPicture(shown.card));
+    in_background(
+        this, [design = m_document->design(), block = m_block, mode = m_mode, layer = m_layer] { return block_picture(design, *block, mode, layer); },
+        [this, wanted](const QImage& image) {
+            if (wanted == m_wanted) show_picture(CellPicture(image));
+        });
+}
+
+void CardEditor::show_picture(CellPicture picture) {
+    m_canvas->set_labels(labels());
+    m_canvas->set_can_stroke(m_mode == CardMode::card);
+    m_canvas->show_picture(std::move(picture), m_times_rows->value(), m_times_columns->value());
+}
+
+GridLabels CardEditor::labels() const {
+    const BlockPtr block = m_block;
+    if (m_mode != CardMode::card) {
+        const auto every = [](std::size_t) { return false; };
+        return {tr("picks"), tr("ends"), [block](std::size_t row) { return block->first_pick(row); },
+                [block](std::size_t column) { return block->first_end(column); }, every, every};
+    }
+    // Where each stack is one crossing there is nothing to set apart.
+    const bool has_stacks = block->picks() > block->rows() || block->ends() > block->columns();
+    const auto begins = [block, has_stacks](auto line_of, auto first_of, std::size_t count) {
+        return [block, has_stacks, line_of, first_of, count](std::size_t number) {
+            return has_stacks && (number % count == 0 || (block.get()->*first_of)((block.get()->*line_of)(number % count)) == number % count);
+        };
+    };
+    const auto same = [](std::size_t number) { return number; };
+    return {tr("picks"), tr("ends"), same, same, begins(&Block::row_of_pick, &Block::first_pick, block->picks()),
+            begins(&Block::column_of_end, &Block::first_end, block->ends())};
+}
+
+CardPlace CardEditor::place_of(const GridCell& cell) const {
+    if (m_mode == CardMode::card) return {cell.row % m_block->picks(), cell.column % m_block->ends()};
+    return {m_block->first_pick(cell.row % m_block->rows()), m_block->first_end(cell.column % m_block->columns())};
+}
+
+GridCell CardEditor::cell_of(const CardPlace& place) const {
+    const std::size_t pick = std::min(place.pick, m_block->picks() - 1), end = std::min(place.end, m_block->ends() - 1);
+    if (m_mode == CardMode::card) return {pick, end};
+    return {m_block->row_of_pick(pick), m_block->column_of_end(end)};
+}
+
+// ---- What a person does ----
+
+void CardEditor::flip(const std::vector<GridCell>& cells) {
+    if (m_document == nullptr || !m_block) return;
+    std::vector<CardPlace> places;
+    for (const GridCell& cell : cells) places.push_back(place_of(cell));
+    const FlippedCrossings flipped = flip_crossings(*m_document, places);
+    if (Status made = m_document->perform(flipped.step); !made) Q_EMIT told(QString::fromStdString(made.error().text()));
+    if (flipped.refused.empty()) {
+        QToolTip::hideText();
+        if (flipped.flipped > 0) Q_EMIT told(flipped.step.text);
+    } else {
+        explain(flipped.refused, flipped.flipped);
+    }
+    m_document->focus().go_to(places.back());
+}
+
+void CardEditor::explain(std::span<const RefusedCrossing> refused, std::size_t flipped) {
+    const RefusedCrossing& first = refused.front();
+    QString words = QString::fromStdString(first.reason.text());
+    if (refused.size() > 1 || flipped > 0) words = tr("%1 of %2 crossings stay as they are. The first: %3").arg(refused.size()).arg(refused.size() + flipped).arg(words);
+    const GridCell cell = cell_of(first.place);
+    m_canvas->mark_refused(cell);
+    QToolTip::showText(m_canvas->mapToGlobal(m_canvas->mapping().box(cell).bottomRight().toPoint()), words, m_canvas, {}, 8000);
+    Q_EMIT told(words);
+}
+
+void CardEditor::tell_of(const std::optional<GridCell>& cell) {
+    if (!cell || !m_block) return told({});
+    const CardPlace place = place_of(*cell);
+    const PlacedStack at = stack_at(*m_block, place.pick, place.end);
+    const QString side = m_block->weft_over(place.pick, place.end) ? tr("weft over (white)") : tr("end lifted (black)");
+    const QString stack = QString::fromStdString(to_text(at.stack, at.first_pick, at.first_end));
+    QString words = tr("Pick %1, end %2").arg(place.pick + 1).arg(place.end + 1);
+    if (m_mode == CardMode::card) words += ": " + side;
+    if (at.stack.height() <= 24) words += tr(" · stack from below: %1").arg(stack);
+    Q_EMIT told(words);
+}
+
+void CardEditor::offer(const GridCell& cell, const QPoint& where) {
+    if (m_document == nullptr || !m_block) return;
+    const CardPlace place = place_of(cell);
+    QMenu menu;
+    menu.addAction(tr("Flip pick %1, end %2").arg(place.pick + 1).arg(place.end + 1), this, [&] { flip({cell_of(place)}); })->setEnabled(m_mode == CardMode::card);
+    menu.addSeparator();
+    menu.addAction(tr("Section along end %1 (warp slice)").arg(place.end + 1), this, [&] { Q_EMIT slice_wanted(System::weft, place); });
+    menu.addAction(tr("Section along pick %1 (weft slice)").arg(place.pick + 1), this, [&] { Q_EMIT slice_wanted(System::warp, place); });
+    menu.exec(where);
+}
+
+}  // namespace weave::studio

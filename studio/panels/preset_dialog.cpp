@@ -1,0 +1,129 @@
+#include <studio/panels/preset_dialog.hpp>
+
+#include <QComboBox>
+#include <QDialogButtonBox>
+#include <QFormLayout>
+#include <QHBoxLayout>
+#include <QLabel>
+#include <QPainter>
+#include <QPushButton>
+#include <QSpinBox>
+
+#include <algorithm>
+#include <limits>
+
+namespace weave::studio {
+
+namespace {
+
+constexpr int picture_side = 288;
+
+/// Two repeats of a small card, one of a large one.
+QPixmap picture_of(const CardImage& card) {
+    const auto picks = static_cast<int>(std::min<std::size_t>(card.picks(), 144)), ends = static_cast<int>(std::min<std::size_t>(card.ends(), 144));
+    const int times = std::max(picks, ends) <= 24 ? 2 : 1;
+    const int cell = std::max(1, picture_side / (std::max(picks, ends) * times));
+    QPixmap pixmap(ends * times * cell + 1, picks * times * cell + 1);
+    pixmap.fill(Qt::white);
+    QPainter painter(&pixmap);
+    for (int row = 0; row < picks * times; ++row) {
+        for (int column = 0; column < ends * times; ++column) {
+            const QRect box(column * cell, (picks * times - 1 - row) * cell, cell, cell);
+            if (!card.weft_over(static_cast<std::size_t>(row % picks), static_cast<std::size_t>(column % ends))) painter.fillRect(box, Qt::black);
+            if (cell >= 5) {
+                painter.setPen(QColor(128, 128, 128, 120));
+                painter.drawRect(box);
+            }
+        }
+    }
+    return pixmap;
+}
+
+int as_int(std::int64_t value) {
+    return static_cast<int>(std::clamp<std::int64_t>(value, std::numeric_limits<int>::min(), std::numeric_limits<int>::max()));
+}
+
+}  // namespace
+
+PresetDialog::PresetDialog(QWidget* parent)
+    : QDialog(parent), m_families(new QComboBox), m_help(new QLabel), m_form(new QFormLayout), m_picture(new QLabel), m_verdict(new QLabel),
+      m_buttons(new QDialogButtonBox(QDialogButtonBox::Ok | QDialogButtonBox::Cancel)) {
+    setWindowTitle(tr("Traditional weave"));
+    for (const PresetFamily& family : preset_families()) m_families->addItem(QString::fromStdString(family.name));
+    m_families->setAccessibleName(tr("Weave"));
+    m_help->setWordWrap(true);
+    m_verdict->setWordWrap(true);
+    m_picture->setFixedSize(picture_side + 12, picture_side + 12);
+    m_picture->setAlignment(Qt::AlignCenter);
+    m_picture->setAccessibleName(tr("Card of the weave"));
+    auto* left = new QVBoxLayout;
+    left->addWidget(m_families);
+    left->addWidget(m_help);
+    left->addLayout(m_form);
+    left->addStretch();
+    left->addWidget(m_verdict);
+    auto* top = new QHBoxLayout;
+    top->addLayout(left, 1);
+    top->addWidget(m_picture);
+    auto* all = new QVBoxLayout(this);
+    all->addLayout(top);
+    all->addWidget(m_buttons);
+    connect(m_families, &QComboBox::currentIndexChanged, this, &PresetDialog::show_options);
+    connect(m_buttons, &QDialogButtonBox::accepted, this, &QDialog::accept);
+    connect(m_buttons, &QDialogButtonBox::rejected, this, &QDialog::reject);
+    show_options();
+    resize(640, sizeHint().height());
+}
+
+void PresetDialog::show_options() {
+    while (m_form->rowCount() > 0) m_form->removeRow(0);
+    m_options.clear();
+    const PresetFamily& family = preset_families()[static_cast<std::size_t>(m_families->currentIndex())];
+    m_help->setText(QString::fromStdString(family.help));
+    for (const PresetOption& option : family.options) {
+        auto* box = new QSpinBox;
+        box->setRange(as_int(option.low), as_int(option.high));
+        box->setValue(as_int(option.fallback));
+        box->setToolTip(QString::fromStdString(option.help));
+        box->setObjectName(QString::fromStdString(option.name));
+        box->setAccessibleName(QString::fromStdString(option.name));
+        connect(box, &QSpinBox::valueChanged, this, &PresetDialog::try_out);
+        auto* label = new QLabel(QString::fromStdString(option.name));
+        label->setToolTip(box->toolTip());
+        label->setBuddy(box);
+        m_form->addRow(label, box);
+        m_options[option.name] = box;
+    }
+    try_out();
+}
+
+void PresetDialog::try_out() {
+    const auto block = make_preset(preset());
+    m_buttons->button(QDialogButtonBox::Ok)->setEnabled(static_cast<bool>(block));
+    if (!block) {
+        m_verdict->setText(QString::fromStdString(block.error().text()));
+        m_picture->setText(tr("no such weave"));
+        return;
+    }
+    m_verdict->setText(tr("%1 picks × %2 ends in a repeat").arg(block->picks()).arg(block->ends()));
+    m_picture->setPixmap(picture_of(block->card_image()));
+}
+
+void PresetDialog::set_preset(const Preset& preset) {
+    m_families->setCurrentText(QString::fromStdString(preset.family));
+    for (const auto& [name, value] : preset.options) {
+        if (m_options.contains(name)) m_options.at(name)->setValue(as_int(value));
+    }
+}
+
+Preset PresetDialog::preset() const {
+    Preset preset{m_families->currentText().toStdString(), {}};
+    const PresetFamily& family = preset_families()[static_cast<std::size_t>(m_families->currentIndex())];
+    for (const PresetOption& option : family.options) {
+        const auto found = m_options.find(option.name);
+        if (found != m_options.end() && found->second->value() != option.fallback) preset.options[option.name] = found->second->value();
+    }
+    return preset;
+}
+
+}  // namespace weave::studio
