@@ -3,22 +3,35 @@
 #include <weave/picture/look.hpp>
 
 #include <algorithm>
+#include <cmath>
 
 namespace weave::studio {
 
+namespace {
+
+/// A small weave is shown several times side by side, so that it looks like cloth.
+constexpr std::size_t least_stacks = 16;
+
+std::size_t times(std::size_t stacks) {
+    return std::max<std::size_t>(1, least_stacks / stacks);
+}
+
+}  // namespace
+
 QImage thumbnail(const Design& design, const Block& block, int side) {
-    const auto rows = static_cast<int>(std::min<std::size_t>(block.rows(), 1U << 24)), columns = static_cast<int>(std::min<std::size_t>(block.columns(), 1U << 24));
-    const double scale = static_cast<double>(side) / std::max(rows, columns);
-    const int width = std::max(1, static_cast<int>(columns * scale)), height = std::max(1, static_cast<int>(rows * scale));
+    const std::size_t rows = block.rows() * times(block.rows()), columns = block.columns() * times(block.columns());
+    const double scale = static_cast<double>(side) / static_cast<double>(std::max(rows, columns));
+    const auto pixels = [&](std::size_t stacks) { return std::max(1, static_cast<int>(std::lround(static_cast<double>(stacks) * scale))); };
+    const int width = pixels(columns), height = pixels(rows);
     const Subject subject{design, block, {}};
     const YarnColours colours(subject);
     const Surface face(block, colours, false, false);
     QImage image(width, height, QImage::Format_RGB32);
     for (int y = 0; y < height; ++y) {
-        const auto row = static_cast<std::size_t>(std::int64_t{height - 1 - y} * rows / height);
+        const std::size_t row = static_cast<std::size_t>(height - 1 - y) * rows / static_cast<std::size_t>(height) % block.rows();
         auto* line = reinterpret_cast<QRgb*>(image.scanLine(y));
         for (int x = 0; x < width; ++x) {
-            const auto column = static_cast<std::size_t>(std::int64_t{x} * columns / width);
+            const std::size_t column = static_cast<std::size_t>(x) * columns / static_cast<std::size_t>(width) % block.columns();
             const Colour colour = face.colour(row, column).value_or(Colour{255, 255, 255});
             line[x] = qRgb(colour.red, colour.green, colour.blue);
         }

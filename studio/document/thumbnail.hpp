@@ -7,8 +7,8 @@
 
 namespace weave::studio {
 
-/// The face of a block in its yarns' colours, `side` pixels along its longer side: a pixel a stack or more of a small block, of a
-/// large one samples of it.
+/// The face of a block in its yarns' colours, `side` pixels along its longer side: of a small block several repeats, of a large
+/// one samples of it.
 QImage thumbnail(const Design& design, const Block& block, int side);
 
 }  // namespace weave::studio

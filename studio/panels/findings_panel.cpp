@@ -19,6 +19,11 @@
 #include <studio/jobs/background.hpp>
 #include <studio/panels/rule_fixes.hpp>
 
+/// Resources of a library that is linked in are there only once they are asked for, outside of any namespace.
+static void open_shipped_looms() {
+    Q_INIT_RESOURCE(looms);
+}
+
 namespace weave::studio {
 
 namespace {
@@ -95,6 +100,7 @@ FindingsPanel::FindingsPanel(QWidget* parent)
 }
 
 void FindingsPanel::list_looms() {
+    open_shipped_looms();
     const QDir shipped(":/looms");
     for (const QString& name : shipped.entryList(QDir::Files, QDir::Name)) {
         QFile file(shipped.filePath(name));
@@ -105,7 +111,7 @@ void FindingsPanel::list_looms() {
     m_looms->insertSeparator(m_looms->count());
     m_looms->addItem(tr("A profile from a file …"));
     const QString last = QSettings().value("loom").toString();
-    m_looms->setCurrentIndex(std::max(0, m_looms->findText(last)));
+    m_looms->setCurrentIndex(last.isEmpty() ? 0 : std::max(0, m_looms->findText(last)));
     connect(m_looms, &QComboBox::activated, this, [this](int chosen) {
         if (chosen == m_looms->count() - 1) return open_profile();
         QSettings().setValue("loom", m_looms->currentText());

@@ -1,10 +1,43 @@
 #include <studio/window/main_window.hpp>
 
+#include <weave/core/log.hpp>
+
 #include <QApplication>
+#include <QCommandLineParser>
+#include <QIcon>
+
+#include <clocale>
+#include <cstdio>
+#include <memory>
+#include <vector>
 
 int main(int argc, char* argv[]) {
+    using namespace weave::studio;
     QApplication application(argc, argv);
-    weave::studio::MainWindow window;
-    window.show();
+    std::setlocale(LC_NUMERIC, "C");  // documents have points in their numbers, whatever the desk's language
+    QApplication::setOrganizationName("weave");
+    QApplication::setApplicationName("studio");
+    QApplication::setApplicationVersion(WEAVE_VERSION);
+    weave::set_log_sink([](weave::LogLevel level, std::string_view message) {
+        if (level == weave::LogLevel::warning) std::fprintf(stderr, "studio: %.*s\n", static_cast<int>(message.size()), message.data());
+    });
+    QCommandLineParser words;
+    words.setApplicationDescription(QApplication::translate("main", "Draw multilayer cloth, see it relax, and send it to the loom."));
+    words.addHelpOption();
+    words.addVersionOption();
+    words.addPositionalArgument("design", QApplication::translate("main", "Designs or cards to open"), "[FILE ...]");
+    words.process(application);
+
+    std::vector<std::unique_ptr<MainWindow>> windows;
+    for (Recovery& recovery : Keeper::take_recoveries(Keeper::usual_folder())) {
+        windows.push_back(std::make_unique<MainWindow>());
+        windows.back()->recover(std::move(recovery));
+    }
+    for (const QString& path : words.positionalArguments()) {
+        windows.push_back(std::make_unique<MainWindow>());
+        windows.back()->open_file(path);
+    }
+    if (windows.empty()) windows.push_back(std::make_unique<MainWindow>());
+    for (const auto& window : windows) window->show();
     return QApplication::exec();
 }

@@ -1,7 +1,262 @@
 #include <studio/window/main_window.hpp>
 
+#include <weave/samples/samples.hpp>
+
+#include <QAbstractButton>
+#include <QApplication>
+#include <QCloseEvent>
+#include <QComboBox>
+#include <QDockWidget>
+#include <QFileInfo>
+#include <QKeyEvent>
+#include <QLabel>
+#include <QMenuBar>
+#include <QMessageBox>
+#include <QPushButton>
+#include <QSettings>
+#include <QStackedWidget>
+#include <QStatusBar>
+#include <QTabWidget>
+#include <QVBoxLayout>
+
+#include <studio/editors/card_editor.hpp>
+#include <studio/panels/design_tree.hpp>
+#include <studio/panels/findings_panel.hpp>
+#include <studio/panels/preset_dialog.hpp>
+#include <studio/window/block_actions.hpp>
+#include <studio/window/design_files.hpp>
+#include <studio/window/message_bar.hpp>
+#include <studio/window/start_page.hpp>
+
 namespace weave::studio {
 
-MainWindow::MainWindow(QWidget* parent) : QMainWindow(parent) {}
+MainWindow::MainWindow(QWidget* parent)
+    : QMainWindow(parent), m_files(new DesignFiles(this)), m_pages(new QStackedWidget), m_start(new StartPage), m_editors(new QTabWidget),
+      m_card(new CardEditor), m_tree(new DesignTree), m_findings(new FindingsPanel), m_messages(new MessageBar), m_status(new QLabel) {
+    setObjectName("studio");
+    resize(1440, 920);
+    make_workspace();
+    make_docks();
+    make_menus();
+    statusBar()->addWidget(m_status, 1);
+    connect(m_files, &DesignFiles::opened, this, &MainWindow::opened);
+    connect(m_files, &DesignFiles::failed, this, &MainWindow::warn);
+    connect(m_files, &DesignFiles::told, this, &MainWindow::tell);
+    qApp->installEventFilter(this);
+    show_start_page();
+}
+
+MainWindow::~MainWindow() {
+    m_card->show_document(nullptr);
+    m_tree->show_document(nullptr);
+    m_findings->show_document(nullptr);
+}
+
+void MainWindow::make_workspace() {
+    m_editors->setDocumentMode(true);
+    m_editors->addTab(m_card, tr("Card"));
+    auto* whole = new QWidget;
+    auto* column = new QVBoxLayout(whole);
+    column->setContentsMargins(0, 0, 0, 0);
+    column->setSpacing(0);
+    column->addWidget(m_messages);
+    column->addWidget(m_pages, 1);
+    m_pages->addWidget(m_start);
+    m_pages->addWidget(m_editors);
+    setCentralWidget(whole);
+    connect(m_card, &CardEditor::told, this, &MainWindow::tell);
+    connect(m_start, &StartPage::open_wanted, m_files, &DesignFiles::open);
+    connect(m_start, &StartPage::file_wanted, this, &MainWindow::open_file);
+    connect(m_start, &StartPage::sample_wanted, this, &MainWindow::show_sample);
+    connect(m_start, &StartPage::weave_wanted, this, [this] {
+        PresetDialog dialog(this);
+        if (dialog.exec() != QDialog::Accepted) return;
+        Design design;
+        design.root = dialog.preset().family;
+        design.blocks[design.root] = std::make_shared<const Node>(Node{PresetLeaf{dialog.preset()}, {}});
+        show_design(std::move(design), {}, true);
+    });
+}
+
+void MainWindow::make_docks() {
+    const auto dock = [&](const QString& name, const QString& title, QWidget* widget, Qt::DockWidgetArea area) {
+        auto* made = new QDockWidget(title, this);
+        made->setObjectName(name);
+        made->setWidget(widget);
+        addDockWidget(area, made);
+        return made;
+    };
+    dock("blocks-dock", tr("Blocks"), m_tree, Qt::LeftDockWidgetArea);
+    auto* findings = dock("findings-dock", tr("Findings"), m_findings, Qt::BottomDockWidgetArea);
+    resizeDocks({findings}, {190}, Qt::Vertical);
+    setCorner(Qt::BottomLeftCorner, Qt::LeftDockWidgetArea);
+    setCorner(Qt::BottomRightCorner, Qt::RightDockWidgetArea);
+    connect(m_findings, &FindingsPanel::place_wanted, this, [this](const CardPlace& place) {
+        if (!m_document) return;
+        m_document->focus().show_block(m_document->design().root);
+        m_document->focus().go_to(place);
+        m_editors->setCurrentWidget(m_card);
+    });
+    connect(m_findings, &FindingsPanel::counted, findings, [findings](std::size_t errors, std::size_t warnings) {
+        findings->setWindowTitle(errors + warnings == 0 ? tr("Findings") : tr("Findings (%1)").arg(errors + warnings));
+    });
+    connect(m_tree, &DesignTree::menu_wanted, this, [this](const QString& block, const QPoint& where) {
+        if (m_blocks == nullptr) return;
+        QMenu menu;
+        m_blocks->fill_menu(menu, block.toStdString());
+        menu.exec(where);
+    });
+    connect(m_tree, &DesignTree::dropped, this, [this](const QString& block, const QString& onto, const QPoint& where) {
+        if (m_blocks != nullptr) m_blocks->ask_where_to_attach(onto.toStdString(), block.toStdString(), where);
+    });
+    connect(m_tree, &DesignTree::renamed, this, [this](const QString& from, const QString& to) {
+        if (m_blocks != nullptr) m_blocks->rename(from.toStdString(), to.toStdString());
+    });
+}
+
+// ---- Documents ----
+
+void MainWindow::show_start_page() {
+    m_start->list_recent(DesignFiles::recent());
+    m_pages->setCurrentWidget(m_start);
+    for (QDockWidget* dock : findChildren<QDockWidget*>()) dock->hide();
+    show_title();
+    show_undo();
+}
+
+void MainWindow::close_document() {
+    if (!m_document) return;
+    m_card->show_document(nullptr);
+    m_tree->show_document(nullptr);
+    m_findings->show_document(nullptr);
+    m_blocks = nullptr;
+    m_document->discard();
+    m_document.reset();
+}
+
+void MainWindow::take(std::unique_ptr<Document> document) {
+    close_document();
+    m_document = std::move(document);
+    m_blocks = new BlockActions(*m_document, this);
+    connect(m_blocks, &BlockActions::failed, this, &MainWindow::warn);
+    connect(m_blocks, &BlockActions::told, this, &MainWindow::tell);
+    follow_document();
+    m_card->show_document(m_document.get());
+    m_tree->show_document(m_document.get());
+    m_findings->show_document(m_document.get());
+    m_pages->setCurrentWidget(m_editors);
+    for (QDockWidget* dock : findChildren<QDockWidget*>()) dock->show();
+    show_title();
+    show_undo();
+}
+
+void MainWindow::follow_document() {
+    Document* document = m_document.get();
+    connect(document, &Document::edited, this, [this] {
+        show_title();
+        show_undo();
+    });
+    connect(document, &Document::path_changed, this, &MainWindow::show_title);
+    connect(&document->undo_stack(), &QUndoStack::cleanChanged, this, &MainWindow::show_title);
+    connect(&document->keeper(), &Keeper::saved, this, [this](const QString& path) { tell(tr("Saved as %1").arg(path)); });
+    connect(&document->keeper(), &Keeper::not_saved, this, [this](const QString& path, const QString& reason) { warn(tr("%1 was not saved: %2").arg(path, reason)); });
+    connect(&document->keeper(), &Keeper::trouble, this, [this](const QString& reason) { warn(tr("Unsaved work is not safe: %1").arg(reason)); });
+}
+
+void MainWindow::show_design(Design design, const QString& path, bool is_saved) {
+    m_messages->hide();
+    take(std::make_unique<Document>(std::move(design), path, is_saved));
+}
+
+void MainWindow::recover(Recovery recovery) {
+    const std::size_t steps = recovery.entries.size();
+    take(std::make_unique<Document>(std::move(recovery)));
+    m_messages->say(tr("The studio was ended before this design was saved. All of it is here again, with its last %n step(s); undo takes them back.", nullptr, static_cast<int>(steps)),
+                    MessageBar::Weight::info);
+}
+
+void MainWindow::open_file(const QString& path) {
+    m_files->open_file(path);
+}
+
+void MainWindow::opened(const Design& design, const QString& path, const QStringList& warnings) {
+    if (!may_close()) return;
+    show_design(design, path, !path.isEmpty());
+    if (!warnings.isEmpty()) m_messages->say(warnings.join('\n'), MessageBar::Weight::info);
+    tell(path.isEmpty() ? tr("Imported; save it as a design to keep it") : tr("Opened %1").arg(path));
+}
+
+void MainWindow::show_sample(const QString& name) {
+    const Sample* sample = find_sample(name.toStdString());
+    if (sample == nullptr || !may_close()) return;
+    show_design(sample->make(), {}, true);
+}
+
+bool MainWindow::may_close() {
+    if (!m_document || !m_document->is_modified()) return true;
+    QMessageBox box(QMessageBox::Question, tr("Save the design?"), tr("%1 has changes that are not saved.").arg(m_document->name()), QMessageBox::NoButton, this);
+    auto* save = box.addButton(tr("Save"), QMessageBox::AcceptRole);
+    auto* drop = box.addButton(tr("Close without saving"), QMessageBox::DestructiveRole);
+    box.addButton(tr("Stay"), QMessageBox::RejectRole);
+    box.setDefaultButton(save);
+    box.exec();
+    if (box.clickedButton() == drop) return true;
+    if (box.clickedButton() != save || !m_files->save(*m_document)) return false;
+    m_document->keeper().flush();
+    QCoreApplication::sendPostedEvents(nullptr, QEvent::MetaCall);  // what came of it
+    return !m_document->is_modified();
+}
+
+void MainWindow::closeEvent(QCloseEvent* event) {
+    if (!may_close()) return event->ignore();
+    QSettings().setValue("window", saveGeometry());
+    close_document();
+    event->accept();
+}
+
+// ---- What is told ----
+
+void MainWindow::show_title() {
+    if (!m_document) return setWindowTitle(tr("Weave studio"));
+    setWindowTitle(tr("%1[*] — Weave studio").arg(m_document->name()));
+    setWindowModified(m_document->is_modified());
+    setWindowFilePath(m_document->path());
+}
+
+void MainWindow::show_undo() {
+    for (QAction* action : m_design_actions) action->setEnabled(m_document != nullptr);
+    if (m_undo == nullptr) return;
+    const QUndoStack* stack = m_document ? &m_document->undo_stack() : nullptr;
+    m_undo->setEnabled(stack != nullptr && stack->canUndo());
+    m_redo->setEnabled(stack != nullptr && stack->canRedo());
+    m_undo->setText(m_undo->isEnabled() ? tr("Undo: %1").arg(stack->undoText()) : tr("Undo"));
+    m_redo->setText(m_redo->isEnabled() ? tr("Redo: %1").arg(stack->redoText()) : tr("Redo"));
+}
+
+void MainWindow::tell(const QString& words) {
+    m_status->setText(words);
+}
+
+void MainWindow::warn(const QString& reason) {
+    m_messages->say(reason, MessageBar::Weight::failure);
+}
+
+std::string MainWindow::chosen_block() const {
+    const std::string chosen = m_tree->chosen();
+    return chosen.empty() && m_document ? m_document->shown_block() : chosen;
+}
+
+/// A key that the focused field or button would take for itself, such as Space on a button, is no shortcut of the window there.
+bool MainWindow::eventFilter(QObject* watched, QEvent* event) {
+    if (event->type() == QEvent::ShortcutOverride) {
+        const auto* key = static_cast<QKeyEvent*>(event);
+        const bool presses = qobject_cast<QAbstractButton*>(watched) != nullptr || qobject_cast<QComboBox*>(watched) != nullptr;
+        if (presses && key->key() == Qt::Key_Space && key->modifiers() == Qt::NoModifier) {
+            event->accept();
+            return true;
+        }
+    }
+    return QMainWindow::eventFilter(watched, event);
+}
 
 }  // namespace weave::studio

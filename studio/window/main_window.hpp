@@ -2,13 +2,83 @@
 
 #include <QMainWindow>
 
+#include <memory>
+#include <studio/document/document.hpp>
+
+class QAction;
+class QLabel;
+class QMenu;
+class QStackedWidget;
+class QTabWidget;
+
 namespace weave::studio {
 
-/// The window of one design.
+class BlockActions;
+class CardEditor;
+class DesignFiles;
+class DesignTree;
+class FindingsPanel;
+class MessageBar;
+class StartPage;
+
+/// The window of one design: the start page until there is one, then its editors and panels. It owns the document; all else looks
+/// at it.
 class MainWindow : public QMainWindow {
     Q_OBJECT
   public:
     explicit MainWindow(QWidget* parent = nullptr);
+    ~MainWindow() override;
+
+    /// The document of this window; null while it shows the start page.
+    [[nodiscard]] Document* document() { return m_document.get(); }
+    /// From now on this design; what was here is closed without a question.
+    void show_design(Design design, const QString& path, bool is_saved);
+    /// Goes on where a program was ended.
+    void recover(Recovery recovery);
+    void open_file(const QString& path);
+    /// Opens a sample as a new design.
+    void show_sample(const QString& name);
+    /// Asks whether to save what would be lost; false: the person wants to stay.
+    bool may_close();
+
+  protected:
+    void closeEvent(QCloseEvent* event) override;
+    bool eventFilter(QObject* watched, QEvent* event) override;
+
+  private:
+    void make_workspace();
+    void make_docks();
+    void make_menus();
+    void make_file_menu();
+    void make_edit_menu();
+    void make_view_menu();
+    void make_help_menu();
+    void take(std::unique_ptr<Document> document);
+    void close_document();
+    void show_start_page();
+    void follow_document();
+    void show_title();
+    void show_undo();
+    void tell(const QString& words);
+    void warn(const QString& reason);
+    void opened(const Design& design, const QString& path, const QStringList& warnings);
+    QAction* add(QMenu& menu, const QString& text, const QKeySequence& keys, std::function<void()> deed, bool needs_design = true);
+    [[nodiscard]] std::string chosen_block() const;
+
+    std::unique_ptr<Document> m_document;
+    DesignFiles* m_files;
+    BlockActions* m_blocks = nullptr;  ///< of the document
+    QStackedWidget* m_pages;
+    StartPage* m_start;
+    QTabWidget* m_editors;
+    CardEditor* m_card;
+    DesignTree* m_tree;
+    FindingsPanel* m_findings;
+    MessageBar* m_messages;
+    QLabel* m_status;
+    QAction* m_undo = nullptr;
+    QAction* m_redo = nullptr;
+    QList<QAction*> m_design_actions;  ///< that need a design
 };
 
 }  // namespace weave::studio

@@ -1,0 +1,107 @@
+#include <studio/window/design_files.hpp>
+
+#include <weave/core/file.hpp>
+#include <weave/io/bitmap.hpp>
+#include <weave/io/open_design.hpp>
+#include <weave/io/wif.hpp>
+
+#include <QFileDialog>
+#include <QFileInfo>
+#include <QSettings>
+
+#include <optional>
+#include <studio/jobs/background.hpp>
+
+namespace weave::studio {
+
+namespace {
+
+constexpr int most_recent = 12;
+
+QString last_folder() {
+    return QSettings().value("folder").toString();
+}
+
+/// The bytes of a card as the file's ending asks for them.
+Result<std::string> card_bytes(const Design& design, const Block& block, const std::filesystem::path& path) {
+    const CardImage card = block.card_image();
+    if (lower_extension(path) == ".wif") return write_wif(design, block, card);
+    WEAVE_TRY(const BitmapFormat format, bitmap_format_of(path));
+    return write_proven_bitmap(card, format);
+}
+
+Status export_to(const Design& design, const Block& block, const std::filesystem::path& path) {
+    WEAVE_TRY(const std::string bytes, card_bytes(design, block, path));
+    return write_file(path, bytes);
+}
+
+}  // namespace
+
+DesignFiles::DesignFiles(QWidget* window) : QObject(window), m_window(window) {}
+
+void DesignFiles::open() {
+    const QString path = QFileDialog::getOpenFileName(m_window, tr("Open a design"), last_folder(), tr("Designs and cards (*.weave *.wif *.png *.tif *.tiff *.bmp);;All files (*)"));
+    if (!path.isEmpty()) open_file(path);
+}
+
+void DesignFiles::open_file(const QString& path) {
+    QSettings().setValue("folder", QFileInfo(path).absolutePath());
+    Q_EMIT told(tr("Opening %1 …").arg(path));
+    in_background(
+        this, [path] { return open_design(path.toStdString()); },
+        [this, path](Result<OpenedDesign> read) {
+            if (!read) return failed(QString::fromStdString(read.error().text()));
+            QStringList warnings;
+            for (const std::string& warning : read->warnings) warnings.push_back(QString::fromStdString(warning));
+            if (read->is_document) note_recent(path);
+            if (!read->is_document && read->design.title.empty()) read->design.title = QFileInfo(path).completeBaseName().toStdString();
+            Q_EMIT opened(read->design, read->is_document ? path : QString(), warnings);
+        });
+}
+
+bool DesignFiles::save(Document& document) {
+    if (document.path().isEmpty()) return save_as(document);
+    document.save(document.path());
+    note_recent(document.path());
+    return true;
+}
+
+bool DesignFiles::save_as(Document& document) {
+    const QString wish = document.path().isEmpty() ? last_folder() + "/" + document.name() + ".weave" : document.path();
+    QString path = QFileDialog::getSaveFileName(m_window, tr("Save the design"), wish, tr("Designs (*.weave)"));
+    if (path.isEmpty()) return false;
+    if (QFileInfo(path).suffix().isEmpty()) path += ".weave";
+    QSettings().setValue("folder", QFileInfo(path).absolutePath());
+    document.save(path);
+    note_recent(path);
+    return true;
+}
+
+void DesignFiles::export_card(const Document& document) {
+    const BlockPtr block = document.whole().block;
+    if (!block) return failed(tr("There is no cloth to export: it cannot be made"));
+    const QString path = QFileDialog::getSaveFileName(m_window, tr("Export the card image"), last_folder() + "/" + document.name() + ".png",
+                                                      tr("Pictures of the card (*.png *.tif *.bmp);;WIF (*.wif)"));
+    if (path.isEmpty()) return;
+    in_background(
+        this, [design = document.design(), block, path] { return export_to(design, *block, path.toStdString()); },
+        [this, path](Status done) {
+            if (!done) return failed(QString::fromStdString(done.error().text()));
+            Q_EMIT told(tr("The card image is in %1. It is a sample: only a release goes to a loom").arg(path));
+        });
+}
+
+QStringList DesignFiles::recent() {
+    return QSettings().value("recent").toStringList();
+}
+
+void DesignFiles::note_recent(const QString& path) {
+    QStringList paths = recent();
+    const QString whole = QFileInfo(path).absoluteFilePath();
+    paths.removeAll(whole);
+    paths.prepend(whole);
+    while (paths.size() > most_recent) paths.removeLast();
+    QSettings().setValue("recent", paths);
+}
+
+}  // namespace weave::studio

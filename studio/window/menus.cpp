@@ -1,0 +1,94 @@
+// The menus of the main window.
+
+#include <studio/window/main_window.hpp>
+
+#include <QApplication>
+#include <QDockWidget>
+#include <QMenuBar>
+#include <QMessageBox>
+
+#include <functional>
+#include <studio/editors/card_editor.hpp>
+#include <studio/window/block_actions.hpp>
+#include <studio/window/design_files.hpp>
+
+namespace weave::studio {
+
+QAction* MainWindow::add(QMenu& menu, const QString& text, const QKeySequence& keys, std::function<void()> deed, bool needs_design) {
+    QAction* action = menu.addAction(text, this, std::move(deed));
+    action->setShortcut(keys);
+    if (needs_design) m_design_actions.push_back(action);
+    return action;
+}
+
+void MainWindow::make_menus() {
+    make_file_menu();
+    make_edit_menu();
+    make_view_menu();
+    make_help_menu();
+}
+
+void MainWindow::make_file_menu() {
+    QMenu& menu = *menuBar()->addMenu(tr("&File"));
+    add(menu, tr("&New"), QKeySequence::New, [this] {
+        if (!may_close()) return;
+        close_document();
+        show_start_page();
+    }, false);
+    add(menu, tr("&Open …"), QKeySequence::Open, [this] { m_files->open(); }, false);
+    QMenu* recent = menu.addMenu(tr("Open &recent"));
+    connect(recent, &QMenu::aboutToShow, this, [this, recent] {
+        recent->clear();
+        for (const QString& path : DesignFiles::recent()) recent->addAction(path, this, [this, path] { open_file(path); });
+        if (recent->isEmpty()) recent->addAction(tr("none yet"))->setEnabled(false);
+    });
+    menu.addSeparator();
+    add(menu, tr("&Save"), QKeySequence::Save, [this] { m_files->save(*m_document); });
+    add(menu, tr("Save &as …"), QKeySequence::SaveAs, [this] { m_files->save_as(*m_document); });
+    add(menu, tr("&Export the card image …"), QKeySequence(tr("Ctrl+E")), [this] { m_files->export_card(*m_document); });
+    menu.addSeparator();
+    add(menu, tr("&Quit"), QKeySequence::Quit, [this] { close(); }, false);
+}
+
+void MainWindow::make_edit_menu() {
+    QMenu& menu = *menuBar()->addMenu(tr("&Edit"));
+    m_undo = add(menu, tr("Undo"), QKeySequence::Undo, [this] { m_document->undo(); }, false);
+    m_redo = add(menu, tr("Redo"), QKeySequence(tr("Ctrl+Shift+Z")), [this] { m_document->redo(); }, false);
+    menu.addSeparator();
+    add(menu, tr("Copy block"), QKeySequence::Copy, [this] { m_blocks->copy(chosen_block()); });
+    add(menu, tr("Cut block"), QKeySequence::Cut, [this] {
+        m_blocks->copy(chosen_block());
+        m_blocks->remove(chosen_block());
+    });
+    add(menu, tr("Paste block"), QKeySequence::Paste, [this] { m_blocks->paste(); });
+    add(menu, tr("Duplicate block"), QKeySequence(tr("Ctrl+D")), [this] { m_blocks->duplicate(chosen_block()); });
+    menu.addSeparator();
+    QMenu& block = *menuBar()->addMenu(tr("&Block"));
+    add(block, tr("Add a traditional &weave …"), {}, [this] { m_blocks->add_weave(); });
+    add(block, tr("Add a &drawing (slice)"), {}, [this] { m_blocks->add_drawing(); });
+    add(block, tr("&Stencil from the block shown"), {}, [this] { m_blocks->add_stencil(); });
+    block.addSeparator();
+    QMenu* chosen = block.addMenu(tr("The &chosen block"));
+    m_design_actions.push_back(chosen->menuAction());
+    connect(chosen, &QMenu::aboutToShow, this, [this, chosen] {
+        chosen->clear();
+        if (m_blocks != nullptr) m_blocks->fill_menu(*chosen, chosen_block());
+    });
+}
+
+void MainWindow::make_view_menu() {
+    QMenu& menu = *menuBar()->addMenu(tr("&View"));
+    for (QDockWidget* dock : findChildren<QDockWidget*>()) {
+        menu.addAction(dock->toggleViewAction());
+        m_design_actions.push_back(dock->toggleViewAction());
+    }
+}
+
+void MainWindow::make_help_menu() {
+    QMenu& menu = *menuBar()->addMenu(tr("&Help"));
+    add(menu, tr("&About"), {}, [this] {
+        QMessageBox::about(this, tr("Weave studio"), tr("Weave studio %1\n3D woven cloth, from the first block to the loom.").arg(QApplication::applicationVersion()));
+    }, false);
+}
+
+}  // namespace weave::studio

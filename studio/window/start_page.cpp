@@ -1,0 +1,146 @@
+#include <studio/window/start_page.hpp>
+
+#include <weave/design/evaluate.hpp>
+#include <weave/samples/samples.hpp>
+
+#include <QCommandLinkButton>
+#include <QFileInfo>
+#include <QHBoxLayout>
+#include <QLabel>
+#include <QListWidget>
+#include <QPainter>
+#include <QScrollBar>
+#include <QVBoxLayout>
+
+#include <studio/document/thumbnail.hpp>
+#include <studio/jobs/background.hpp>
+
+namespace weave::studio {
+
+namespace {
+
+constexpr int picture_side = 128, name_role = Qt::UserRole;
+
+QLabel* heading(const QString& text, double scale) {
+    auto* label = new QLabel(text);
+    QFont font = label->font();
+    font.setPointSizeF(font.pointSizeF() * scale);
+    font.setBold(true);
+    label->setFont(font);
+    return label;
+}
+
+/// A picture in the middle of a square, so that all stand in line.
+QPixmap in_square(const QImage& image) {
+    QPixmap square(picture_side, picture_side);
+    square.fill(Qt::transparent);
+    const QImage scaled = image.scaled(picture_side - 8, picture_side - 8, Qt::KeepAspectRatio, image.width() < picture_side ? Qt::FastTransformation : Qt::SmoothTransformation);
+    QPainter painter(&square);
+    const QRect place((picture_side - scaled.width()) / 2, (picture_side - scaled.height()) / 2, scaled.width(), scaled.height());
+    painter.drawImage(place.topLeft(), scaled);
+    painter.setPen(QColor(0, 0, 0, 90));
+    painter.drawRect(place.adjusted(-1, -1, 0, 0));
+    return square;
+}
+
+}  // namespace
+
+StartPage::StartPage(QWidget* parent) : QWidget(parent), m_recent(new QListWidget), m_samples(new QListWidget) {
+    auto* columns = new QHBoxLayout(this);
+    columns->setContentsMargins(32, 28, 32, 20);
+    columns->setSpacing(36);
+    auto* left = new QVBoxLayout;
+    auto* right = new QVBoxLayout;
+    columns->addLayout(left, 2);
+    columns->addLayout(right, 5);
+    add_beginnings(*left);
+    add_samples(*right);
+}
+
+void StartPage::add_beginnings(QVBoxLayout& column) {
+    column.addWidget(heading(tr("Weave"), 2));
+    auto* what = new QLabel(tr("Draw multilayer cloth, see it relax, and send it to the loom."));
+    what->setWordWrap(true);
+    column.addWidget(what);
+    column.addSpacing(8);
+    const auto way = [&](const QString& name, const QString& text, const QString& about, void (StartPage::*wanted)()) {
+        auto* button = new QCommandLinkButton(text, about);
+        button->setObjectName(name);
+        connect(button, &QCommandLinkButton::clicked, this, wanted);
+        button->setSizePolicy(QSizePolicy::Preferred, QSizePolicy::Fixed);
+        column.addWidget(button);
+    };
+    way("begin-tutorial", tr("Learn it in five steps"), tr("A small pocket: pattern, relax, flip, attach, seal"), &StartPage::tutorial_wanted);
+    way("begin-weave", tr("From a traditional weave"), tr("Plain, twill, satin, and layered weaves, by their rule"), &StartPage::weave_wanted);
+    way("begin-drawing", tr("Draw a section (slice)"), tr("Yarns over and under one another, by hand"), &StartPage::drawing_wanted);
+    way("begin-open", tr("Open or import a file"), tr("A design (.weave), a WIF file, or a card as PNG, TIFF or BMP"), &StartPage::open_wanted);
+    column.addSpacing(12);
+    column.addWidget(heading(tr("Recent"), 1.2));
+    m_recent->setObjectName("recent");
+    m_recent->setAccessibleName(tr("Recent designs"));
+    m_recent->setFrameShape(QFrame::NoFrame);
+    m_recent->viewport()->setAutoFillBackground(false);
+    connect(m_recent, &QListWidget::itemActivated, this, [this](const QListWidgetItem* item) { Q_EMIT file_wanted(item->data(name_role).toString()); });
+    connect(m_recent, &QListWidget::itemClicked, this, [this](const QListWidgetItem* item) {
+        if (item->flags() & Qt::ItemIsEnabled) Q_EMIT file_wanted(item->data(name_role).toString());
+    });
+    column.addWidget(m_recent, 1);
+}
+
+void StartPage::add_samples(QVBoxLayout& column) {
+    column.addWidget(heading(tr("Samples"), 1.2));
+    m_samples->setObjectName("samples");
+    m_samples->setAccessibleName(tr("Samples"));
+    m_samples->setViewMode(QListView::IconMode);
+    m_samples->setResizeMode(QListView::Adjust);
+    m_samples->setMovement(QListView::Static);
+    m_samples->setIconSize({picture_side, picture_side});
+    m_samples->setSpacing(8);
+    m_samples->setWordWrap(true);
+    m_samples->setFrameShape(QFrame::NoFrame);
+    m_samples->viewport()->setAutoFillBackground(false);
+    const int high = picture_side + fontMetrics().height() * 3;
+    for (const Sample& sample : samples()) {
+        auto* item = new QListWidgetItem(QString::fromStdString(sample.title), m_samples);
+        item->setData(name_role, QString::fromStdString(sample.name));
+        item->setToolTip(QString::fromStdString(sample.about));
+        item->setSizeHint({picture_side + 36, high});
+        item->setTextAlignment(Qt::AlignHCenter | Qt::AlignTop);
+        QPixmap empty(picture_side, picture_side);
+        empty.fill(Qt::transparent);
+        item->setIcon(QIcon(empty));
+        picture_sample(QString::fromStdString(sample.name));
+    }
+    connect(m_samples, &QListWidget::itemActivated, this, [this](const QListWidgetItem* item) { Q_EMIT sample_wanted(item->data(name_role).toString()); });
+    connect(m_samples, &QListWidget::itemClicked, this, [this](const QListWidgetItem* item) { Q_EMIT sample_wanted(item->data(name_role).toString()); });
+    column.addWidget(m_samples, 1);
+}
+
+void StartPage::picture_sample(const QString& name) {
+    in_background(
+        this,
+        [name] {
+            const Design design = find_sample(name.toStdString())->make();
+            const auto made = evaluate(design);
+            return made ? thumbnail(design, *made->block, picture_side - 8) : QImage();
+        },
+        [this, name](const QImage& image) {
+            for (int k = 0; k < m_samples->count() && !image.isNull(); ++k) {
+                if (m_samples->item(k)->data(name_role).toString() == name) m_samples->item(k)->setIcon(QIcon(in_square(image)));
+            }
+        });
+}
+
+void StartPage::list_recent(const QStringList& paths) {
+    m_recent->clear();
+    for (const QString& path : paths) {
+        auto* item = new QListWidgetItem(QFileInfo(path).completeBaseName() + "\n" + QFileInfo(path).path(), m_recent);
+        item->setData(name_role, path);
+        item->setToolTip(path);
+    }
+    if (!paths.isEmpty()) return;
+    auto* none = new QListWidgetItem(tr("Designs that you open appear here."), m_recent);
+    none->setFlags(Qt::NoItemFlags);
+}
+
+}  // namespace weave::studio

@@ -1,0 +1,343 @@
+#include <weave/samples/samples.hpp>
+
+#include <studio/commands/compose.hpp>
+#include <studio/commands/flip_crossing.hpp>
+#include <studio/commands/put_block.hpp>
+#include <studio/commands/set_up.hpp>
+#include <studio/document/document.hpp>
+
+#include <QtTest>
+
+#include <catch2/catch.hpp>
+#include <filesystem>
+#include <memory>
+
+#include "support/folder.hpp"
+
+using namespace weave;
+using namespace weave::studio;
+using weave::studio::test::Folder;
+
+namespace {
+
+Design sample(const char* name) {
+    return find_sample(name)->make();
+}
+
+/// Waits until the block that is shown is of the design as it stands.
+void settle(const Document& document) {
+    REQUIRE(QTest::qWaitFor([&] { return document.shown_is_current(); }, 20000));
+}
+
+/// A design of two satins that merge in nothing but the list.
+Design small_design() {
+    Design design;
+    design.root = "face";
+    design.blocks["face"] = std::make_shared<const Node>(Node{PresetLeaf{{"twill", {{"up", 1}, {"down", 4}}}}, {}});
+    return design;
+}
+
+void flip_at(Document& document, std::size_t pick, std::size_t end) {
+    auto step = flip_crossing(document, {pick, end});
+    REQUIRE(step);
+    REQUIRE(document.perform(*step));
+}
+
+}  // namespace
+
+TEST_CASE("steps are undone and made again, and what the block comes to follows") {
+    const Folder folder;
+    Document document(small_design(), {}, true, folder.path());
+    settle(document);
+    const CardImage before = document.shown().block->card_image();
+    flip_at(document, 1, 2);
+    CHECK(document.is_modified());
+    settle(document);
+    const CardImage flipped = document.shown().block->card_image();
+    CHECK(flipped.weft_over(1, 2) != before.weft_over(1, 2));
+    CHECK(document.shown().card->card == flipped);
+    REQUIRE(document.shown().changed_cells);
+    CHECK(document.shown().changed_cells->size() == 1);
+    document.undo();
+    CHECK_FALSE(document.is_modified());
+    CHECK(document.design() == small_design());
+    settle(document);
+    CHECK(document.shown().card->card == before);
+    document.redo();
+    settle(document);
+    CHECK(document.shown().card->card == flipped);
+}
+
+TEST_CASE("a flip that cannot be is refused with the yarns in the way, and changes nothing") {
+    const Folder folder;
+    Document document(sample("pocket"), {}, true, folder.path());
+    settle(document);
+    const Block& block = *document.shown().block;
+    std::size_t refused = 0;
+    for (std::size_t pick = 0; pick < 8; ++pick) {
+        for (std::size_t end = 0; end < 8; ++end) {
+            const auto step = flip_crossing(document, {pick, end});
+            CHECK(static_cast<bool>(step) == static_cast<bool>(flip(block, pick, end)));
+            if (!step) ++refused;
+        }
+    }
+    CHECK(refused > 0);
+    CHECK(flip_crossing(document, {9999, 0}).error().code == ErrorCode::bad_input);
+    CHECK(document.design() == sample("pocket"));
+}
+
+TEST_CASE("a flip before its block is made is judged by the design as it stands") {
+    const Folder folder;
+    Document document(small_design(), {}, true, folder.path());
+    settle(document);
+    flip_at(document, 0, 0);
+    REQUIRE_FALSE(document.shown_is_current());
+    flip_at(document, 0, 0);  // back again: judged by the block of before it would be the same flip twice
+    settle(document);
+    CHECK(document.shown().block->card_image() == evaluate(small_design())->block->card_image());
+}
+
+TEST_CASE("a stroke gives its crossings one side as one step") {
+    const Folder folder;
+    Document document(small_design(), {}, true, folder.path());
+    settle(document);
+    const std::vector<CardPlace> places{{0, 0}, {0, 1}, {0, 2}, {0, 3}, {0, 4}};
+    const bool first = document.shown().block->weft_over(0, 0);
+    const FlippedCrossings flipped = flip_crossings(document, places);
+    CHECK(flipped.refused.empty());
+    REQUIRE(document.perform(flipped.step));
+    settle(document);
+    for (const CardPlace& place : places) CHECK(document.shown().block->weft_over(place.pick, place.end) != first);
+    document.undo();
+    CHECK(document.design() == small_design());
+}
+
+TEST_CASE("what a slider is drawn through is one step") {
+    const Folder folder;
+    Document document(small_design(), {}, true, folder.path());
+    Scene scene;
+    for (int k = 1; k <= 5; ++k) {
+        scene.friction = 0.1 * k;
+        REQUIRE(document.perform(set_scene(scene, true)));
+    }
+    CHECK(document.undo_stack().count() == 1);
+    document.undo();
+    CHECK(document.design().scene == Scene{});
+    document.redo();
+    CHECK(document.design().scene.friction == Approx(0.5));
+}
+
+TEST_CASE("a step that fails in the middle leaves the design as it was") {
+    const Folder folder;
+    Document document(small_design(), {}, true, folder.path());
+    const EditStep step{"both", {SetTitle{"changed", ""}, RemoveBlock{"nothing"}}};
+    CHECK_FALSE(document.perform(step));
+    CHECK(document.design() == small_design());
+    CHECK(document.undo_stack().count() == 0);
+}
+
+TEST_CASE("an edit of a child changes its parents") {
+    const Folder folder;
+    Document document(small_design(), {}, true, folder.path());
+    std::string name;
+    REQUIRE(document.perform(*tile_block(document.design(), "face", 3, 2, 1, name)));
+    CHECK(document.design().root == name);
+    document.focus().show_block("face");
+    settle(document);
+    REQUIRE(QTest::qWaitFor([&] { return document.whole().block && document.whole().block->picks() == 15; }));
+    flip_at(document, 0, 1);
+    REQUIRE(QTest::qWaitFor([&] { return document.whole().revision == document.revision(); }));
+    const Block& whole = *document.whole().block;
+    const Block& face = *document.shown().block;
+    for (std::size_t pick = 0; pick < whole.picks(); ++pick) {
+        for (std::size_t end = 0; end < whole.ends(); ++end) REQUIRE(whole.weft_over(pick, end) == face.weft_over(pick % 5, end % 5));
+    }
+}
+
+TEST_CASE("blocks that do not fit are refused in words and nothing is made") {
+    const Folder folder;
+    Document document(small_design(), {}, true, folder.path());
+    std::string name;
+    REQUIRE(document.perform(add_block(document.design(), "plain", PresetLeaf{{"plain", {}}}, name)));
+    const auto step = attach_block(document.design(), "face", "plain", Face::plus_x, name);
+    REQUIRE_FALSE(step);
+    CHECK(step.error().text().find("plain") != std::string::npos);
+}
+
+TEST_CASE("cells that changed are those whose stacks differ") {
+    const auto before = evaluate(sample("pocket"));
+    Block block = *before->block;
+    Block after = apply_flips(block, std::vector<Flip>{{0, 0, !block.weft_over(0, 0)}, {40, 20, !block.weft_over(40, 20)}}).block;
+    const auto changed = changed_cells(block, after);
+    REQUIRE(changed);
+    for (std::size_t cell = 0; cell < block.rows() * block.columns(); ++cell) {
+        const bool differs = !(block.stack(cell / block.columns(), cell % block.columns()) == after.stack(cell / block.columns(), cell % block.columns()));
+        CHECK(differs == (std::find(changed->begin(), changed->end(), cell) != changed->end()));
+    }
+    const auto patched = card_picture(after, *card_picture(block), *changed);
+    CHECK(patched->card == after.card_image());
+    CHECK(patched->coarse == card_picture(after)->coarse);
+    CHECK_FALSE(changed_cells(block, *evaluate(small_design())->block));
+}
+
+// ---- What outlives the program ----
+
+namespace {
+
+/// The design that a crash at this moment would leave, with what can be undone in it.
+std::unique_ptr<Document> after_crash(Document& document, const Folder& folder) {
+    document.keeper().flush();
+    // A copy of the folder is what another program would find: this one still has its lock.
+    const Folder copy;
+    std::filesystem::copy(folder.path(), copy.path(), std::filesystem::copy_options::recursive | std::filesystem::copy_options::overwrite_existing);
+    auto recovered = Keeper::take_recoveries(copy.path());
+    if (recovered.empty()) return nullptr;
+    REQUIRE(recovered.size() == 1);
+    return std::make_unique<Document>(std::move(recovered[0]), copy.path());
+}
+
+}  // namespace
+
+TEST_CASE("edits, undone and redone ones, are there again after a crash, undo included") {
+    const Folder folder;
+    Document document(small_design(), "/nowhere/a.weave", true, folder.path());
+    CHECK(after_crash(document, folder) == nullptr);  // nothing would be lost
+    flip_at(document, 1, 2);
+    flip_at(document, 2, 2);
+    flip_at(document, 3, 2);
+    document.undo();
+    document.undo();
+    document.redo();
+    const auto again = after_crash(document, folder);
+    REQUIRE(again);
+    CHECK(again->design() == document.design());
+    CHECK(again->path() == "/nowhere/a.weave");
+    CHECK(again->is_modified());
+    CHECK(again->undo_stack().index() == 2);
+    CHECK(again->undo_stack().count() == 3);
+    again->undo();
+    again->undo();
+    CHECK(again->design() == small_design());
+}
+
+TEST_CASE("what is undone behind a save is there again after a crash") {
+    const Folder folder;
+    Document document(small_design(), {}, true, folder.path());
+    flip_at(document, 1, 2);
+    flip_at(document, 2, 2);
+    document.save(QString::fromStdString((folder.path() / "saved.weave").string()));
+    REQUIRE(QTest::qWaitFor([&] { return !document.path().isEmpty(); }));
+    CHECK(after_crash(document, folder) == nullptr);
+    const auto check = [&] {
+        const auto again = after_crash(document, folder);
+        REQUIRE(again);
+        CHECK(again->design() == document.design());
+    };
+    document.undo();  // of what was saved
+    check();
+    flip_at(document, 3, 3);
+    check();
+    document.undo();
+    document.undo();
+    check();
+    document.redo();
+    check();
+    document.undo();
+    flip_at(document, 4, 4);
+    document.undo();
+    document.redo();
+    check();
+}
+
+TEST_CASE("a design that was never saved is there again though nothing was done to it") {
+    const Folder folder;
+    Document document(small_design(), {}, false, folder.path());
+    CHECK(document.is_modified());
+    const auto again = after_crash(document, folder);
+    REQUIRE(again);
+    CHECK(again->is_modified());
+    CHECK(again->design() == small_design());
+}
+
+TEST_CASE("a closed document leaves nothing to recover, a running one is left alone") {
+    const Folder folder;
+    {
+        Document document(small_design(), {}, false, folder.path());
+        document.keeper().flush();
+        CHECK(Keeper::take_recoveries(folder.path()).empty());  // it runs
+        document.discard();
+    }
+    CHECK(Keeper::take_recoveries(folder.path()).empty());
+    CHECK(std::filesystem::is_empty(folder.path()));
+}
+
+TEST_CASE("a torn end of a journal is left out, and a recovered document goes on in it") {
+    const Folder folder;
+    {
+        Document document(small_design(), {}, true, folder.path());
+        flip_at(document, 1, 2);
+        flip_at(document, 2, 2);
+    }
+    std::filesystem::path journal;
+    for (const auto& each : std::filesystem::recursive_directory_iterator(folder.path())) {
+        if (each.path().extension() == ".journal") journal = each.path();
+    }
+    std::filesystem::resize_file(journal, std::filesystem::file_size(journal) - 7);
+    Design one_flip;
+    {
+        auto recovered = Keeper::take_recoveries(folder.path());
+        REQUIRE(recovered.size() == 1);
+        REQUIRE(recovered[0].entries.size() == 1);
+        Document again(std::move(recovered[0]), folder.path());
+        one_flip = again.design();
+        flip_at(again, 4, 4);
+        again.undo();
+    }
+    auto recovered = Keeper::take_recoveries(folder.path());
+    REQUIRE(recovered.size() == 1);
+    const Document third(std::move(recovered[0]), folder.path());
+    CHECK(third.design() == one_flip);
+    CHECK(third.undo_stack().count() == 2);
+}
+
+TEST_CASE("unsaved work that cannot be read is put aside and does not stop the program") {
+    const Folder folder;
+    {
+        Document document(small_design(), {}, false, folder.path());
+        document.keeper().flush();
+    }
+    for (const auto& each : std::filesystem::directory_iterator(folder.path())) std::filesystem::resize_file(each.path() / "now", 3);
+    CHECK(Keeper::take_recoveries(folder.path()).empty());
+    CHECK(Keeper::take_recoveries(folder.path()).empty());
+    REQUIRE_FALSE(std::filesystem::is_empty(folder.path()));
+    CHECK(std::filesystem::directory_iterator(folder.path())->path().extension() == ".broken");
+}
+
+TEST_CASE("a save that fails leaves the document unsaved and says why") {
+    const Folder folder;
+    Document document(small_design(), {}, true, folder.path());
+    flip_at(document, 1, 2);
+    QSignalSpy failed(&document.keeper(), &Keeper::not_saved);
+    document.save("/nowhere/at/all.weave");
+    REQUIRE(failed.wait(20000));
+    CHECK(document.is_modified());
+    CHECK(document.path().isEmpty());
+    CHECK(failed[0][1].toString().contains("/nowhere/at/all.weave"));
+}
+
+TEST_CASE("every line of a journal comes back as it was") {
+    const std::vector<JournalEntry> entries{EditStep{"Flip „it“\n", {PutFlip{"face", Flip{1, 2, true}}}, "key"}, Undone{}, Redone{}, EditStep{"", {RemoveBlock{"x"}, SetRoot{"y"}}}};
+    std::string text;
+    for (const JournalEntry& entry : entries) text += journal_line(entry);
+    const ReadJournal read = read_journal(text);
+    REQUIRE(read.entries.size() == entries.size());
+    CHECK(read.bytes == text.size());
+    std::string again;
+    for (const JournalEntry& entry : read.entries) again += journal_line(entry);
+    CHECK(again == text);
+    for (std::size_t cut = 0; cut < text.size(); ++cut) {
+        const ReadJournal torn = read_journal(std::string_view(text).substr(0, cut));
+        CHECK(torn.bytes <= cut);
+        CHECK(torn.entries.size() < entries.size());
+    }
+}
