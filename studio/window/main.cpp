@@ -18,6 +18,9 @@ int main(int argc, char* argv[]) {
     QApplication::setOrganizationName("weave");
     QApplication::setApplicationName("studio");
     QApplication::setApplicationVersion(WEAVE_VERSION);
+    QApplication::setDesktopFileName("weave-studio");
+    Q_INIT_RESOURCE(window);
+    QApplication::setWindowIcon(QIcon(":/studio/icon.svg"));
     weave::set_log_sink([](weave::LogLevel level, std::string_view message) {
         if (level == weave::LogLevel::warning) std::fprintf(stderr, "studio: %.*s\n", static_cast<int>(message.size()), message.data());
     });
