@@ -3,11 +3,12 @@
 #include <weave/core/text.hpp>
 #include <weave/picture/colour_map.hpp>
 #include <weave/picture/page.hpp>
+#include <weave/picture/scale_marks.hpp>
 #include <weave/picture/tube_render.hpp>
+#include <weave/picture/yarn_knots.hpp>
 
 #include <algorithm>
 #include <cmath>
-#include <cstdio>
 #include <iterator>
 #include <new>
 
@@ -18,21 +19,6 @@ namespace {
 constexpr double foot_height = 84;  ///< under the cloth, for axes and scale
 constexpr double bar_room = 118;    ///< at the right, for the colour bar
 constexpr double bar_width = 20;
-
-std::string short_number(double value) {
-    char text[32];
-    std::snprintf(text, sizeof text, "%.4g", value == 0 ? 0.0 : value);
-    return text;
-}
-
-/// The largest of 1, 2 and 5 times a power of ten that is not above `most`.
-double round_step(double most) {
-    const double power = std::pow(10, std::floor(std::log10(most)));
-    for (const double factor : {5.0, 2.0}) {
-        if (factor * power <= most) return factor * power;
-    }
-    return power;
-}
 
 std::string side_words(const ClothView& view) {
     struct Name {
@@ -48,25 +34,6 @@ std::string side_words(const ClothView& view) {
     }
     return "from azimuth " + short_number(view.azimuth_deg) + "°, elevation " +
            short_number(view.elevation_deg) + "°";
-}
-
-struct ColourWords {
-    const char* subtitle;
-    const char* unit;
-};
-
-ColourWords words_of(ClothColour colour) {
-    switch (colour) {
-        case ClothColour::strain:
-            return {"strain", "strain, %"};
-        case ClothColour::contact:
-            return {"contact force", "contact, N"};
-        case ClothColour::moved:
-            return {"distance from the planned place", "moved, mm"};
-        case ClothColour::yarn:
-            break;
-    }
-    return {"yarn", ""};
 }
 
 std::string size_words(const Vec3& size) {
@@ -141,12 +108,11 @@ void draw_bar(Canvas& canvas, const Rectangle& body, const TubeScene& scene, con
         canvas.rectangle({bar.x, bar.y + y, bar_width, 1}, map_colour(1 - (y + 0.5) / height));
     canvas.outline({bar.x - 0.5, bar.y - 0.5, bar.width + 1, bar.height + 1}, {.colour = faint_ink});
     canvas.text({bar.x - 6, bar.y - 16}, unit, {.size = 12.5, .bold = true});
-    const double range = scene.high - scene.low, step = round_step(range / 4);
-    for (double k = std::ceil(scene.low / step - 1e-9); k * step <= scene.high + 1e-9 * range; ++k) {
-        const double y = bar.y + height * (1 - (k * step - scene.low) / range);
+    for (const double mark : scale_marks(scene.low, scene.high)) {
+        const double y = bar.y + height * (1 - (mark - scene.low) / (scene.high - scene.low));
         const Point tick[]{{bar.x + bar_width, y}, {bar.x + bar_width + 5, y}};
         canvas.polyline(tick, {.colour = ink});
-        canvas.text({bar.x + bar_width + 9, y}, short_number(k * step), {.size = 12, .centred = true});
+        canvas.text({bar.x + bar_width + 9, y}, short_number(mark), {.size = 12, .centred = true});
     }
 }
 

@@ -1,7 +1,6 @@
 #include <weave/picture/tube_scene.hpp>
 
-#include <weave/design/yarns.hpp>
-#include <weave/picture/look.hpp>
+#include <weave/picture/yarn_knots.hpp>
 #include <weave/sim/sampled.hpp>
 
 #include <Eigen/Geometry>
@@ -48,55 +47,17 @@ Result<Lines> lines_of(const Yarns& yarns, std::size_t copies) {
     return sampled(yarns, coarse_share, most_tube_pieces / copies);
 }
 
-// ---- Colours ----
-
-/// Each yarn's colour. Where all yarns of a cloth have the colours of yarns that nobody chose, the paper's
-/// tell warp from weft.
-std::vector<Colour> own_colours(const Yarns& yarns) {
-    const Colour plain_warp = default_warp().yarns[0].colour, plain_weft = default_weft().yarns[0].colour;
-    const auto chosen = [&](System system, Colour plain) {
-        return std::ranges::any_of(yarns.yarns, [&](const SimulatedYarn& yarn) {
-            return yarn.system == system && yarn.colour != plain;
-        });
-    };
-    const bool own_warp = chosen(System::warp, plain_warp), own_weft = chosen(System::weft, plain_weft);
-    std::vector<Colour> colours;
-    for (const SimulatedYarn& yarn : yarns.yarns) {
-        const bool is_warp = yarn.system == System::warp;
-        colours.push_back(is_warp    ? (own_warp ? yarn.colour : paper_warp)
-                          : own_weft ? yarn.colour
-                                     : paper_weft);
-    }
-    return colours;
-}
-
-/// What colours a yarn at a parameter, in the unit of the colour bar.
-double value_of(const SimulatedYarn& yarn, const Spline& planned, ClothColour colour, double t) {
-    switch (colour) {
-        case ClothColour::strain:
-            return 100 * value_at(yarn.spline, yarn.strain, t);
-        case ClothColour::contact:
-            return value_at(yarn.spline, yarn.contact_N, t);
-        case ClothColour::moved:
-            return (yarn.spline.place(t) - planned.place(t)).norm();
-        case ClothColour::yarn:
-            break;
-    }
-    return 0;
-}
-
 void set_range(TubeScene& scene, ClothColour colour) {
-    scene.low = std::numeric_limits<double>::infinity();
-    scene.high = -scene.low;
+    double least = std::numeric_limits<double>::infinity(), most = -least;
     for (const TubePiece& piece : scene.pieces) {
         for (const double value : {double{piece.value_from}, double{piece.value_to}}) {
-            scene.low = std::min(scene.low, value);
-            scene.high = std::max(scene.high, value);
+            least = std::min(least, value);
+            most = std::max(most, value);
         }
     }
-    if (colour != ClothColour::strain) scene.low = 0;  // none is the natural end of the scale
-    const double least = 1e-9 + 1e-6 * std::max(std::abs(scene.low), std::abs(scene.high));
-    scene.high = std::max(scene.high, scene.low + least);
+    const ValueRange range = scale_of(colour, least, most);
+    scene.low = range.low;
+    scene.high = range.high;
 }
 
 // ---- Pieces ----
@@ -118,25 +79,9 @@ class SceneMaker {
     }
 
   private:
-    struct Knot {
-        Vec3 place, tangent;
-        double value;
-        double along;  ///< the yarn from its start, mm
-    };
-
     void add(std::size_t number) {
-        const SimulatedYarn& yarn = m_yarns.yarns[number];
-        const Spline planned{yarn.planned, yarn.spline.is_periodic, yarn.spline.shift};
         if (m_lines[number].empty()) return;
-        std::vector<Knot> knots;
-        Vec3 tangent(1, 0, 0);
-        for (const double t : m_lines[number]) {
-            const Vec3 way = yarn.spline.tangent(t);
-            if (way.norm() > 0) tangent = way.normalized();
-            const Vec3 place = yarn.spline.place(t);
-            const double along = knots.empty() ? 0 : knots.back().along + (place - knots.back().place).norm();
-            knots.push_back({place, tangent, value_of(yarn, planned, m_view.colour, t), along});
-        }
+        const std::vector<YarnKnot> knots = knots_of(m_yarns.yarns[number], m_lines[number], m_view.colour);
         for (std::size_t i = 0; i < m_view.repeat[0]; ++i) {
             for (std::size_t j = 0; j < m_view.repeat[1]; ++j) {
                 const Vec3 move(static_cast<double>(i) * m_yarns.size_mm[0],
@@ -146,8 +91,8 @@ class SceneMaker {
         }
     }
 
-    void add_copy(std::size_t number, const std::vector<Knot>& knots, const Vec3& move) {
-        const auto plane_at = [&](const Knot& knot, double way) {
+    void add_copy(std::size_t number, const std::vector<YarnKnot>& knots, const Vec3& move) {
+        const auto plane_at = [&](const YarnKnot& knot, double way) {
             const Vec3 normal = way * knot.tangent;
             m_scene.planes.push_back({normal, normal.dot(knot.place + move)});
             return static_cast<std::uint32_t>(m_scene.planes.size() - 1);
@@ -164,7 +109,7 @@ class SceneMaker {
         }
     }
 
-    [[nodiscard]] TubePiece piece_between(std::size_t number, const Knot& a, const Knot& b,
+    [[nodiscard]] TubePiece piece_between(std::size_t number, const YarnKnot& a, const YarnKnot& b,
                                           const Vec3& move) const {
         TubePiece piece;
         piece.from = a.place + move;

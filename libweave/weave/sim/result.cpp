@@ -1,7 +1,8 @@
 #include <weave/sim/result.hpp>
 
 #include <weave/design/document.hpp>
-#include <weave/loom/pick_table.hpp>
+#include <weave/design/picks.hpp>
+#include <weave/sim/planned_yarns.hpp>
 
 #include <algorithm>
 #include <cmath>
@@ -86,13 +87,8 @@ class RelaxedRepeat {
         const SimYarn& now = m_fabric.scene().yarns[y];  // parameters may have changed since it was planned
         const YarnCurve& curve = m_plan.curves.yarns[m_plan.curve_of[y]];
         const YarnPlace& place = m_fabric.yarns()[y];
-        const bool warp = curve.system == System::warp;
-        SimulatedYarn yarn;
-        yarn.system = curve.system;
-        yarn.number = curve.number;
-        yarn.beam = warp ? m_design.warp.beam_order.at(curve.number) : 0;
+        SimulatedYarn yarn = labelled_yarn(m_design, curve);
         yarn.radius_mm = now.radius_mm;
-        yarn.colour = warp ? colour_of_end(m_design, curve.number) : m_design.weft.yarns[curve.type].colour;
         yarn.spline = spline(y, {});
         for (std::size_t i = 0; i < place.points; ++i) {
             const std::size_t at = 3 * (place.first_slot + 1 + i);
