@@ -14,11 +14,13 @@
 #include <QMessageBox>
 #include <QPushButton>
 #include <QSettings>
+#include <QSplitter>
 #include <QStackedWidget>
 #include <QStatusBar>
 #include <QTabWidget>
 #include <QVBoxLayout>
 
+#include <studio/commands/flip_crossing.hpp>
 #include <studio/editors/card_editor.hpp>
 #include <studio/panels/design_tree.hpp>
 #include <studio/panels/findings_panel.hpp>
@@ -27,12 +29,13 @@
 #include <studio/window/design_files.hpp>
 #include <studio/window/message_bar.hpp>
 #include <studio/window/start_page.hpp>
+#include <studio/window/viewer_desk.hpp>
 
 namespace weave::studio {
 
 MainWindow::MainWindow(QWidget* parent)
-    : QMainWindow(parent), m_files(new DesignFiles(this)), m_pages(new QStackedWidget), m_start(new StartPage), m_editors(new QTabWidget),
-      m_card(new CardEditor), m_tree(new DesignTree), m_findings(new FindingsPanel), m_messages(new MessageBar), m_status(new QLabel) {
+    : QMainWindow(parent), m_files(new DesignFiles(this)), m_pages(new QStackedWidget), m_work(new QSplitter), m_start(new StartPage),
+      m_editors(new QTabWidget), m_card(new CardEditor), m_viewport(new Viewport), m_viewer(new ViewerDesk(*m_viewport, this)), m_tree(new DesignTree), m_findings(new FindingsPanel), m_messages(new MessageBar), m_status(new QLabel) {
     setObjectName("studio");
     resize(1440, 920);
     make_workspace();
@@ -48,6 +51,7 @@ MainWindow::MainWindow(QWidget* parent)
 
 MainWindow::~MainWindow() {
     m_card->show_document(nullptr);
+    m_viewer->show_document(nullptr);
     m_tree->show_document(nullptr);
     m_findings->show_document(nullptr);
 }
@@ -62,9 +66,18 @@ void MainWindow::make_workspace() {
     column->addWidget(m_messages);
     column->addWidget(m_pages, 1);
     m_pages->addWidget(m_start);
-    m_pages->addWidget(m_editors);
+    m_pages->addWidget(m_work);
+    m_work->addWidget(m_editors);
+    m_work->addWidget(m_viewport);
+    m_work->setSizes({560, 560});
+    m_work->setChildrenCollapsible(false);
     setCentralWidget(whole);
     connect(m_card, &CardEditor::told, this, &MainWindow::tell);
+    connect(m_viewer, &ViewerDesk::told, this, &MainWindow::tell);
+    connect(m_viewer, &ViewerDesk::attach_wanted, this, [this](Face face) {
+        if (m_blocks != nullptr) m_blocks->ask_what_to_attach(m_document->shown_block(), face, QCursor::pos());
+    });
+    connect(m_viewer, &ViewerDesk::flip_wanted, this, &MainWindow::flip);
     connect(m_start, &StartPage::open_wanted, m_files, &DesignFiles::open);
     connect(m_start, &StartPage::file_wanted, this, &MainWindow::open_file);
     connect(m_start, &StartPage::sample_wanted, this, &MainWindow::show_sample);
@@ -114,6 +127,21 @@ void MainWindow::make_docks() {
     });
 }
 
+/// Offers two yarns that cross to change sides, or says why they cannot.
+void MainWindow::flip(const CardPlace& place) {
+    m_document->focus().go_to(place);
+    auto step = flip_crossing(*m_document, place);
+    QMenu menu;
+    if (step) {
+        menu.addAction(step->text, this, [&] {
+            if (Status made = m_document->perform(*step); !made) warn(QString::fromStdString(made.error().text()));
+        });
+    } else {
+        menu.addAction(QString::fromStdString(step.error().text()))->setEnabled(false);
+    }
+    menu.exec(QCursor::pos());
+}
+
 // ---- Documents ----
 
 void MainWindow::show_start_page() {
@@ -127,6 +155,7 @@ void MainWindow::show_start_page() {
 void MainWindow::close_document() {
     if (!m_document) return;
     m_card->show_document(nullptr);
+    m_viewer->show_document(nullptr);
     m_tree->show_document(nullptr);
     m_findings->show_document(nullptr);
     m_blocks = nullptr;
@@ -142,9 +171,10 @@ void MainWindow::take(std::unique_ptr<Document> document) {
     connect(m_blocks, &BlockActions::told, this, &MainWindow::tell);
     follow_document();
     m_card->show_document(m_document.get());
+    m_viewer->show_document(m_document.get());
     m_tree->show_document(m_document.get());
     m_findings->show_document(m_document.get());
-    m_pages->setCurrentWidget(m_editors);
+    m_pages->setCurrentWidget(m_work);
     for (QDockWidget* dock : findChildren<QDockWidget*>()) dock->show();
     show_title();
     show_undo();

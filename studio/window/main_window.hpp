@@ -8,6 +8,7 @@
 class QAction;
 class QLabel;
 class QMenu;
+class QSplitter;
 class QStackedWidget;
 class QTabWidget;
 
@@ -20,6 +21,8 @@ class DesignTree;
 class FindingsPanel;
 class MessageBar;
 class StartPage;
+class ViewerDesk;
+class Viewport;
 
 /// The window of one design: the start page until there is one, then its editors and panels. It owns the document; all else looks
 /// at it.
@@ -61,6 +64,7 @@ class MainWindow : public QMainWindow {
     void show_undo();
     void tell(const QString& words);
     void warn(const QString& reason);
+    void flip(const CardPlace& place);
     void opened(const Design& design, const QString& path, const QStringList& warnings);
     QAction* add(QMenu& menu, const QString& text, const QKeySequence& keys, std::function<void()> deed, bool needs_design = true);
     [[nodiscard]] std::string chosen_block() const;
@@ -69,9 +73,12 @@ class MainWindow : public QMainWindow {
     DesignFiles* m_files;
     BlockActions* m_blocks = nullptr;  ///< of the document
     QStackedWidget* m_pages;
+    QSplitter* m_work;
     StartPage* m_start;
     QTabWidget* m_editors;
     CardEditor* m_card;
+    Viewport* m_viewport;
+    ViewerDesk* m_viewer;
     DesignTree* m_tree;
     FindingsPanel* m_findings;
     MessageBar* m_messages;
