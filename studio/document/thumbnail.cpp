@@ -12,14 +12,14 @@ namespace {
 /// A small weave is shown several times side by side, so that it looks like cloth.
 constexpr std::size_t least_stacks = 16;
 
-std::size_t times(std::size_t stacks) {
-    return std::max<std::size_t>(1, least_stacks / stacks);
+std::size_t times(std::size_t stacks, const Block& block) {
+    return std::max(block.rows(), block.columns()) >= least_stacks ? 1 : std::max<std::size_t>(1, least_stacks / stacks);
 }
 
 }  // namespace
 
 QImage thumbnail(const Design& design, const Block& block, int side) {
-    const std::size_t rows = block.rows() * times(block.rows()), columns = block.columns() * times(block.columns());
+    const std::size_t rows = block.rows() * times(block.rows(), block), columns = block.columns() * times(block.columns(), block);
     const double scale = static_cast<double>(side) / static_cast<double>(std::max(rows, columns));
     const auto pixels = [&](std::size_t stacks) { return std::max(1, static_cast<int>(std::lround(static_cast<double>(stacks) * scale))); };
     const int width = pixels(columns), height = pixels(rows);

@@ -65,11 +65,6 @@ void CardEditor::make_tools(QHBoxLayout& tools) {
         const int chosen = m_modes->currentData().toInt();
         show_mode(static_cast<CardMode>(chosen / 1000), static_cast<std::size_t>(chosen % 1000));
     });
-    m_corners = new QComboBox;
-    for (const QString& corner : {tr("Pick 1 bottom, end 1 left"), tr("Pick 1 bottom, end 1 right"), tr("Pick 1 top, end 1 left"), tr("Pick 1 top, end 1 right")}) m_corners->addItem(corner);
-    m_corners->setToolTip(tr("The corner at which the card begins. It changes how the card is drawn, never what is woven"));
-    m_corners->setAccessibleName(tr("Corner of pick 1 and end 1"));
-    connect(m_corners, &QComboBox::currentIndexChanged, this, [this](int corner) { m_canvas->set_corner(static_cast<Corner>(corner)); });
     m_times_columns = times_box(tr("Repeats shown side by side"), tr("across "));
     m_times_rows = times_box(tr("Repeats shown above each other"), tr("along "));
     for (QSpinBox* box : {m_times_columns, m_times_rows}) connect(box, &QSpinBox::valueChanged, this, [this] { show_block(); });
@@ -83,7 +78,6 @@ void CardEditor::make_tools(QHBoxLayout& tools) {
         tools.addWidget(made);
     };
     tools.addWidget(m_modes);
-    tools.addWidget(m_corners);
     auto* repeats = new QLabel(tr("Repeat"));
     repeats->setContentsMargins(6, 0, 0, 0);
     tools.addWidget(repeats);

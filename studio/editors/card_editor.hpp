@@ -54,7 +54,6 @@ class CardEditor : public QWidget {
     Document* m_document = nullptr;
     GridCanvas* m_canvas;
     QComboBox* m_modes;
-    QComboBox* m_corners;
     QSpinBox* m_times_rows;
     QSpinBox* m_times_columns;
     QLabel* m_state;

@@ -99,7 +99,8 @@ void MainWindow::make_docks() {
         addDockWidget(area, made);
         return made;
     };
-    dock("blocks-dock", tr("Blocks"), m_tree, Qt::LeftDockWidgetArea);
+    auto* blocks = dock("blocks-dock", tr("Blocks"), m_tree, Qt::LeftDockWidgetArea);
+    resizeDocks({blocks}, {300}, Qt::Horizontal);
     auto* findings = dock("findings-dock", tr("Findings"), m_findings, Qt::BottomDockWidgetArea);
     resizeDocks({findings}, {190}, Qt::Vertical);
     setCorner(Qt::BottomLeftCorner, Qt::LeftDockWidgetArea);

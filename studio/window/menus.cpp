@@ -2,6 +2,7 @@
 
 #include <studio/window/main_window.hpp>
 
+#include <QActionGroup>
 #include <QApplication>
 #include <QDockWidget>
 #include <QMenuBar>
@@ -9,6 +10,7 @@
 
 #include <functional>
 #include <studio/editors/card_editor.hpp>
+#include <studio/viewport/viewport.hpp>
 #include <studio/window/block_actions.hpp>
 #include <studio/window/design_files.hpp>
 
@@ -78,6 +80,33 @@ void MainWindow::make_edit_menu() {
 
 void MainWindow::make_view_menu() {
     QMenu& menu = *menuBar()->addMenu(tr("&View"));
+    // One key for the editor in which the person is: the viewer has its own.
+    const auto in_sight = [this](auto viewer, auto card) {
+        return [this, viewer, card] { m_viewport->hasFocus() ? viewer(*m_viewport) : card(m_card->canvas()); };
+    };
+    add(menu, tr("&Larger"), QKeySequence("+"), in_sight([](Viewport& view) { view.zoom(1.25); }, [](GridCanvas& card) { card.zoom_by(1.4); }));
+    add(menu, tr("&Smaller"), QKeySequence("-"), in_sight([](Viewport& view) { view.zoom(0.8); }, [](GridCanvas& card) { card.zoom_by(1 / 1.4); }));
+    add(menu, tr("&Fit"), QKeySequence("F"), in_sight([](Viewport& view) { view.fit(); }, [](GridCanvas& card) { card.fit(); }));
+    menu.addSeparator();
+    const std::vector<std::pair<StandardView, QString>> views{{StandardView::face, tr("Face")}, {StandardView::back, tr("Back")},
+                                                              {StandardView::warp_side, tr("Along the picks (warp side)")}, {StandardView::weft_side, tr("Along the ends (weft side)")},
+                                                              {StandardView::corner, tr("Corner")}, {StandardView::opposite_corner, tr("Opposite corner")}};
+    for (std::size_t k = 0; k < views.size(); ++k)
+        add(menu, views[k].second, QKeySequence(QString::number(k + 1)), [this, view = views[k].first] { m_viewport->turn_to(view); });
+    QAction* lock = add(menu, tr("Lock the 3D &view"), {}, [] {});
+    lock->setCheckable(true);
+    connect(lock, &QAction::toggled, m_viewport, &Viewport::set_locked);
+    connect(m_viewport, &Viewport::locked_changed, lock, &QAction::setChecked);
+    menu.addSeparator();
+    QMenu* corners = menu.addMenu(tr("Corner of &pick 1 and end 1"));
+    auto* group = new QActionGroup(this);
+    const std::vector<QString> names{tr("Bottom left"), tr("Bottom right"), tr("Top left"), tr("Top right")};
+    for (std::size_t k = 0; k < names.size(); ++k) {
+        QAction* corner = group->addAction(corners->addAction(names[k], this, [this, k] { m_card->canvas().set_corner(static_cast<Corner>(k)); }));
+        corner->setCheckable(true);
+        corner->setChecked(k == 0);
+    }
+    menu.addSeparator();
     for (QDockWidget* dock : findChildren<QDockWidget*>()) {
         menu.addAction(dock->toggleViewAction());
         m_design_actions.push_back(dock->toggleViewAction());
