@@ -11,6 +11,7 @@
 #include <weave/design/merge.hpp>
 #include <weave/design/outline.hpp>
 #include <weave/io/bitmap.hpp>
+#include <weave/io/stencil_picture.hpp>
 #include <weave/samples/samples.hpp>
 
 #include <algorithm>
@@ -206,24 +207,6 @@ void add_renumber(CLI::App& app, CommandOutcome& outcome) {
 
 // ---- stencil
 
-/// The stencil of a picture: which of the mapped colours each pixel is.
-Result<StencilMap> map_of(const ColourImage& image, const std::map<Colour, std::uint16_t>& numbers) {
-    StencilMap map{image.rows, image.columns, {}};
-    map.blocks.reserve(image.pixels.size());
-    auto found = numbers.end();
-    for (std::size_t k = 0; k < image.pixels.size(); ++k) {
-        if (found == numbers.end() || found->first != image.pixels[k])  // mostly it is that of the pixel before
-            found = numbers.find(image.pixels[k]);
-        if (found == numbers.end()) {
-            return bad_input("the pixel in row " + std::to_string(k / image.columns + 1) +
-                             " from the bottom and column " + std::to_string(k % image.columns + 1) +
-                             " has the colour " + to_text(image.pixels[k]) + ", which no --map names");
-        }
-        map.blocks.push_back(found->second);
-    }
-    return map;
-}
-
 /// The map that a picture draws. A cloth that would be too large is refused before the picture's pixels are
 /// read: `block` is one of the blocks, `sources` what an error of the cloth is said of.
 Result<StencilMap> read_map(const std::string& picture, const std::map<Colour, std::uint16_t>& numbers,
@@ -240,7 +223,7 @@ Result<StencilMap> read_map(const std::string& picture, const std::map<Colour, s
     WEAVE_TRY(const std::string bytes, read_file(picture));
     Result<ColourImage> image = read_colour_image(bytes, fits);
     if (!image) return std::move(image).error().in(too_large ? sources : picture);
-    Result<StencilMap> map = map_of(*image, numbers);
+    Result<StencilMap> map = stencil_map(*image, numbers);
     if (!map) return std::move(map).error().in(picture);
     return map;
 }

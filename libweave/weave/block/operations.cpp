@@ -131,10 +131,14 @@ Result<Block> attach_z(const Block& lower, const Block& upper) {
                        lower.height() + upper.height());
 }
 
+Status check_stencil_shape(std::size_t rows, std::size_t columns, std::size_t blocks) {
+    if (rows == 0 || columns == 0) return bad_input("a stencil needs at least one row and one column");
+    if (blocks == 0) return bad_input("a stencil needs at least one block");
+    return {};
+}
+
 Status check_stencil(std::span<const BlockPtr> blocks, const StencilMap& map) {
-    if (map.rows == 0 || map.columns == 0)
-        return bad_input("a stencil needs at least one row and one column");
-    if (blocks.empty()) return bad_input("a stencil needs at least one block");
+    WEAVE_CHECK_OK(check_stencil_shape(map.rows, map.columns, blocks.size()));
     assert(map.blocks.size() == map.rows * map.columns);
     for (std::size_t cell = 0; cell < map.blocks.size(); ++cell) {
         if (map.blocks[cell] >= blocks.size()) {
@@ -148,11 +152,11 @@ Status check_stencil(std::span<const BlockPtr> blocks, const StencilMap& map) {
 }
 
 /// The picks (or ends) of each line of the stencil, on which all blocks must agree.
-Result<Counts> common_counts(std::span<const BlockPtr> blocks, std::span<const std::string> names,
-                             std::size_t lines, const Counts& (Block::*counts)() const, const char* line,
+Result<Counts> common_counts(std::span<const BlockGrid* const> grids, std::span<const std::string> names,
+                             std::size_t lines, const Counts& (BlockGrid::*counts)() const, const char* line,
                              const char* yarns) {
-    const auto count_at = [&](const BlockPtr& block, std::size_t i) {
-        const Counts& own = ((*block).*counts)();
+    const auto count_at = [&](const BlockGrid* grid, std::size_t i) {
+        const Counts& own = (grid->*counts)();
         return own[i % own.size()];
     };
     const auto name_of = [&](std::size_t k) {
@@ -160,9 +164,9 @@ Result<Counts> common_counts(std::span<const BlockPtr> blocks, std::span<const s
     };
     Counts common(lines);
     for (std::size_t i = 0; i < lines; ++i) {
-        common[i] = count_at(blocks[0], i);
-        for (std::size_t k = 1; k < blocks.size(); ++k) {
-            const std::uint32_t other = count_at(blocks[k], i);
+        common[i] = count_at(grids[0], i);
+        for (std::size_t k = 1; k < grids.size(); ++k) {
+            const std::uint32_t other = count_at(grids[k], i);
             if (other == common[i]) continue;
             const Pair pair{name_of(0), name_of(k)};
             return bad_input(pair.one + " and " + pair.other +
@@ -170,6 +174,15 @@ Result<Counts> common_counts(std::span<const BlockPtr> blocks, std::span<const s
         }
     }
     return common;
+}
+
+/// The picks of the rows, and the ends of the columns, of a stencil.
+Result<std::pair<Counts, Counts>> stencil_counts(std::span<const BlockGrid* const> grids, std::size_t rows,
+                                                 std::size_t columns, std::span<const std::string> names) {
+    WEAVE_TRY(Counts t, common_counts(grids, names, rows, &BlockGrid::t, "row", "pick"));
+    WEAVE_TRY(Counts p, common_counts(grids, names, columns, &BlockGrid::p, "column", "end"));
+    WEAVE_CHECK_OK(check_counts(t, p));
+    return std::pair(std::move(t), std::move(p));
 }
 
 Result<Block> with_line_renumbered(const Block& block, System system, std::size_t line,
@@ -280,9 +293,9 @@ Result<Block> stencil(std::span<const BlockPtr> blocks, const StencilMap& map,
                       std::span<const std::string> names) {
     assert(names.empty() || names.size() == blocks.size());
     WEAVE_CHECK_OK(check_stencil(blocks, map));
-    WEAVE_TRY(Counts t, common_counts(blocks, names, map.rows, &Block::t, "row", "pick"));
-    WEAVE_TRY(Counts p, common_counts(blocks, names, map.columns, &Block::p, "column", "end"));
-    WEAVE_CHECK_OK(check_counts(t, p));
+    std::vector<const BlockGrid*> grids;
+    for (const BlockPtr& block : blocks) grids.push_back(&block->grid());
+    WEAVE_TRY(auto counts, stencil_counts(grids, map.rows, map.columns, names));
     MergedTables merged;
     std::size_t height = 0;
     for (const BlockPtr& block : blocks) {
@@ -299,7 +312,15 @@ Result<Block> stencil(std::span<const BlockPtr> blocks, const StencilMap& map,
             cells.push_back(merged.moved[sources[column]][cell]);
         }
     }
-    return Block::make(std::move(t), std::move(p), std::move(merged.table).take(), std::move(cells), height);
+    return Block::make(std::move(counts.first), std::move(counts.second), std::move(merged.table).take(),
+                       std::move(cells), height);
+}
+
+Status check_stencil_counts(std::span<const BlockGrid* const> grids, std::size_t rows, std::size_t columns,
+                            std::span<const std::string> names) {
+    if (Status size = check_stencil_shape(rows, columns, grids.size()); !size) return size;
+    WEAVE_CHECK_OK(stencil_counts(grids, rows, columns, names));
+    return {};
 }
 
 Result<Block> renumber_row(const Block& block, std::size_t row, std::span<const std::size_t> order) {

@@ -54,6 +54,11 @@ Result<Block> stencil(std::span<const BlockPtr> blocks, const StencilMap& map,
 /// have to agree in their counts.
 Status check_stencil_size(const BlockGrid& block, std::size_t rows, std::size_t columns);
 
+/// What stencil() refuses of blocks for their counts, told from their grids alone. Of one grid it tells whether the cloth
+/// would be too large.
+Status check_stencil_counts(std::span<const BlockGrid* const> grids, std::size_t rows, std::size_t columns,
+                            std::span<const std::string> names = {});
+
 /// Changes the insertion order of the picks of one row: the k-th pick becomes the one that was number
 /// order[k] of that row, from 0. Permutes rows of the card image within the row of the block and changes
 /// nothing else.

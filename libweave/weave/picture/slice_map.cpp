@@ -97,7 +97,8 @@ double drawn_length(const SliceMap& map, const SlicePath& path, std::size_t k, b
 
 }  // namespace
 
-SliceMap slice_map(const Subject& subject, const YarnColours& colours, const WeftRuns& runs) {
+SliceMap slice_map(const Subject& subject, const YarnColours& colours, const WeftRuns& runs,
+                   SliceLimits limits) {
     const Block& block = subject.block;
     const std::size_t line = subject.request.line;
     SliceMap map;
@@ -106,8 +107,8 @@ SliceMap slice_map(const Subject& subject, const YarnColours& colours, const Wef
     map.all_positions = warps_run ? block.rows() : block.columns();
     map.all_levels = block.height();
     map.begin = warps_run ? subject.request.first_row : subject.request.first_column;
-    map.positions = std::min(map.all_positions - map.begin, SliceMap::most_positions);
-    map.levels = std::min(map.all_levels, SliceMap::most_levels);
+    map.positions = std::min(map.all_positions - map.begin, limits.positions);
+    map.levels = std::min(map.all_levels, limits.levels);
     list_dots(subject, colours, map);
     list_paths(subject, map, warps_run ? block.p()[line] : block.t()[line]);
     for (std::size_t k = 0; k < map.paths.size(); ++k) {

@@ -40,8 +40,8 @@ struct SliceTurn {
 
 /// What a slice picture shows, apart from how it looks.
 struct SliceMap {
-    /// Slices are drawn up to this many positions, from the one asked for, and levels, from the bottom; a
-    /// note says so.
+    /// Pictures of slices show up to this many positions, from the one asked for, and levels, from the bottom;
+    /// a note says so.
     static constexpr std::size_t most_positions = 60, most_levels = 48;
     System dots = System::weft;
     std::size_t begin = 0;                  ///< row or column of the first position shown
@@ -52,9 +52,15 @@ struct SliceMap {
     std::vector<SliceTurn> turns;  ///< in wraparound, on sides that lie within the positions shown
 };
 
+/// How much of a slice is laid out.
+struct SliceLimits {
+    std::size_t positions = SliceMap::most_positions, levels = SliceMap::most_levels;
+};
+
 /// The slice that the request names. With `trim` loose dots are not listed; loose stretches of paths are left
 /// to the drawer.
-SliceMap slice_map(const Subject& subject, const YarnColours& colours, const WeftRuns& runs);
+SliceMap slice_map(const Subject& subject, const YarnColours& colours, const WeftRuns& runs,
+                   SliceLimits limits = {});
 
 /// How far beyond the outermost position a path that reaches the edge is drawn, in positions.
 inline constexpr double overhang = 0.62;
