@@ -1,16 +1,16 @@
 #pragma once
 
+#include <weave/sim/forecast.hpp>
+
 #include <algorithm>
 #include <cstddef>
 #include <cstdint>
 #include <map>
-#include <string>
 
 namespace weave::simd {
 
-/// Memory that a cloth of so many control points is expected to take while it relaxes, bytes. Measured: 980,000 points took
-/// 5.7 kB each at their most (docs/simulation), small ones some 30 MiB in all.
-std::uint64_t expected_bytes(std::size_t points);
+using sim::expected_bytes;
+using sim::memory_text;
 
 /// The memory of the machine that workers may have, and who has been promised how much.
 class Room {
@@ -29,8 +29,5 @@ class Room {
     std::uint64_t m_bytes;
     std::map<std::uint64_t, std::uint64_t> m_promised;
 };
-
-/// An amount of memory for people, such as `3.1 GiB`.
-std::string memory_text(std::uint64_t bytes);
 
 }  // namespace weave::simd

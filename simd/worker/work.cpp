@@ -5,13 +5,14 @@
 #include <weave/core/log.hpp>
 #include <weave/core/sha256.hpp>
 #include <weave/design/document.hpp>
+#include <weave/sim/forecast.hpp>
 #include <weave/sim/yarns_file.hpp>
 #include <weave/wire/frame.hpp>
+#include <weave/wire/shown.hpp>
 
 #include <algorithm>
 #include <simd/link/error_form.hpp>
 #include <simd/worker/memory.hpp>
-#include <simd/worker/shown.hpp>
 #include <utility>
 
 namespace weave::simd {
@@ -38,12 +39,6 @@ sim::RunRequest run_request(const WorkOrder& order) {
     request.start_from = order.simulation.start_from;
     request.flips = order.flips;
     return request;
-}
-
-std::size_t points_of(const sim::Plan& plan) {
-    std::size_t points = 0;
-    for (const sim::SimYarn& yarn : plan.scene.yarns) points += yarn.control.size();
-    return points;
 }
 
 /// An error of planning at its place in what was asked for.
@@ -107,7 +102,7 @@ Status Work::wait_for_admission() {
     const sim::Plan& plan = m_run->now().plan();
     tell({{"say", "planned"},
           {"title", m_run->now().design().title},
-          {"points", points_of(plan)},
+          {"points", sim::points_of(plan)},
           {"repeats", plan.repeats[0] * plan.repeats[1]},
           {"step", m_run->steps()},
           {"changes", m_changes_made}});
@@ -339,12 +334,12 @@ void Work::tell_layout() {
     const Laid laid{m_run->level(), parameters.wanted(System::warp).radius, parameters.wanted(System::weft).radius};
     if (m_order.is_job || m_laid == laid) return;
     m_laid = laid;
-    wire::Layout layout = layout_of(*m_run);
+    wire::Layout layout = wire::layout_of(*m_run);
     std::string sha256 = layout_sha256(layout);
     if (sha256 == m_layout_sha256) return;
     m_layout_sha256 = std::move(sha256);
     layout.layout = ++m_layout;
-    tell_event(layout, {{"layout", m_layout}, {"layout_sha256", m_layout_sha256}, {"points", points_of(m_run->now().plan())}});
+    tell_event(layout, {{"layout", m_layout}, {"layout_sha256", m_layout_sha256}, {"points", sim::points_of(m_run->now().plan())}});
 }
 
 void Work::tell_phase(wire::Phase phase) {
@@ -375,7 +370,7 @@ void Work::show(bool is_last) {
     if (!is_last) m_shown_last = false;
     m_last_shown = Clock::now();
     tell_layout();
-    wire::Frame frame = frame_of(*m_run);
+    wire::Frame frame = wire::frame_of(*m_run);
     frame.head.session = m_order.number;
     frame.head.number = ++m_frame;
     frame.head.step = m_step;

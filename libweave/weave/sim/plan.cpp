@@ -20,7 +20,6 @@ namespace {
 
 /// Wefts are inserted a little longer than the cloth is wide.
 constexpr double weft_excess = 0.01;
-constexpr double usual_strain = 1.01;  ///< the paper's target strain
 constexpr double most_neighbours = 1e4;  ///< of one contact sample, as a rough bound from above tells
 constexpr std::size_t rim_points = 2;  ///< control points held at a frozen end
 
@@ -430,6 +429,10 @@ Result<Fidelity> parse_fidelity(std::string_view text) {
 std::string_view name_of(Fidelity fidelity) {
     constexpr std::string_view names[]{"draft", "standard", "reference"};
     return names[static_cast<std::size_t>(fidelity)];
+}
+
+double goal_of(Fidelity fidelity) {
+    return resolution_of(fidelity).goal;
 }
 
 Json lines_json(const Plan& plan) {

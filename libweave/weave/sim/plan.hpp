@@ -21,6 +21,11 @@ enum class Fidelity : std::uint8_t {
 
 Result<Fidelity> parse_fidelity(std::string_view text);
 std::string_view name_of(Fidelity fidelity);
+/// The residual that a fidelity asks for where nobody says otherwise.
+double goal_of(Fidelity fidelity);
+
+/// Target strain of the ends where a scene does not say: the paper's.
+inline constexpr double usual_strain = 1.01;
 
 /// What to simulate of a design, and how finely. What is absent follows from the design and the fidelity.
 struct SimulationRequest {

@@ -1,10 +1,10 @@
-#include <simd/worker/shown.hpp>
+#include <weave/wire/shown.hpp>
 
 #include <weave/loom/pick_table.hpp>
 
 #include <algorithm>
 
-namespace weave::simd {
+namespace weave::wire {
 
 namespace {
 
@@ -18,11 +18,11 @@ double shown_radius(const sim::PlanRun& now, std::size_t yarn) {
 
 }  // namespace
 
-wire::Layout layout_of(const sim::Run& run) {
+Layout layout_of(const sim::Run& run) {
     const sim::PlanRun& now = run.now();
     const sim::Plan& plan = now.plan();
     const Design& design = now.design();
-    wire::Layout layout;
+    Layout layout;
     layout.fidelity = plan.fidelity;
     layout.is_periodic = now.scene().is_periodic;
     layout.repeats = {plan.repeats[0], plan.repeats[1]};
@@ -30,7 +30,7 @@ wire::Layout layout_of(const sim::Run& run) {
         const YarnCurve& curve = plan.curves.yarns[plan.curve_of[y]];
         const sim::SimYarn& yarn = now.scene().yarns[y];
         const bool warp = curve.system == System::warp;
-        wire::LayoutYarn shown;
+        LayoutYarn shown;
         shown.system = curve.system;
         shown.number = curve.number;
         shown.beam = warp ? design.warp.beam_order.at(curve.number) : 0;
@@ -44,13 +44,13 @@ wire::Layout layout_of(const sim::Run& run) {
     return layout;
 }
 
-wire::Frame frame_of(const sim::Run& run) {
+Frame frame_of(const sim::Run& run) {
     const sim::PlanRun& now = run.now();
-    wire::Frame frame;
+    Frame frame;
     frame.head.size_mm = now.scene().period_mm;
     double smallest = 1e300;
     for (std::size_t y = 0; y < now.scene().yarns.size(); ++y) smallest = std::min({smallest, now.scene().yarns[y].radius_mm, shown_radius(now, y)});
-    frame.head.quantum_mm = wire::quantum_for(smallest);
+    frame.head.quantum_mm = quantum_for(smallest);
     frame.head.is_coarse = run.is_coarse();
     for (const std::vector<Vec3>& points : now.control()) {
         frame.counts.push_back(static_cast<std::uint32_t>(points.size()));
@@ -59,4 +59,4 @@ wire::Frame frame_of(const sim::Run& run) {
     return frame;
 }
 
-}  // namespace weave::simd
+}  // namespace weave::wire
