@@ -166,6 +166,8 @@ void Document::ask_for_cloth() {
 void Document::take(const QString& block, const Cloth& cloth) {
     const std::string name = block.toStdString();
     if (!cloth.thumbnail.isNull()) m_thumbnails[name] = cloth.thumbnail;
+    if (cloth.block) m_grids.insert_or_assign(name, cloth.block->grid());
+    else m_grids.erase(name);
     if (name == m_focus.block()) {
         const bool is_other = m_shown_block != name;
         m_shown = cloth;
@@ -183,6 +185,11 @@ void Document::take(const QString& block, const Cloth& cloth) {
 QImage Document::thumbnail_of(const std::string& block) const {
     const auto found = m_thumbnails.find(block);
     return found == m_thumbnails.end() ? QImage() : found->second;
+}
+
+const BlockGrid* Document::grid_of(const std::string& block) const {
+    const auto found = m_grids.find(block);
+    return found == m_grids.end() ? nullptr : &found->second;
 }
 
 // ---- The file ----

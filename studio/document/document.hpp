@@ -57,6 +57,8 @@ class Document : public QObject {
     /// The cloth of the design, as it was made last.
     [[nodiscard]] const Cloth& whole() const { return m_whole; }
     [[nodiscard]] QImage thumbnail_of(const std::string& block) const;
+    /// Picks of the rows and ends of the columns of a block, as it was made last; null where it was not.
+    [[nodiscard]] const BlockGrid* grid_of(const std::string& block) const;
 
     /// Writes the file in the background; saved() or not_saved() follows.
     void save(const QString& path);
@@ -94,6 +96,7 @@ class Document : public QObject {
     Cloth m_shown, m_whole;
     std::string m_shown_block;
     std::map<std::string, QImage> m_thumbnails;
+    std::map<std::string, BlockGrid> m_grids;
     ClothMaker m_maker;
     Keeper m_keeper;
 };

@@ -28,6 +28,7 @@
 #include <studio/window/block_actions.hpp>
 #include <studio/window/design_files.hpp>
 #include <studio/window/message_bar.hpp>
+#include <studio/window/slice_desk.hpp>
 #include <studio/window/start_page.hpp>
 #include <studio/window/viewer_desk.hpp>
 
@@ -35,7 +36,7 @@ namespace weave::studio {
 
 MainWindow::MainWindow(QWidget* parent)
     : QMainWindow(parent), m_files(new DesignFiles(this)), m_pages(new QStackedWidget), m_work(new QSplitter), m_start(new StartPage),
-      m_editors(new QTabWidget), m_card(new CardEditor), m_viewport(new Viewport), m_viewer(new ViewerDesk(*m_viewport, this)), m_tree(new DesignTree), m_findings(new FindingsPanel), m_messages(new MessageBar), m_status(new QLabel) {
+      m_editors(new QTabWidget), m_card(new CardEditor), m_slice(new SliceEditor), m_slice_desk(new SliceDesk(*m_slice, this)), m_viewport(new Viewport), m_viewer(new ViewerDesk(*m_viewport, this)), m_tree(new DesignTree), m_findings(new FindingsPanel), m_messages(new MessageBar), m_status(new QLabel) {
     setObjectName("studio");
     resize(1440, 920);
     make_workspace();
@@ -51,6 +52,7 @@ MainWindow::MainWindow(QWidget* parent)
 
 MainWindow::~MainWindow() {
     m_card->show_document(nullptr);
+    m_slice_desk->show_document(nullptr);
     m_viewer->show_document(nullptr);
     m_tree->show_document(nullptr);
     m_findings->show_document(nullptr);
@@ -59,6 +61,7 @@ MainWindow::~MainWindow() {
 void MainWindow::make_workspace() {
     m_editors->setDocumentMode(true);
     m_editors->addTab(m_card, tr("Card"));
+    m_editors->addTab(m_slice, tr("Section (slice)"));
     auto* whole = new QWidget;
     auto* column = new QVBoxLayout(whole);
     column->setContentsMargins(0, 0, 0, 0);
@@ -73,6 +76,13 @@ void MainWindow::make_workspace() {
     m_work->setChildrenCollapsible(false);
     setCentralWidget(whole);
     connect(m_card, &CardEditor::told, this, &MainWindow::tell);
+    connect(m_card, &CardEditor::slice_wanted, this, [this](System dots, const CardPlace& place) {
+        m_slice_desk->show_section(dots, place);
+        m_editors->setCurrentWidget(m_slice);
+    });
+    connect(m_slice, &SliceEditor::status, this, &MainWindow::tell);
+    connect(m_slice_desk, &SliceDesk::failed, this, &MainWindow::warn);
+    connect(m_slice_desk, &SliceDesk::flip_wanted, this, &MainWindow::flip_at_once);
     connect(m_viewer, &ViewerDesk::told, this, &MainWindow::tell);
     connect(m_viewer, &ViewerDesk::attach_wanted, this, [this](Face face) {
         if (m_blocks != nullptr) m_blocks->ask_what_to_attach(m_document->shown_block(), face, QCursor::pos());
@@ -128,6 +138,13 @@ void MainWindow::make_docks() {
     });
 }
 
+void MainWindow::flip_at_once(const CardPlace& place) {
+    m_document->focus().go_to(place);
+    const auto step = flip_crossing(*m_document, place);
+    if (!step) return tell(QString::fromStdString(step.error().text()));
+    if (Status made = m_document->perform(*step); !made) warn(QString::fromStdString(made.error().text()));
+}
+
 /// Offers two yarns that cross to change sides, or says why they cannot.
 void MainWindow::flip(const CardPlace& place) {
     m_document->focus().go_to(place);
@@ -156,6 +173,7 @@ void MainWindow::show_start_page() {
 void MainWindow::close_document() {
     if (!m_document) return;
     m_card->show_document(nullptr);
+    m_slice_desk->show_document(nullptr);
     m_viewer->show_document(nullptr);
     m_tree->show_document(nullptr);
     m_findings->show_document(nullptr);
@@ -172,6 +190,7 @@ void MainWindow::take(std::unique_ptr<Document> document) {
     connect(m_blocks, &BlockActions::told, this, &MainWindow::tell);
     follow_document();
     m_card->show_document(m_document.get());
+    m_slice_desk->show_document(m_document.get());
     m_viewer->show_document(m_document.get());
     m_tree->show_document(m_document.get());
     m_findings->show_document(m_document.get());

@@ -20,6 +20,8 @@ class DesignFiles;
 class DesignTree;
 class FindingsPanel;
 class MessageBar;
+class SliceDesk;
+class SliceEditor;
 class StartPage;
 class ViewerDesk;
 class Viewport;
@@ -65,6 +67,7 @@ class MainWindow : public QMainWindow {
     void tell(const QString& words);
     void warn(const QString& reason);
     void flip(const CardPlace& place);
+    void flip_at_once(const CardPlace& place);
     void opened(const Design& design, const QString& path, const QStringList& warnings);
     QAction* add(QMenu& menu, const QString& text, const QKeySequence& keys, std::function<void()> deed, bool needs_design = true);
     [[nodiscard]] std::string chosen_block() const;
@@ -77,6 +80,8 @@ class MainWindow : public QMainWindow {
     StartPage* m_start;
     QTabWidget* m_editors;
     CardEditor* m_card;
+    SliceEditor* m_slice;
+    SliceDesk* m_slice_desk;
     Viewport* m_viewport;
     ViewerDesk* m_viewer;
     DesignTree* m_tree;

@@ -2,6 +2,7 @@
 
 #include <algorithm>
 #include <studio/jobs/background.hpp>
+#include <utility>
 
 namespace weave::studio {
 
@@ -18,37 +19,33 @@ bool holds(const Region& region, std::size_t row, std::size_t column) {
     return row >= region.first_row && row <= region.last_row && column >= region.first_column && column <= region.last_column;
 }
 
-/// A model, or why there is none.
-struct Planned {
-    std::shared_ptr<TubeModel> model;
-    QString trouble;
-};
-
-Planned planned_model(const Design& design, const Block& block, const std::optional<Region>& region, ColourBy colour) {
+Result<ClothCurves> planned_curves(const Design& design, const Block& block, const std::optional<Region>& region) {
     CurveOptions options;
     options.region = region;
     // Turns lie at the sides; a part without sides has none, and need not follow every shuttle through the whole cloth.
     if (region && region->first_column > 0 && region->last_column + 1 < block.columns()) options.weft_mode = WeftMode::periodic;
-    const auto curves = cloth_curves(design, block, options);
-    if (!curves) return {nullptr, QString::fromStdString(curves.error().text())};
-    auto model = TubeModel::planned(design, *curves, colour == ColourBy::system ? colour : ColourBy::yarn);
-    if (!model) return {nullptr, QString::fromStdString(model.error().text())};
-    return {std::make_shared<TubeModel>(std::move(*model)), {}};
+    return cloth_curves(design, block, options);
 }
 
 }  // namespace
 
-ViewerDesk::ViewerDesk(Viewport& viewport, QObject* parent) : QObject(parent), m_viewport(viewport) {
-    connect(&viewport, &Viewport::yarn_clicked, this, [this](System system, std::size_t number) {
+ViewerDesk::ViewerDesk(ViewerPanel& panel, QObject* parent) : QObject(parent), m_panel(panel) {
+    connect(&panel, &ViewerPanel::mode_changed, this, &ViewerDesk::show_caption);
+    if (panel.viewport() != nullptr) follow_clicks();
+}
+
+void ViewerDesk::follow_clicks() {
+    Viewport* viewport = m_panel.viewport();
+    connect(viewport, &Viewport::yarn_clicked, this, [this](System system, std::size_t number) {
         if (m_document == nullptr) return;
         CardPlace place = m_document->focus().place().value_or(CardPlace{});
         (system == System::weft ? place.pick : place.end) = number;
         m_document->focus().go_to(place);
     });
-    connect(&viewport, &Viewport::crossing_clicked, this, [this](std::size_t pick, std::size_t end) {
+    connect(viewport, &Viewport::crossing_clicked, this, [this](std::size_t pick, std::size_t end) {
         if (m_document != nullptr) Q_EMIT flip_wanted({pick, end});
     });
-    connect(&viewport, &Viewport::face_clicked, this, &ViewerDesk::attach_wanted);
+    connect(viewport, &Viewport::face_clicked, this, &ViewerDesk::attach_wanted);
 }
 
 void ViewerDesk::show_document(Document* document) {
@@ -57,11 +54,9 @@ void ViewerDesk::show_document(Document* document) {
         m_document->focus().disconnect(this);
     }
     m_document = document;
-    m_planned.reset();
-    m_relaxed.reset();
     m_shown_block.clear();
     ++m_wanted;
-    m_viewport.set_model(nullptr);
+    m_panel.set_planned(nullptr, nullptr);
     if (document == nullptr) return;
     connect(document, &Document::shown_made, this, &ViewerDesk::plan);
     connect(&document->focus(), &Focus::place_changed, this, [this] {
@@ -86,10 +81,9 @@ void ViewerDesk::plan() {
     if (m_document == nullptr) return;
     const BlockPtr block = m_document->shown().block;
     if (!block) {
-        m_planned.reset();
         const auto& error = m_document->shown().error;
-        m_viewport.set_empty_words(error ? QString::fromStdString(error->text()) : tr("The block is being made."));
-        return show_model();
+        if (Viewport* viewport = m_panel.viewport()) viewport->set_empty_words(error ? QString::fromStdString(error->text()) : tr("The block is being made."));
+        return m_panel.set_planned(nullptr, nullptr);
     }
     if (m_is_planning) {
         m_plan_again = true;
@@ -105,51 +99,36 @@ void ViewerDesk::plan() {
                       .arg(block->first_end(region->first_column) + 1)
                       .arg(block->first_end(region->last_column + 1));
     const std::uint64_t wanted = m_wanted;
+    auto design = std::make_shared<const Design>(m_document->design());
     in_background(
-        this, [design = m_document->design(), block, region, colour = m_colour] { return planned_model(design, *block, region, colour); },
-        [this, wanted, region, caption](Planned planned) {
+        this, [design, block, region] { return planned_curves(*design, *block, region); },
+        [=, this](Result<ClothCurves> curves) {
             m_is_planning = false;
             if (wanted == m_wanted) {
                 m_region = region;
-                if (!planned.model) m_viewport.set_empty_words(planned.trouble);
-                show_planned(std::move(planned.model), caption);
+                m_caption = caption;
+                if (curves) {
+                    show_planned(design, std::make_shared<const ClothCurves>(std::move(*curves)));
+                } else {
+                    m_panel.set_planned(nullptr, nullptr);
+                    if (Viewport* viewport = m_panel.viewport()) viewport->set_empty_words(QString::fromStdString(curves.error().text()));
+                }
             }
             if (std::exchange(m_plan_again, false)) plan();
         });
 }
 
-void ViewerDesk::show_planned(std::shared_ptr<TubeModel> model, const QString& caption) {
-    m_planned = std::move(model);
-    m_caption = caption;
+void ViewerDesk::show_planned(std::shared_ptr<const Design> design, std::shared_ptr<const ClothCurves> curves) {
     const bool is_other = m_shown_block != m_document->shown_block();
     m_shown_block = m_document->shown_block();
-    show_model();
-    if (is_other && !shows_relaxed()) m_viewport.fit();
+    m_panel.set_planned(std::move(design), std::move(curves));
+    show_caption();
+    if (!is_other || m_panel.mode() != ViewerPanel::Mode::planned || m_panel.viewport() == nullptr) return;
+    connect(&m_panel, &ViewerPanel::model_shown, this, [this] { m_panel.viewport()->fit(); }, Qt::SingleShotConnection);
 }
 
-void ViewerDesk::show_relaxed(std::shared_ptr<const Yarns> yarns) {
-    m_relaxed.reset();
-    if (yarns) {
-        auto model = TubeModel::relaxed(std::move(yarns), m_colour);
-        if (model) m_relaxed = std::make_shared<TubeModel>(std::move(*model));
-        else Q_EMIT told(QString::fromStdString(model.error().text()));
-    }
-    show_model();
-}
-
-void ViewerDesk::prefer_relaxed(bool relaxed) {
-    m_prefers_relaxed = relaxed;
-    show_model();
-}
-
-void ViewerDesk::set_colour(ColourBy colour) {
-    m_colour = colour;
-    m_viewport.set_colour(colour);
-}
-
-void ViewerDesk::show_model() {
-    m_viewport.set_model(shows_relaxed() ? m_relaxed : m_planned);
-    m_viewport.set_caption(shows_relaxed() ? QString() : m_caption);
+void ViewerDesk::show_caption() {
+    if (Viewport* viewport = m_panel.viewport()) viewport->set_caption(m_panel.mode() == ViewerPanel::Mode::planned ? m_caption : QString());
 }
 
 }  // namespace weave::studio

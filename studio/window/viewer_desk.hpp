@@ -1,7 +1,6 @@
 #pragma once
 
 #include <weave/curve/cloth_curves.hpp>
-#include <weave/sim/yarns.hpp>
 
 #include <QObject>
 
@@ -9,11 +8,11 @@
 #include <memory>
 #include <optional>
 #include <studio/document/document.hpp>
-#include <studio/viewport/viewport.hpp>
+#include <studio/viewport/viewer_panel.hpp>
 
 namespace weave::studio {
 
-/// Brings the block that is shown into the 3D viewer, as it is planned or as it relaxed, and what is clicked there to the document.
+/// Brings the block that is shown into the 3D viewer, as it is planned, and what is clicked there to the document.
 class ViewerDesk : public QObject {
     Q_OBJECT
   public:
@@ -21,15 +20,9 @@ class ViewerDesk : public QObject {
     /// within a blink.
     static constexpr std::size_t most_rows = 24, most_columns = 24;
 
-    ViewerDesk(Viewport& viewport, QObject* parent);
+    ViewerDesk(ViewerPanel& panel, QObject* parent);
 
     void show_document(Document* document);
-    /// Relaxed yarns of the design's cloth, or of a part of it; null: there are none (any more).
-    void show_relaxed(std::shared_ptr<const Yarns> yarns);
-    /// Whether relaxed yarns are wanted where there are some; else the plan is shown.
-    void prefer_relaxed(bool relaxed);
-    [[nodiscard]] bool shows_relaxed() const { return m_prefers_relaxed && m_relaxed; }
-    void set_colour(ColourBy colour);
 
   Q_SIGNALS:
     void told(const QString& words);
@@ -39,18 +32,17 @@ class ViewerDesk : public QObject {
     void flip_wanted(const weave::CardPlace& place);
 
   private:
+    void follow_clicks();
     void plan();
-    void show_planned(std::shared_ptr<TubeModel> model, const QString& caption);
-    void show_model();
+    void show_planned(std::shared_ptr<const Design> design, std::shared_ptr<const ClothCurves> curves);
+    void show_caption();
     [[nodiscard]] std::optional<Region> region_to_show(const Block& block) const;
 
-    Viewport& m_viewport;
+    ViewerPanel& m_panel;
     Document* m_document = nullptr;
-    std::shared_ptr<TubeModel> m_planned, m_relaxed;
     QString m_caption;
     std::optional<Region> m_region;  ///< that is planned
-    ColourBy m_colour = ColourBy::yarn;
-    bool m_prefers_relaxed = true, m_is_planning = false, m_plan_again = false;
+    bool m_is_planning = false, m_plan_again = false;
     std::string m_shown_block;
     std::uint64_t m_wanted = 0;
 };

@@ -25,6 +25,8 @@ TEST_CASE("screens", "[.screens]") {
     keep(window, "start");
     window.show_sample("pocket");
     keep(window, "pocket");
+    window.findChild<QTabWidget*>()->setCurrentIndex(1);
+    keep(window, "pocket-slice");
     window.show_sample("shoe-adult");
     QTest::qWait(1000);
     keep(window, "shoe");

@@ -1,0 +1,11 @@
+#pragma once
+
+#include <QString>
+
+namespace weave::studio {
+
+/// An order of yarns or feeders as documents write it, counted from 0 (`0*12 1 0+1`), with every number moved: by 1 as people
+/// read it, by -1 back. What is no number stays, and with it whatever is wrong.
+QString with_numbers_moved(const QString& order, int by);
+
+}  // namespace weave::studio

@@ -1,0 +1,50 @@
+#pragma once
+
+#include <weave/core/json.hpp>
+#include <weave/design/design.hpp>
+
+#include <QWidget>
+
+#include <studio/document/document.hpp>
+
+class QDoubleSpinBox;
+class QLabel;
+class QLineEdit;
+class QPlainTextEdit;
+
+namespace weave::studio {
+
+class YarnTable;
+
+/// How the cloth is set up: title and notes, the yarns of warp and weft, their order over ends and picks, and densities. What is typed
+/// becomes a step of the document once it is right; until then it says what is wrong.
+class YarnsPanel : public QWidget {
+    Q_OBJECT
+  public:
+    explicit YarnsPanel(QWidget* parent = nullptr);
+    void show_document(Document* document);
+
+  private:
+    /// The fields of a system.
+    struct Side {
+        YarnTable* yarns = nullptr;
+        QLineEdit* order = nullptr;
+        QDoubleSpinBox* density = nullptr;
+        QLineEdit* feeders = nullptr;  ///< names of the weft's feeders with their yarns
+    };
+    QWidget* make_side(Side& side, bool is_warp);
+    void show_plans();
+    void take_warp();
+    void take_weft();
+    void take_title();
+    void tell(const Status& status);
+
+    Document* m_document = nullptr;
+    QLineEdit* m_title;
+    QPlainTextEdit* m_notes;
+    Side m_warp, m_weft;
+    QLabel* m_trouble;
+    bool m_is_filling = false;
+};
+
+}  // namespace weave::studio
