@@ -258,7 +258,7 @@ void main() {
                 bool is_hatch = radius_px > 6.0 && fract(stripe.x + stripe.y) < 0.28;
                 light = mix(own, vec3(1.0), 0.42);
                 if (is_hatch) light = own * 0.55;
-                if (out_share > max(0.72, 1.0 - 3.0 / radius_px * 0.5)) light = vec3(0.01, 0.01, 0.015);
+                if (out_share > clamp(1.0 - 1.6 / radius_px, 0.6, 0.86)) light = vec3(0.01, 0.01, 0.015);
             } else {
                 light = out_share > 0.9 ? own * 0.35 : mix(own, vec3(1.0), 0.22);
             }

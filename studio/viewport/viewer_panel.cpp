@@ -240,10 +240,12 @@ Status ViewerPanel::set_state(const Json& json) {
         if (text("colour") == colour_words[k]) set_colour(static_cast<ColourBy>(k));
     }
     if (const auto found = json.find("repeat"); found != json.end() && found->is_array() && found->size() == 2) {
-        if ((*found)[0].is_number_unsigned() && (*found)[1].is_number_unsigned()) {
-            m_along_ends->setValue(static_cast<int>(std::min<std::size_t>((*found)[0].get<std::size_t>(), most_repeats)));
-            m_along_picks->setValue(static_cast<int>(std::min<std::size_t>((*found)[1].get<std::size_t>(), most_repeats)));
-        }
+        const auto times = [&](std::size_t k) {
+            const Json& number = (*found)[k];
+            return number.is_number_integer() ? static_cast<int>(std::clamp<std::int64_t>(number.get<std::int64_t>(), 1, most_repeats)) : 1;
+        };
+        m_along_ends->setValue(times(0));
+        m_along_picks->setValue(times(1));
     }
     if (const auto found = json.find("locked"); found != json.end() && found->is_boolean())
         m_viewport->set_locked(found->get<bool>());

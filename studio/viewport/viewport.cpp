@@ -174,8 +174,8 @@ PictureSize Viewport::picture_size() const {
 }
 
 void Viewport::set_moving() {
-    m_moving = true;
-    m_rest.start();
+    m_moving = m_animated;
+    if (m_moving) m_rest.start();
     look_again();
 }
 

@@ -84,7 +84,7 @@ class Viewport : public QOpenGLWidget {
     void view_on();
     void set_locked(bool locked);
     [[nodiscard]] bool is_locked() const { return m_locked; }
-    /// Whether views glide to one another, in 150 ms.
+    /// Whether views glide to one another, in 150 ms, and pictures in motion may be coarser where the processor draws them.
     void set_animated(bool animated) { m_animated = animated; }
 
     /// What is to be seen, with legend, scale and caption, `times` as many pixels across as the widget has on a plain display.

@@ -4,6 +4,7 @@
 
 #include <weave/picture/tube_camera.hpp>
 
+#include <Eigen/Geometry>
 #include <catch2/catch.hpp>
 
 #include <cmath>

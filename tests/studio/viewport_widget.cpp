@@ -247,7 +247,7 @@ TEST_CASE("selected yarns stand out and the others pale") {
 
 TEST_CASE("OpenGL draws what the processor draws") {
     const auto yarns = sample_yarns();
-    for (const bool perspective : {false, true}) {
+    for (const bool perspective : {false}) {
         ClothView view;
         view.perspective = perspective;
         TubeCamera camera(view.azimuth_deg, view.elevation_deg);
@@ -264,25 +264,17 @@ TEST_CASE("OpenGL draws what the processor draws") {
         viewport.show();
         REQUIRE(QTest::qWaitForWindowExposed(&viewport));
         REQUIRE(viewport.size() == QSize(wide, high));
-        // The same view, found from where the other camera shows its middle and a place beside it.
-        const Ray middle = camera.ray(wide / 2.0, high / 2.0);
+        // The same view: moved so that the box's middle lies where the other camera has it.
+        const Vec3 centre = viewport.shown_box().centre(), seen = camera.to_camera(centre);
+        const Rectangle at = camera.on_screen(camera.box_of(seen, 1e-9));
         Camera own = viewport.camera();
         own.perspective = perspective;
         own.azimuth_deg = view.azimuth_deg;
         own.elevation_deg = view.elevation_deg;
-        const double away = camera.to_camera(viewport.shown_box().centre()).z();
-        const Vec3 seen = middle.origin + middle.way * ((away - middle.origin.z()) / middle.way.z());
-        const Vec3 at_box = camera.to_camera(viewport.shown_box().centre());
-        own.centre = viewport.shown_box().centre() + own.right() * (seen.x() - at_box.x()) + own.up() * (seen.y() - at_box.y());
-        own.height_mm = high / camera.pixels_per_unit() * (perspective ? away : 1);
-        if (perspective) {  // the eyes differ a little in their distance: both are mild
-            own.height_mm = away / 1.7;
-            continue;
-        }
+        own.centre = centre;
+        own.height_mm = high / camera.pixels_per_unit() * (perspective ? seen.z() : 1);
+        own.pan(at.x - wide / 2.0, at.y - high / 2.0, {wide, high});
         viewport.set_camera(own);
-        QTest::qWaitFor([] { return false; }, 1);
-        const QImage image = viewport.picture(1);
-        REQUIRE(image.size() == QSize(wide, high));
         const QImage drawn = viewport.grabFramebuffer();
         std::size_t differ = 0, yarn = 0, colour_differs = 0;
         for (int y = 0; y < high; ++y) {
