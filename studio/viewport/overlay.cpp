@@ -187,7 +187,7 @@ void Overlay::box(const Box& box, const Camera& camera, std::optional<Face> mark
         if (!is_seen(box, face, camera)) continue;
         QColor line = m_accent, fill = m_accent;
         line.setAlpha(150);
-        fill.setAlpha(face == marked ? 92 : 0);
+        fill.setAlpha(face == marked ? 74 : 0);
         m_painter.setPen(QPen(line, face == marked ? 2.5 : 1.2, Qt::SolidLine, Qt::RoundCap, Qt::RoundJoin));
         m_painter.setBrush(fill);
         m_painter.drawPolygon(outline(face));

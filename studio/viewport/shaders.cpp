@@ -186,19 +186,23 @@ uint state_of(uvec2 seen) { return seen.x == 0u ? 0u : texelFetch(u_yarns, int(s
 #ifdef HOLLOWS
 // Depths around tell how much of the sky other yarns take.
 float hidden(vec2 pixel, vec3 place, vec3 normal, float radius) {
-    const vec2 ways[12] = vec2[12](vec2(1.0, 0.1), vec2(0.45, 0.85), vec2(-0.55, 0.8), vec2(-1.0, -0.05), vec2(-0.4, -0.9),
-                                   vec2(0.5, -0.8), vec2(0.42, 0.25), vec2(-0.03, 0.5), vec2(-0.45, 0.22), vec2(-0.42, -0.28),
-                                   vec2(0.02, -0.48), vec2(0.44, -0.24));
+    const int looks = 20;
     float sum = 0.0;
     ivec2 last = textureSize(u_depth, 0) - 1;
-    for (int k = 0; k < 12; ++k) {
-        vec2 at = pixel + ways[k] * u_reach;
+    // A spiral of golden angles; neighbouring pixels begin it at other angles, so that no outline is seen twice.
+    int order = (int(pixel.x) & 1) + 2 * ((int(pixel.x) + int(pixel.y)) & 1);
+    float first = 0.3 * float(order);
+    vec2 spoke = vec2(cos(first), sin(first));
+    const mat2 turn = mat2(-0.737369, 0.675490, -0.675490, -0.737369);
+    for (int k = 0; k < looks; ++k) {
+        vec2 at = pixel + spoke * (u_reach * sqrt((float(k) + 0.7) / float(looks)));
+        spoke = turn * spoke;
         ivec2 texel = clamp(ivec2(at), ivec2(0), last);
         vec3 to = place_of(vec2(texel) + 0.5, texelFetch(u_depth, texel, 0).x) - place;
         float far2 = dot(to, to);
         sum += max(0.0, dot(to, normal) * inversesqrt(far2 + 1e-12) - 0.12) / (1.0 + far2 / (6.0 * radius * radius));
     }
-    return sum / 12.0;
+    return sum / float(looks);
 }
 #endif
 
@@ -254,7 +258,7 @@ void main() {
                 bool is_hatch = radius_px > 6.0 && fract(stripe.x + stripe.y) < 0.28;
                 light = mix(own, vec3(1.0), 0.42);
                 if (is_hatch) light = own * 0.55;
-                if (out_share > max(0.72, 1.0 - 3.0 / radius_px * 0.5)) light = vec3(0.01, 0.01, 0.015);
+                if (out_share > clamp(1.0 - 1.6 / radius_px, 0.6, 0.86)) light = vec3(0.01, 0.01, 0.015);
             } else {
                 light = out_share > 0.9 ? own * 0.35 : mix(own, vec3(1.0), 0.22);
             }

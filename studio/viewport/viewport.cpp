@@ -25,7 +25,18 @@ constexpr Colour light_top{0xfc, 0xfd, 0xfe}, light_bottom{0xe6, 0xea, 0xee}, da
 
 }  // namespace
 
-Viewport::Viewport(QWidget* parent) : QOpenGLWidget(parent) {
+OverlaySheet::OverlaySheet(Viewport& viewport) : QWidget(&viewport), m_viewport(viewport) {
+    setAttribute(Qt::WA_TransparentForMouseEvents);
+    setAttribute(Qt::WA_NoSystemBackground);
+    setFocusPolicy(Qt::NoFocus);
+}
+
+void OverlaySheet::paintEvent(QPaintEvent*) {
+    QPainter painter(this);
+    m_viewport.paint_over(painter, rect(), true);
+}
+
+Viewport::Viewport(QWidget* parent) : QOpenGLWidget(parent), m_sheet(*this) {
     QSurfaceFormat format;
     format.setVersion(3, 3);
     format.setProfile(QSurfaceFormat::CoreProfile);
@@ -43,7 +54,7 @@ Viewport::Viewport(QWidget* parent) : QOpenGLWidget(parent) {
     m_rest.setInterval(rest_ms);
     connect(&m_rest, &QTimer::timeout, this, [this] {
         m_moving = false;
-        update();
+        look_again();
     });
     m_settled.setSingleShot(true);
     m_settled.setInterval(settled_ms);
@@ -72,7 +83,7 @@ void Viewport::set_model(std::shared_ptr<TubeModel> model) {
         if (!m_is_fitted) fit();
     }
     update_states();
-    update();
+    look_again();
 }
 
 Status Viewport::update_points(const std::vector<std::vector<Vec3>>& control) {
@@ -87,7 +98,7 @@ void Viewport::set_colour(ColourBy colour) {
     if (m_model == nullptr || m_model->colour() == colour) return;
     m_model->set_colour(colour);
     m_painter.touch_knots();
-    update();
+    look_again();
 }
 
 void Viewport::set_repeat(std::array<std::size_t, 2> repeat) {
@@ -95,13 +106,13 @@ void Viewport::set_repeat(std::array<std::size_t, 2> repeat) {
         const bool repeats = m_model == nullptr || m_model->is_periodic()[axis];
         m_shown.repeat[axis] = repeats ? std::clamp<std::size_t>(repeat[axis], 1, most_repeats) : 1;
     }
-    update();
+    look_again();
 }
 
 void Viewport::set_clip(std::optional<Plane> clip) {
     m_shown.clip = std::move(clip);
     clear_hover();
-    update();
+    look_again();
 }
 
 Box Viewport::shown_box() const {
@@ -123,17 +134,18 @@ void Viewport::set_attach_mode(bool attach) {
     m_attach = attach;
     let_go();
     clear_hover();
-    update();
+    look_again();
+    Q_EMIT attach_mode_changed(attach);
 }
 
 void Viewport::set_caption(const QString& text) {
     m_caption = text;
-    update();
+    look_again();
 }
 
 void Viewport::set_empty_words(const QString& text) {
     m_empty_words = text;
-    update();
+    look_again();
 }
 
 void Viewport::update_states() {
@@ -152,7 +164,7 @@ void Viewport::update_states() {
         for (std::uint8_t& state : states) state = state == yarn_plain ? std::uint8_t{yarn_dimmed} : state;
     }
     m_painter.set_states(std::move(states));
-    update();
+    look_again();
 }
 
 // ---- The camera ----
@@ -162,9 +174,9 @@ PictureSize Viewport::picture_size() const {
 }
 
 void Viewport::set_moving() {
-    m_moving = true;
-    m_rest.start();
-    update();
+    m_moving = m_animated;
+    if (m_moving) m_rest.start();
+    look_again();
 }
 
 void Viewport::move_camera(const Camera& camera) {
@@ -257,7 +269,7 @@ void Viewport::set_locked(bool locked) {
     if (m_locked == locked) return;
     m_locked = locked;
     m_glide.stop();
-    update();
+    look_again();
     Q_EMIT locked_changed(locked);
 }
 
@@ -278,6 +290,12 @@ void Viewport::release() {
     doneCurrent();
 }
 
+/// The yarns and what is written over them.
+void Viewport::look_again() {
+    update();
+    m_sheet.update();
+}
+
 void Viewport::place_cube() {
     const double side = std::min({fontMetrics().height() * 6.5, width() * 0.3, height() * 0.32}), rim = fontMetrics().height() * 0.5;
     m_cube.set_place({width() - side - rim, rim, side, side});
@@ -286,6 +304,7 @@ void Viewport::place_cube() {
 void Viewport::resizeEvent(QResizeEvent* event) {
     QOpenGLWidget::resizeEvent(event);
     place_cube();
+    m_sheet.setGeometry(rect());
     if (m_model != nullptr && !m_history.can_go_back() && !m_locked) {
         // Until somebody moves it the view stays fitted to the window.
         m_is_fitted = false;
@@ -330,15 +349,11 @@ void Viewport::paintGL() {
             frame.scale = 2;
         }
         draw_yarns(frame);
-    } else if (m_painter.has_started()) {
+    } else {
         const QColor ground = palette().color(QPalette::Window);
         context()->functions()->glClearColor(ground.redF(), ground.greenF(), ground.blueF(), 1);
         context()->functions()->glClear(GL_COLOR_BUFFER_BIT | GL_DEPTH_BUFFER_BIT);
     }
-    QPainter painter(this);
-    painter.setFont(font());
-    if (!can_draw && !m_painter.has_started()) painter.fillRect(rect(), palette().color(QPalette::Window));
-    paint_over(painter, rect(), true);
 }
 
 void Viewport::paint_over(QPainter& painter, const QRectF& area, bool for_screen) {

@@ -15,6 +15,22 @@
 
 namespace weave::studio {
 
+class Viewport;
+
+/// What is written over the yarns, as a widget of its own: drawn by the processor, which makes smooth lines where OpenGL has none,
+/// and without drawing the yarns again.
+class OverlaySheet : public QWidget {
+    Q_OBJECT
+  public:
+    explicit OverlaySheet(Viewport& viewport);
+
+  protected:
+    void paintEvent(QPaintEvent* event) override;
+
+  private:
+    Viewport& m_viewport;
+};
+
 /// A pick or an end, by its number from 0.
 struct YarnName {
     weave::System system = weave::System::warp;
@@ -68,7 +84,7 @@ class Viewport : public QOpenGLWidget {
     void view_on();
     void set_locked(bool locked);
     [[nodiscard]] bool is_locked() const { return m_locked; }
-    /// Whether views glide to one another, in 150 ms.
+    /// Whether views glide to one another, in 150 ms, and pictures in motion may be coarser where the processor draws them.
     void set_animated(bool animated) { m_animated = animated; }
 
     /// What is to be seen, with legend, scale and caption, `times` as many pixels across as the widget has on a plain display.
@@ -83,6 +99,9 @@ class Viewport : public QOpenGLWidget {
     /// What drew the last picture and how; for the status bar and measurements.
     [[nodiscard]] const TubePainter& painter() const { return m_painter; }
 
+    /// Legend, scale, caption and axes; for the screen also what takes the mouse.
+    void paint_over(QPainter& painter, const QRectF& area, bool for_screen);
+
   Q_SIGNALS:
     void yarn_clicked(weave::System system, std::size_t number, weave::Vec3 place);
     /// Counted from 0.
@@ -90,6 +109,7 @@ class Viewport : public QOpenGLWidget {
     void face_clicked(weave::Face face);
     void camera_changed();
     void locked_changed(bool locked);
+    void attach_mode_changed(bool attach);
     void trouble_found(const QString& words);
 
   protected:
@@ -113,10 +133,9 @@ class Viewport : public QOpenGLWidget {
     [[nodiscard]] TubeFrame frame_of(double pixel_ratio) const;
     void release();
     void draw_yarns(const TubeFrame& frame);
-    void paint_over(QPainter& painter, const QRectF& area, bool for_screen);
     void place_cube();
+    void look_again();
     void update_states();
-    void look_for_trouble();
 
     void move_camera(const Camera& camera);
     void glide_to(const Camera& camera);
@@ -140,6 +159,7 @@ class Viewport : public QOpenGLWidget {
     Camera m_camera;
     ViewHistory m_history;
     QVariantAnimation m_glide;
+    OverlaySheet m_sheet;
     QTimer m_rest, m_settled;
     bool m_is_fitted = false, m_locked = false, m_animated = true, m_moving = false;
     double m_moving_scale = 1;  ///< of the pictures while the camera moves

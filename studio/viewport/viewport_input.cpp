@@ -49,7 +49,7 @@ void Viewport::hover(const QPointF& place, const QPoint& global) {
             words = yarn_words(*m_model, *yarn, found.front().place);
         }
     }
-    if (cube != m_cube_face || face != m_block_face) update();
+    if (cube != m_cube_face || face != m_block_face) m_sheet.update();
     m_cube_face = cube;
     m_block_face = face;
     setCursor(cube || face || yarn ? Qt::PointingHandCursor : Qt::ArrowCursor);
@@ -179,7 +179,7 @@ void Viewport::wheelEvent(QWheelEvent* event) {
 
 void Viewport::leaveEvent(QEvent* event) {
     clear_hover();
-    update();
+    look_again();
     QOpenGLWidget::leaveEvent(event);
 }
 
@@ -232,7 +232,7 @@ bool Viewport::press_key(QKeyEvent* event) {
             if (!m_held && !m_attach) return false;
             let_go();
             set_attach_mode(false);
-            update();
+            look_again();
             return true;
         default:
             return press_move_key(key, event->modifiers().testFlag(Qt::ShiftModifier));

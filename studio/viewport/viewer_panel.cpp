@@ -1,0 +1,264 @@
+#include <studio/viewport/viewer_panel.hpp>
+
+#include <studio/viewport/words.hpp>
+
+#include <QComboBox>
+#include <QCoreApplication>
+#include <QLabel>
+#include <QOffscreenSurface>
+#include <QOpenGLContext>
+#include <QSaveFile>
+#include <QSignalBlocker>
+#include <QSlider>
+#include <QSpinBox>
+#include <QStackedWidget>
+#include <QStandardItemModel>
+#include <QToolBar>
+#include <QVBoxLayout>
+
+namespace weave::studio {
+
+namespace {
+
+constexpr std::string_view colour_words[colourings]{"yarn", "system", "strain", "contact", "moved"};
+
+bool needs_relaxed(ColourBy colour) {
+    return colour >= ColourBy::strain;
+}
+
+QLabel* trouble_page(const QString& trouble) {
+    auto* const label = new QLabel(
+        ViewerPanel::tr("<h3>The 3D view cannot be drawn</h3><p>%1.</p><p>Everything else works; the card and the slices show the "
+                        "cloth as well. A newer graphics driver, or software drawing (LIBGL_ALWAYS_SOFTWARE=1), may help.</p>")
+            .arg(trouble.toHtmlEscaped()));
+    label->setAlignment(Qt::AlignCenter);
+    label->setWordWrap(true);
+    label->setMargin(label->fontMetrics().height());
+    label->setAccessibleName(ViewerPanel::tr("Why there is no 3D view"));
+    return label;
+}
+
+}  // namespace
+
+QString find_gl_trouble() {
+    QSurfaceFormat format;
+    format.setVersion(3, 3);
+    format.setProfile(QSurfaceFormat::CoreProfile);
+    QOpenGLContext context;
+    context.setFormat(format);
+    if (!context.create()) return QCoreApplication::translate("ViewerPanel", "this display has no OpenGL");
+    QOffscreenSurface surface;
+    surface.setFormat(context.format());
+    surface.create();
+    if (!context.makeCurrent(&surface)) return QCoreApplication::translate("ViewerPanel", "OpenGL does not start on this display");
+    const auto version = context.format().version();
+    if (version < std::pair(3, 3))
+        return QCoreApplication::translate("ViewerPanel", "this display has OpenGL %1.%2, and 3.3 is needed")
+            .arg(version.first)
+            .arg(version.second);
+    return {};
+}
+
+ViewerPanel::ViewerPanel(QWidget* parent, const QString& trouble) : QWidget(parent) {
+    auto* const column = new QVBoxLayout(this);
+    column->setContentsMargins(0, 0, 0, 0);
+    column->setSpacing(0);
+    m_pages = new QStackedWidget;
+    m_viewport = new Viewport;
+    m_tools = new QToolBar(tr("3D view"));
+    column->addWidget(m_tools);
+    column->addWidget(m_pages, 1);
+    build_tools();
+    if (trouble.isEmpty()) {
+        m_pages->addWidget(m_viewport);
+    } else {  // a widget of OpenGL that is never shown asks for none
+        m_viewport->setParent(this);
+        m_viewport->hide();
+        m_pages->addWidget(trouble_page(trouble));
+        m_tools->setEnabled(false);
+    }
+    connect(m_viewport, &Viewport::trouble_found, this, [this](const QString& words) {
+        m_tools->setEnabled(false);
+        setAccessibleDescription(words);
+    });
+    connect(&m_maker, &ModelMaker::made, this, &ViewerPanel::show_model);
+    connect(&m_maker, &ModelMaker::failed, this, [this](const QString& words) {
+        m_failure = words;
+        show_model(nullptr);
+    });
+    setFocusProxy(m_viewport);
+    say_empty();
+    follow_model();
+}
+
+// ---- What is shown ----
+
+void ViewerPanel::set_planned(std::shared_ptr<const Design> design, std::shared_ptr<const ClothCurves> curves) {
+    m_design = std::move(design);
+    m_curves = std::move(curves);
+    if (m_mode == Mode::planned) make_model();
+}
+
+void ViewerPanel::set_relaxed(std::shared_ptr<const Yarns> yarns) {
+    m_yarns = std::move(yarns);
+    m_points.clear();
+    if (m_mode == Mode::relaxed) make_model();
+}
+
+Status ViewerPanel::set_points(const std::vector<std::vector<Vec3>>& control) {
+    if (m_yarns == nullptr || control.size() != m_yarns->yarns.size())
+        return invalid("these are not the places of the relaxed yarns");
+    m_points = control;
+    if (m_shown_mode == Mode::relaxed && m_viewport->model() != nullptr && !m_maker.is_busy())
+        return m_viewport->update_points(control);
+    return {};
+}
+
+void ViewerPanel::make_model() {
+    m_failure.clear();
+    const ColourBy colour = m_mode == Mode::planned && needs_relaxed(m_colour) ? ColourBy::yarn : m_colour;
+    if (m_mode == Mode::planned && m_design != nullptr && m_curves != nullptr) {
+        m_maker.ask([design = m_design, curves = m_curves, colour] { return TubeModel::planned(*design, *curves, colour); });
+    } else if (m_mode == Mode::relaxed && m_yarns != nullptr) {
+        m_maker.ask([yarns = m_yarns, colour] { return TubeModel::relaxed(yarns, colour); });
+    } else {
+        m_maker.forget();
+        show_model(nullptr);
+    }
+}
+
+void ViewerPanel::show_model(std::shared_ptr<TubeModel> model) {
+    m_shown_mode = m_mode;
+    if (model != nullptr && m_mode == Mode::relaxed && !m_points.empty()) {
+        if (const Status moved = model->update(m_points); !moved) m_points.clear();  // of yarns that are gone
+    }
+    say_empty();
+    m_viewport->set_model(std::move(model));
+    follow_model();
+    Q_EMIT model_shown();
+}
+
+void ViewerPanel::say_empty() {
+    if (!m_failure.isEmpty()) {
+        m_viewport->set_empty_words(tr("This cloth cannot be shown: %1.").arg(m_failure));
+    } else if (m_mode == Mode::planned) {
+        m_viewport->set_empty_words(tr("As soon as the block has yarns, its plan is drawn here."));
+    } else {
+        m_viewport->set_empty_words(tr("The cloth has not been relaxed. Run the simulation, or look at the plan."));
+    }
+}
+
+/// Brings the tools in line with what the model can do.
+void ViewerPanel::follow_model() {
+    const TubeModel* const model = m_viewport->model();
+    const auto limit = [&](QSpinBox* box, std::size_t axis, const QString& tip) {
+        const bool repeats = model != nullptr && model->is_periodic()[axis];
+        box->setEnabled(repeats);
+        box->setToolTip(repeats || model == nullptr ? tip : tr("This piece does not repeat here: its rim is free or held."));
+    };
+    limit(m_along_ends, 0, tr("Repeats along the ends"));
+    limit(m_along_picks, 1, tr("Repeats along the picks"));
+    auto* const items = qobject_cast<QStandardItemModel*>(m_colours->model());
+    for (int k = 0; k < m_colours->count() && items != nullptr; ++k) {
+        const bool can = m_mode == Mode::relaxed || !needs_relaxed(static_cast<ColourBy>(k));
+        items->item(k)->setEnabled(can);
+        items->item(k)->setToolTip(can ? QString() : tr("Only relaxed yarns have it: choose Relaxed first."));
+    }
+    const QSignalBlocker quiet(m_colours);
+    m_colours->setCurrentIndex(static_cast<int>(m_mode == Mode::planned && needs_relaxed(m_colour) ? ColourBy::yarn : m_colour));
+    m_save->setEnabled(model != nullptr);
+    apply_repeat();
+    apply_clip();
+}
+
+void ViewerPanel::set_mode(Mode mode) {
+    if (mode == m_mode) return;
+    m_mode = mode;
+    {
+        const QSignalBlocker quiet(m_modes);
+        m_modes->setCurrentIndex(static_cast<int>(mode));
+    }
+    make_model();
+    Q_EMIT mode_changed(mode);
+}
+
+void ViewerPanel::set_colour(ColourBy colour) {
+    if (colour == m_colour) return;
+    m_colour = colour;
+    follow_model();
+    make_model();
+}
+
+void ViewerPanel::apply_repeat() {
+    m_viewport->set_repeat(
+        {static_cast<std::size_t>(m_along_ends->value()), static_cast<std::size_t>(m_along_picks->value())});
+    apply_clip();
+}
+
+void ViewerPanel::choose_clip(int axis) {
+    // What is cut away is what lies between the viewer and the plane.
+    if (axis > 0) m_clip_side = m_viewport->camera().away()[axis - 1] > 1e-9 ? -1 : 1;
+    apply_clip();
+}
+
+void ViewerPanel::apply_clip() {
+    const int axis = m_clips->currentIndex() - 1;
+    m_clip_at->setEnabled(axis >= 0);
+    m_flip->setEnabled(axis >= 0);
+    if (axis < 0 || m_viewport->model() == nullptr) {
+        m_viewport->set_clip({});
+        return;
+    }
+    const Box box = m_viewport->shown_box();
+    const double at = box.low[axis] + box.size()[axis] * m_clip_at->value() / m_clip_at->maximum();
+    m_viewport->set_clip(Plane{Vec3::Unit(axis) * m_clip_side, at * m_clip_side});
+}
+
+// ---- For documents and files ----
+
+Json ViewerPanel::state() const {
+    return {{"camera", m_viewport->camera().to_json()},
+            {"mode", m_mode == Mode::planned ? "planned" : "relaxed"},
+            {"colour", std::string(colour_words[static_cast<std::size_t>(m_colour)])},
+            {"repeat", {m_along_ends->value(), m_along_picks->value()}},
+            {"locked", m_viewport->is_locked()}};
+}
+
+Status ViewerPanel::set_state(const Json& json) {
+    if (!json.is_object()) return bad_input("a view is an object", "view");
+    if (const auto found = json.find("camera"); found != json.end()) {
+        Camera camera;
+        if (Status read = camera.from_json(*found); !read) return std::move(read).error().under("camera");
+        m_viewport->set_camera(camera);
+    }
+    const auto text = [&](const char* name) {
+        const auto found = json.find(name);
+        return found != json.end() && found->is_string() ? found->get<std::string>() : std::string();
+    };
+    if (const std::string mode = text("mode"); !mode.empty()) set_mode(mode == "relaxed" ? Mode::relaxed : Mode::planned);
+    for (std::size_t k = 0; k < colourings; ++k) {
+        if (text("colour") == colour_words[k]) set_colour(static_cast<ColourBy>(k));
+    }
+    if (const auto found = json.find("repeat"); found != json.end() && found->is_array() && found->size() == 2) {
+        const auto times = [&](std::size_t k) {
+            const Json& number = (*found)[k];
+            return number.is_number_integer() ? static_cast<int>(std::clamp<std::int64_t>(number.get<std::int64_t>(), 1, most_repeats)) : 1;
+        };
+        m_along_ends->setValue(times(0));
+        m_along_picks->setValue(times(1));
+    }
+    if (const auto found = json.find("locked"); found != json.end() && found->is_boolean())
+        m_viewport->set_locked(found->get<bool>());
+    return {};
+}
+
+Status ViewerPanel::save_picture(const QString& path) {
+    const QImage image = m_viewport->picture(2);
+    if (image.isNull()) return invalid("there is nothing to save yet");
+    QSaveFile file(path);
+    if (!file.open(QIODevice::WriteOnly) || !image.save(&file, "PNG") || !file.commit())
+        return system_fault("the picture cannot be written: " + file.errorString().toStdString(), path.toStdString());
+    return {};
+}
+
+}  // namespace weave::studio

@@ -1,0 +1,92 @@
+#pragma once
+
+#include <studio/viewport/model_maker.hpp>
+#include <studio/viewport/viewport.hpp>
+
+#include <QWidget>
+
+class QAction;
+class QActionGroup;
+class QComboBox;
+class QLabel;
+class QSlider;
+class QSpinBox;
+class QStackedWidget;
+class QToolBar;
+
+namespace weave::studio {
+
+/// Why there is no OpenGL 3.3 on this display; empty where there is.
+QString find_gl_trouble();
+
+/// The 3D viewer with its tools: planned or relaxed yarns, their colours, repeats, the plane that cuts, views and the lock.
+class ViewerPanel : public QWidget {
+    Q_OBJECT
+  public:
+    enum class Mode : std::uint8_t { planned, relaxed };
+
+    /// Without OpenGL (`trouble` says why) the panel says so, and all else works as ever.
+    explicit ViewerPanel(QWidget* parent = nullptr, const QString& trouble = find_gl_trouble());
+
+    /// The planned curves of the block that is shown; null: none. Made into a picture in another thread.
+    void set_planned(std::shared_ptr<const Design> design, std::shared_ptr<const ClothCurves> curves);
+    /// The relaxed yarns; null: none. The panel does not change its mode by itself.
+    void set_relaxed(std::shared_ptr<const Yarns> yarns);
+    /// Control points of the relaxed yarns as they lie now, in the yarns' order; they wait while planned yarns are shown, the
+    /// newest only. Refused where they are not of these yarns.
+    Status set_points(const std::vector<std::vector<Vec3>>& control);
+
+    [[nodiscard]] Mode mode() const { return m_mode; }
+    void set_mode(Mode mode);
+    [[nodiscard]] ColourBy colour() const { return m_colour; }
+    void set_colour(ColourBy colour);
+    [[nodiscard]] Viewport* viewport() const { return m_viewport; }
+
+    /// View, mode, colours, repeats and lock, for a document; what it does not know of it leaves as it is.
+    [[nodiscard]] Json state() const;
+    Status set_state(const Json& json);
+    /// Writes what is seen as PNG, twice as fine as on a plain display. Errors: nothing shown, a file that cannot be written.
+    Status save_picture(const QString& path);
+
+  Q_SIGNALS:
+    void mode_changed(weave::studio::ViewerPanel::Mode mode);
+    /// A model that was asked for is shown, or cannot be.
+    void model_shown();
+
+  private:
+    void build_tools();
+    void add_looks();
+    void add_repeats();
+    void add_clip();
+    void add_views();
+    void add_rest();
+    QAction* add_action(int icon, const QString& text, const QString& tip);
+    void make_model();
+    void show_model(std::shared_ptr<TubeModel> model);
+    void say_empty();
+    void follow_model();
+    void apply_repeat();
+    void apply_clip();
+    void choose_clip(int axis);
+    void ask_for_picture();
+
+    ModelMaker m_maker;
+    QStackedWidget* m_pages = nullptr;
+    Viewport* m_viewport = nullptr;
+    QToolBar* m_tools = nullptr;
+    QComboBox *m_modes = nullptr, *m_colours = nullptr, *m_clips = nullptr;
+    QSpinBox *m_along_ends = nullptr, *m_along_picks = nullptr;
+    QSlider* m_clip_at = nullptr;
+    QAction *m_flip = nullptr, *m_lock = nullptr, *m_perspective = nullptr, *m_attach = nullptr, *m_save = nullptr;
+
+    std::shared_ptr<const Design> m_design;
+    std::shared_ptr<const ClothCurves> m_curves;
+    std::shared_ptr<const Yarns> m_yarns;
+    std::vector<std::vector<Vec3>> m_points;  ///< of the relaxed yarns, where they have moved since
+    Mode m_mode = Mode::planned, m_shown_mode = Mode::planned;
+    ColourBy m_colour = ColourBy::yarn;
+    double m_clip_side = 1;
+    QString m_failure;
+};
+
+}  // namespace weave::studio
