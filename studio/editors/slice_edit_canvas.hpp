@@ -37,6 +37,7 @@ class SliceEditCanvas : public SliceCanvas {
     void tool_changed(weave::studio::SliceTool tool);
 
   protected:
+    bool event(QEvent* event) override;
     void mousePressEvent(QMouseEvent* event) override;
     void mouseMoveEvent(QMouseEvent* event) override;
     void mouseReleaseEvent(QMouseEvent* event) override;
@@ -55,6 +56,7 @@ class SliceEditCanvas : public SliceCanvas {
         std::vector<double> levels;  ///< as they are to be drawn
     };
     void make_actions();
+    [[nodiscard]] QAction* action_of(const QKeyEvent& event) const;
     QAction* make(const QString& name, const QString& text, const QKeySequence& keys,
                   const std::function<void()>& what);
     void make_tool(SliceTool tool, const QString& name, const QKeySequence& keys);

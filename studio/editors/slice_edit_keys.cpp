@@ -74,6 +74,11 @@ void SliceEditCanvas::make_actions() {
     make("fit", tr("Fit"), Qt::Key_F, [this] { fit(); });
     make("zoom_in", tr("Zoom in"), Qt::Key_Plus, [this] { zoom_in(); });
     make("zoom_out", tr("Zoom out"), Qt::Key_Minus, [this] { zoom_out(); });
+    action("enable")->setIconText(tr("On/off"));
+    action("insert")->setIconText(tr("Add like it"));
+    action("earlier")->setIconText(tr("◂ Earlier"));
+    action("later")->setIconText(tr("Later ▸"));
+    action("insert_position")->setIconText(tr("+ Position"));
     name_tools();
 }
 
@@ -139,7 +144,27 @@ void SliceEditCanvas::arrow_key(int up, int right) {
     apply_at_marks(move_path(m_slice, yarn.number, place, up));
 }
 
+/// The action of a key; none for a key that is not ours.
+QAction* SliceEditCanvas::action_of(const QKeyEvent& event) const {
+    const QKeySequence keys(
+        QKeyCombination(event.modifiers() & ~Qt::KeypadModifier, static_cast<Qt::Key>(event.key())));
+    for (QAction* action : actions()) {
+        if (action->shortcuts().contains(keys)) return action;
+    }
+    return nullptr;
+}
+
+/// Our keys are ours while the drawing has the focus, whatever the window around it does with them.
+bool SliceEditCanvas::event(QEvent* event) {
+    if (event->type() == QEvent::ShortcutOverride && action_of(*static_cast<QKeyEvent*>(event)) != nullptr) {
+        event->accept();
+        return true;
+    }
+    return SliceCanvas::event(event);
+}
+
 void SliceEditCanvas::keyPressEvent(QKeyEvent* event) {
+    if (QAction* action = action_of(*event)) return action->trigger();
     const bool plain = (event->modifiers() & ~Qt::KeypadModifier) == Qt::NoModifier;
     switch (plain ? event->key() : 0) {
         case Qt::Key_Up:
