@@ -56,7 +56,6 @@ class SliceEditCanvas : public SliceCanvas {
         std::vector<double> levels;  ///< as they are to be drawn
     };
     void make_actions();
-    [[nodiscard]] QAction* action_of(const QKeyEvent& event) const;
     QAction* make(const QString& name, const QString& text, const QKeySequence& keys,
                   const std::function<void()>& what);
     void make_tool(SliceTool tool, const QString& name, const QKeySequence& keys);

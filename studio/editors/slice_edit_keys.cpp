@@ -1,5 +1,6 @@
 // The keys, actions and menu of the slice's drawing.
 
+#include <studio/editors/own_keys.hpp>
 #include <studio/editors/slice_edit_canvas.hpp>
 
 #include <QContextMenuEvent>
@@ -144,27 +145,13 @@ void SliceEditCanvas::arrow_key(int up, int right) {
     apply_at_marks(move_path(m_slice, yarn.number, place, up));
 }
 
-/// The action of a key; none for a key that is not ours.
-QAction* SliceEditCanvas::action_of(const QKeyEvent& event) const {
-    const QKeySequence keys(
-        QKeyCombination(event.modifiers() & ~Qt::KeypadModifier, static_cast<Qt::Key>(event.key())));
-    for (QAction* action : actions()) {
-        if (action->shortcuts().contains(keys)) return action;
-    }
-    return nullptr;
-}
-
 /// Our keys are ours while the drawing has the focus, whatever the window around it does with them.
 bool SliceEditCanvas::event(QEvent* event) {
-    if (event->type() == QEvent::ShortcutOverride && action_of(*static_cast<QKeyEvent*>(event)) != nullptr) {
-        event->accept();
-        return true;
-    }
-    return SliceCanvas::event(event);
+    return claims_key(*this, *event) || SliceCanvas::event(event);
 }
 
 void SliceEditCanvas::keyPressEvent(QKeyEvent* event) {
-    if (QAction* action = action_of(*event)) return action->trigger();
+    if (QAction* own = action_of(*this, *event)) return own->trigger();
     const bool plain = (event->modifiers() & ~Qt::KeypadModifier) == Qt::NoModifier;
     switch (plain ? event->key() : 0) {
         case Qt::Key_Up:

@@ -1,5 +1,7 @@
 #include <studio/editors/stencil_canvas.hpp>
 
+#include <studio/editors/own_keys.hpp>
+
 #include <QKeyEvent>
 #include <QMouseEvent>
 #include <QPainter>
@@ -295,9 +297,14 @@ void StencilCanvas::leaveEvent(QEvent*) {
     Q_EMIT status({});
 }
 
+bool StencilCanvas::event(QEvent* event) {
+    return claims_key(*this, *event) || QWidget::event(event);
+}
+
 /// Arrows lead the cursor, Space or Enter paints at it: a line or rectangle begins with one and ends with the
 /// next.
 void StencilCanvas::keyPressEvent(QKeyEvent* event) {
+    if (QAction* own = action_of(*this, *event)) return own->trigger();
     if (m_image.isNull()) return QWidget::keyPressEvent(event);
     QPoint cursor = m_cursor.value_or(QPoint(0, 0));
     const int step = event->modifiers().testFlag(Qt::ShiftModifier) ? 10 : 1;

@@ -46,6 +46,7 @@ class StencilCanvas : public QWidget {
     void status(const QString& words);
 
   protected:
+    bool event(QEvent* event) override;
     void paintEvent(QPaintEvent* event) override;
     void resizeEvent(QResizeEvent* event) override;
     void wheelEvent(QWheelEvent* event) override;
