@@ -113,9 +113,7 @@ void SliceEditCanvas::mousePressEvent(QMouseEvent* event) {
             break;
     }
     const auto position = view().column_at(place.x(), m_slice.positions.size());
-    if (!position)
-        return refuse(tr("here is no position; Shift+Insert adds one").arg(kind_of_dots(m_slice)),
-                      place.toPoint());
+    if (!position) return refuse(tr("here is no position; Shift+Insert adds one"), place.toPoint());
     const double level = std::round(view().level_at(place.y()));
     if (level < -1 || level > static_cast<double>(scene().levels) + 2)
         return refuse(tr("that is too far from the other yarns"), place.toPoint());

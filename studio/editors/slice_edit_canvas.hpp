@@ -37,6 +37,7 @@ class SliceEditCanvas : public SliceCanvas {
     void tool_changed(weave::studio::SliceTool tool);
 
   protected:
+    bool event(QEvent* event) override;
     void mousePressEvent(QMouseEvent* event) override;
     void mouseMoveEvent(QMouseEvent* event) override;
     void mouseReleaseEvent(QMouseEvent* event) override;

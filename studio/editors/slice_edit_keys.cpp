@@ -1,5 +1,6 @@
 // The keys, actions and menu of the slice's drawing.
 
+#include <studio/editors/own_keys.hpp>
 #include <studio/editors/slice_edit_canvas.hpp>
 
 #include <QContextMenuEvent>
@@ -74,6 +75,11 @@ void SliceEditCanvas::make_actions() {
     make("fit", tr("Fit"), Qt::Key_F, [this] { fit(); });
     make("zoom_in", tr("Zoom in"), Qt::Key_Plus, [this] { zoom_in(); });
     make("zoom_out", tr("Zoom out"), Qt::Key_Minus, [this] { zoom_out(); });
+    action("enable")->setIconText(tr("On/off"));
+    action("insert")->setIconText(tr("Add like it"));
+    action("earlier")->setIconText(tr("◂ Earlier"));
+    action("later")->setIconText(tr("Later ▸"));
+    action("insert_position")->setIconText(tr("+ Position"));
     name_tools();
 }
 
@@ -139,7 +145,13 @@ void SliceEditCanvas::arrow_key(int up, int right) {
     apply_at_marks(move_path(m_slice, yarn.number, place, up));
 }
 
+/// Our keys are ours while the drawing has the focus, whatever the window around it does with them.
+bool SliceEditCanvas::event(QEvent* event) {
+    return claims_key(*this, *event) || SliceCanvas::event(event);
+}
+
 void SliceEditCanvas::keyPressEvent(QKeyEvent* event) {
+    if (QAction* own = action_of(*this, *event)) return own->trigger();
     const bool plain = (event->modifiers() & ~Qt::KeypadModifier) == Qt::NoModifier;
     switch (plain ? event->key() : 0) {
         case Qt::Key_Up:

@@ -101,7 +101,7 @@ class SlicePainter {
     }
 
     void draw_halo(const ScenePath& path) {
-        if (!marked(path.yarn) && m_marks.hovered != path.yarn) return;
+        if (m_marks.preview || (!marked(path.yarn) && m_marks.hovered != path.yarn)) return;
         if (const auto curve = seen(path)) stroke(*curve, halo_of(path.yarn), m_view.path_width() + 9);
     }
 
@@ -294,24 +294,29 @@ class SlicePainter {
         const auto level = [&](std::size_t position) {
             return static_cast<double>(path.levels[position - path.first]);
         };
-        if (path.first == 0 && path.reaches_left)
+        const auto tag = [&](std::size_t position) {
+            write(name_of(path), m_view.at(static_cast<double>(position), level(position)), Qt::AlignHCenter,
+                  colour, 0.72, true, true);
+        };
+        const bool woven = path.number && path.woven_first <= path.woven_last;
+        if (path.first == 0 && path.reaches_left) {
             write(name_of(path), m_view.at(-path_overhang - 0.12, level(0)), Qt::AlignRight, colour, 0.8,
                   true);
-        if (path.last() + 1 == m_scene.all_positions && path.reaches_right)
+        } else if (woven && !path.reaches_left) {
+            tag(path.woven_first);
+        }
+        if (path.last() + 1 == m_scene.all_positions && path.reaches_right) {
             write(name_of(path),
                   m_view.at(static_cast<double>(path.last()) + path_overhang + 0.12, level(path.last())),
                   Qt::AlignLeft, colour, 0.8, true);
-        if (path.number && path.woven_first <= path.woven_last &&
-            !(path.reaches_left && path.reaches_right)) {
-            write(name_of(path), m_view.at(static_cast<double>(path.woven_first), level(path.woven_first)),
-                  Qt::AlignHCenter, colour, 0.72, true, true);
+        } else if (woven && !path.reaches_right && path.woven_last > path.woven_first + 1) {
+            tag(path.woven_last);
         }
         const std::size_t from = static_cast<std::size_t>(m_first);
         for (std::size_t position = from - from % 10 + 4 + 3 * (path.yarn.number % 3);
              static_cast<double>(position) <= m_last; position += 10) {
-            if (position > path.first && position < path.last())
-                write(name_of(path), m_view.at(static_cast<double>(position), level(position)),
-                      Qt::AlignHCenter, colour, 0.72, true, true);
+            if (position > path.first && position + 6 < m_scene.all_positions && position < path.last())
+                tag(position);
         }
     }
 
@@ -331,7 +336,7 @@ class SlicePainter {
             m_painter.drawEllipse(m_view.at(m_marks.dot_preview->x(), m_marks.dot_preview->y()),
                                   m_view.radius(), m_view.radius());
         }
-        if (!m_marks.path_place) return;
+        if (!m_marks.path_place || m_marks.preview) return;
         for (const SliceYarnId& yarn : m_marks.selected) {
             const ScenePath* path = yarn.path ? path_of(m_scene, yarn.number) : nullptr;
             const auto level = path != nullptr ? path->level_at(*m_marks.path_place) : std::nullopt;

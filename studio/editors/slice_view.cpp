@@ -26,7 +26,8 @@ void SliceView::fit(const SliceScene& scene, const QRectF& space) {
     const double levels = static_cast<double>(std::max<std::size_t>(scene.levels, 1)) + 1.2;
     m_zoom = 1;
     const double wide = space.width() / (positions * across()), high = space.height() / (levels * up());
-    m_zoom = std::clamp(std::min({wide, high, 1.6}), 0.45, most_zoom);
+    const double all = wide < 0.6 ? 1 : wide;  // rather a part that can be read
+    m_zoom = std::clamp(std::min({all, high, 1.6}), 0.3, most_zoom);
     const double width = static_cast<double>(scene.all_positions) * across();
     const double left = std::max((space.width() - width) / 2 + across() / 2, 2.2 * across());
     const double height = (static_cast<double>(scene.levels) - 1) * up();

@@ -62,7 +62,7 @@ TEST_CASE("slice: a path is routed through the gaps that the pointer passes, and
     REQUIRE(card_of(open.slice()) == Rows{".", ".", "#", ".", "#", "#", ".", "."});
     // A fast pointer leaves no position out.
     open.drag({canvas.place_of(0, double(level_of(open.slice(), SliceYarnId::run(0), 0).value())),
-               canvas.place_of(3, 9)});
+               canvas.place_of(3, 30)});
     for (std::size_t k = 1; k < 4; ++k) REQUIRE(gap_of(open.slice(), 0, k) == 2);
 }
 
@@ -129,7 +129,7 @@ TEST_CASE("slice: several yarns are chosen with Shift, and go together; not all 
             "Weft 1 of position 3 cannot be removed: no weft would be woven any more; a slice needs at least "
             "one pick");
     REQUIRE(open.status == open.bubble());
-    open.click(0, 0);  // the only path, above
+    open.click(0, 1);  // the only path
     open.key(Qt::Key_E);
     REQUIRE(open.bubble().contains("only wefts can be disabled"));
 }

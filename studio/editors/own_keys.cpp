@@ -1,0 +1,26 @@
+#include <studio/editors/own_keys.hpp>
+
+namespace weave::studio {
+
+QAction* action_of(const QWidget& widget, const QKeyEvent& event) {
+    const auto modifiers = event.modifiers() & ~Qt::KeypadModifier;
+    const QKeySequence keys(QKeyCombination(modifiers, static_cast<Qt::Key>(event.key())));
+    // A plus sign needs Shift on most keyboards, and none on the number pad.
+    const QKeySequence unshifted(
+        QKeyCombination(modifiers & ~Qt::ShiftModifier, static_cast<Qt::Key>(event.key())));
+    const bool sign = event.key() == Qt::Key_Plus;
+    for (QAction* action : widget.actions()) {
+        if (action->shortcuts().contains(keys) || (sign && action->shortcuts().contains(unshifted)))
+            return action;
+    }
+    return nullptr;
+}
+
+bool claims_key(const QWidget& widget, QEvent& event) {
+    if (event.type() != QEvent::ShortcutOverride) return false;
+    if (action_of(widget, static_cast<QKeyEvent&>(event)) == nullptr) return false;
+    event.accept();
+    return true;
+}
+
+}  // namespace weave::studio
