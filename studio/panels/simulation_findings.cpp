@@ -1,12 +1,32 @@
 #include <studio/panels/simulation_findings.hpp>
 
+#include <QEvent>
 #include <QHeaderView>
+#include <QStyledItemDelegate>
+
+#include <algorithm>
 
 namespace weave::studio {
 
 namespace {
 
 constexpr int pick_role = Qt::UserRole, end_role = Qt::UserRole + 1;
+
+/// Lines as tall as their words need in the width that there is; Qt's own measures them as if they had all the width they want.
+class WrappingLines : public QStyledItemDelegate {
+  public:
+    explicit WrappingLines(QTreeView* view) : QStyledItemDelegate(view), m_view(view) {}
+    [[nodiscard]] QSize sizeHint(const QStyleOptionViewItem& option, const QModelIndex& index) const override {
+        const int levels = index.parent().isValid() ? 2 : 1, margin = 8;
+        const int width = std::max(margin, m_view->viewport()->width() - levels * m_view->indentation() - margin);
+        const QFontMetrics font(index.data(Qt::FontRole).isValid() ? index.data(Qt::FontRole).value<QFont>() : option.font);
+        const QRect box = font.boundingRect(QRect(0, 0, width, 1 << 20), Qt::TextWordWrap, index.data().toString());
+        return {width, box.height() + font.height() / 4};
+    }
+
+  private:
+    QTreeView* m_view;
+};
 
 QTreeWidgetItem* line_below(QTreeWidgetItem* above, const QString& words) {
     auto* item = new QTreeWidgetItem(above, {words});
@@ -19,6 +39,8 @@ QTreeWidgetItem* line_below(QTreeWidgetItem* above, const QString& words) {
 SimulationFindings::SimulationFindings(QWidget* parent) : QTreeWidget(parent) {
     setHeaderHidden(true);
     setWordWrap(true);
+    setTextElideMode(Qt::ElideNone);
+    setItemDelegate(new WrappingLines(this));
     setColumnCount(1);
     header()->setSectionResizeMode(QHeaderView::Stretch);
     setIndentation(fontMetrics().height());
@@ -45,9 +67,26 @@ void SimulationFindings::set_inspection(const std::vector<StateLine>& lines, boo
         if (!line.place) continue;
         item->setData(0, pick_role, static_cast<qulonglong>(line.place->pick));
         item->setData(0, end_role, static_cast<qulonglong>(line.place->end));
-        item->setForeground(0, palette().color(QPalette::Link));
         item->setToolTip(0, tr("Go to pick %1, end %2").arg(line.place->pick + 1).arg(line.place->end + 1));
     }
+    colour_links();
+}
+
+void SimulationFindings::colour_links() {
+    for (int k = 0; k < m_inspection->childCount(); ++k) {
+        QTreeWidgetItem* item = m_inspection->child(k);
+        if (item->data(0, pick_role).isValid()) item->setForeground(0, palette().color(QPalette::Link));
+    }
+}
+
+void SimulationFindings::changeEvent(QEvent* event) {
+    QTreeWidget::changeEvent(event);
+    if (event->type() == QEvent::PaletteChange) colour_links();
+}
+
+void SimulationFindings::resizeEvent(QResizeEvent* event) {
+    QTreeWidget::resizeEvent(event);
+    scheduleDelayedItemsLayout();  // other widths, other heights
 }
 
 void SimulationFindings::set_plan(const std::vector<QString>& lines) {

@@ -25,8 +25,13 @@ class SimulationFindings : public QTreeWidget {
     /// Pick and end from 0.
     void place_wanted(std::size_t pick, std::size_t end);
 
+  protected:
+    void changeEvent(QEvent* event) override;
+    void resizeEvent(QResizeEvent* event) override;
+
   private:
     void lead_to(const QTreeWidgetItem* item);
+    void colour_links();
 
     QTreeWidgetItem *m_inspection, *m_plan;
 };

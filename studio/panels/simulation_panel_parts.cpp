@@ -131,7 +131,9 @@ QWidget* SimulationPanel::make_result_page() {
     auto* parts = new QSplitter(Qt::Vertical);
     parts->addWidget(m_plot);
     parts->addWidget(m_findings);
-    parts->setStretchFactor(1, 1);
+    parts->setStretchFactor(0, 2);
+    parts->setStretchFactor(1, 3);
+    parts->setSizes({20 * fontMetrics().height(), 30 * fontMetrics().height()});
     parts->setChildrenCollapsible(false);
     lines->addWidget(parts, 1);
     auto* files = new QHBoxLayout;

@@ -27,6 +27,7 @@ ParameterRow::ParameterRow(const ParameterRange& range, QWidget* parent)
     m_spin->setSingleStep(range.step);
     m_spin->setSuffix(range.unit);
     m_spin->setKeyboardTracking(false);
+    m_spin->setMinimumWidth(8 * fontMetrics().height());  // so that rows stand in line
     if (range.is_ratio) m_spin->setStepType(QAbstractSpinBox::AdaptiveDecimalStepType);
     m_slider->setRange(0, places);
     m_slider->setPageStep(places / 20);

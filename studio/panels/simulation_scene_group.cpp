@@ -27,7 +27,7 @@ void choose(QComboBox* box, int value) {
 }  // namespace
 
 SceneGroup::SceneGroup(QWidget* parent)
-    : QGroupBox(tr("Cloth"), parent), m_friction(new ParameterRow({0, 1, false, 2, 0.05, {}}, this)), m_gravity(new QCheckBox(tr("&Gravity"), this)),
+    : QGroupBox(tr("Rims and forces"), parent), m_friction(new ParameterRow({0, 1, false, 2, 0.05, {}}, this)), m_gravity(new QCheckBox(tr("&Gravity"), this)),
       m_boundary_x(new QComboBox(this)), m_boundary_y(new QComboBox(this)), m_weft_mode(new QComboBox(this)) {
     fill_boundaries(m_boundary_x, tr("First and last pick"));
     fill_boundaries(m_boundary_y, tr("Left and right edge"));

@@ -61,8 +61,13 @@ class Shown {
         window.resize(480, 1000);
         window.show();
         REQUIRE(QTest::qWaitForWindowExposed(&window));
+        QApplication::setActiveWindow(&window);  // there is nobody else who would: shortcuts are of the active window
     }
-    [[nodiscard]] bool until(const std::function<bool()>& enough) const { return QTest::qWaitFor(enough, patience_ms); }
+    [[nodiscard]] bool until(const std::function<bool()>& enough) const {
+        const bool came = QTest::qWaitFor(enough, patience_ms);
+        if (!came) UNSCOPED_INFO(panel->sentence()->text().toStdString() << "; " << panel->message_bar()->words().toStdString());
+        return came;
+    }
     [[nodiscard]] bool until_phase(RunPhase phase) const {
         return until([&] { return panel->state().phase == phase; });
     }
@@ -237,20 +242,21 @@ TEST_CASE("a part of the cloth is what the simulation panel simulates when that 
     const OwnSettings settings;
     Shown shown(sample("satin-e"));
     SimulationPanel& panel = *shown.panel;
-    panel.set_cloth_size(5, 10);
+    panel.set_cloth_size(10, 5);
     panel.tabs()->setCurrentIndex(2);
     QTest::mouseClick(panel.region()->part(), Qt::LeftButton, {}, {8, panel.region()->part()->height() / 2});
-    CHECK(panel.region()->last_row()->maximum() == 5);
+    CHECK(panel.region()->last_row()->maximum() == 10);
+    CHECK(panel.region()->last_column()->value() == 5);
     panel.region()->first_row()->setValue(2);
     CHECK(panel.region()->last_row()->value() >= 4);
     panel.region()->last_row()->setValue(3);  // fewer than three rows cannot move
     CHECK(panel.region()->last_row()->value() == 4);
     panel.region()->first_column()->setValue(2);
-    panel.region()->last_column()->setValue(8);
-    CHECK(panel.region()->region() == Region{1, 3, 1, 7});
+    panel.region()->last_column()->setValue(4);
+    CHECK(panel.region()->region() == Region{1, 3, 1, 3});
     shown.press(panel.run_action());
     REQUIRE(shown.until_inspected());
-    CHECK(shown.yarns->region == Region{1, 3, 1, 7});
+    CHECK(shown.yarns->region == Region{1, 3, 1, 3});
     QTest::mouseClick(panel.region()->whole(), Qt::LeftButton, {}, {8, panel.region()->whole()->height() / 2});
     CHECK_FALSE(panel.region()->region());
 }
