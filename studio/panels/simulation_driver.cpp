@@ -1,0 +1,158 @@
+#include <studio/panels/simulation_driver.hpp>
+
+#include <weave/design/edit.hpp>
+
+#include <algorithm>
+#include <cmath>
+#include <studio/jobs/local_relaxation.hpp>
+#include <studio/jobs/remote_relaxation.hpp>
+#include <studio/panels/simulation_system_group.hpp>
+
+namespace weave::studio {
+
+namespace {
+
+/// Nodes never change, so those that are one object need not be looked into.
+bool same_blocks(const Design& one, const Design& other) {
+    return std::equal(one.blocks.begin(), one.blocks.end(), other.blocks.begin(), other.blocks.end(), [](const auto& a, const auto& b) {
+        return a.first == b.first && (a.second == b.second || *a.second == *b.second);
+    });
+}
+
+/// Whether a run of the one shows the other, but for what can be led into it.
+bool same_cloth(const Design& one, const Design& other) {
+    Scene led = one.scene;
+    const bool same_feed = led.weft.strain.has_value() == other.scene.weft.strain.has_value();
+    led.warp = other.scene.warp;
+    led.weft = other.scene.weft;
+    led.pins = other.scene.pins;
+    led.fields = other.scene.fields;
+    return same_feed && led == other.scene && one.root == other.root && one.warp == other.warp && one.weft == other.weft && same_blocks(one, other);
+}
+
+/// What of these values is not as it was.
+SystemScene changed(const SystemScene& now, const SystemScene& before) {
+    SystemScene list;
+    if (now.strain && now.strain != before.strain) list.strain = now.strain;
+    if (now.stiffness_scale != before.stiffness_scale) list.stiffness_scale = now.stiffness_scale;
+    if (now.radius_scale != before.radius_scale) list.radius_scale = now.radius_scale;
+    return list;
+}
+
+}  // namespace
+
+void SimulationDriver::start(const Design& design, const sim::RunRequest& request, const std::optional<ServerWish>& server) {
+    if (server) m_run = std::make_unique<RemoteRelaxation>(*server);
+    else m_run = std::make_unique<LocalRelaxation>();
+    m_state = {};
+    m_plan.reset();
+    m_started = design;
+    m_highest = 0;
+    m_is_to_run = false;
+    connect_run();
+    Q_EMIT begun();
+    m_run->start(design, request);
+}
+
+void SimulationDriver::connect_run() {
+    Relaxation* run = m_run.get();
+    connect(run, &Relaxation::phase_changed, this, &SimulationDriver::enter);
+    connect(run, &Relaxation::planned, this, [this](const auto& plan) {
+        m_plan = plan;
+        Q_EMIT planned();
+    });
+    connect(run, &Relaxation::laid_out, this, &SimulationDriver::laid_out);
+    connect(run, &Relaxation::frame_came, this, &SimulationDriver::frame_came);
+    connect(run, &Relaxation::progressed, this, &SimulationDriver::take);
+    connect(run, &Relaxation::ended, this, [this](const auto& yarns) {
+        m_state.yarns = yarns;
+        Q_EMIT yarns_came(yarns);
+        Q_EMIT state_changed();
+    });
+    connect(run, &Relaxation::inspected, this, [this](const auto&, const auto& inspection) {
+        m_state.inspection = inspection;
+        Q_EMIT state_changed();
+    });
+    connect(run, &Relaxation::flip_ended, this, &SimulationDriver::take_flip);
+    connect(run, &Relaxation::refused, this, &SimulationDriver::refused);
+    connect(run, &Relaxation::troubled, this, &SimulationDriver::troubled);
+    connect(run, &Relaxation::failed, this, [this](const Error& error) {
+        m_state.error = error;
+        Q_EMIT state_changed();
+    });
+}
+
+void SimulationDriver::enter(RunPhase phase) {
+    m_state.phase = phase;
+    if (phase != RunPhase::planning && phase != RunPhase::paused) m_is_to_run = false;
+    if (phase == RunPhase::running) {
+        m_state.yarns.reset();
+        m_state.inspection.reset();
+    }
+    Q_EMIT state_changed();
+}
+
+void SimulationDriver::take(const Progress& progress) {
+    m_state.progress = progress;
+    for (const ResidualPoint& point : progress.history) m_highest = std::max(m_highest, point.residual);
+    if (!progress.history.empty()) Q_EMIT moved(progress.history);
+    Q_EMIT state_changed();
+}
+
+/// What was flipped in the run is what the design gets as an edit: after that they show the same.
+void SimulationDriver::take_flip(const Flip& flip, bool done, const QString& reason) {
+    if (done) static_cast<void>(apply_edit(m_started, PutFlip{m_started.root, flip}));
+    Q_EMIT flip_ended(flip, done, reason);
+}
+
+void SimulationDriver::run() {
+    if (!is_open()) return;
+    m_is_to_run = true;
+    m_run->run();
+    Q_EMIT state_changed();
+}
+
+void SimulationDriver::pause() {
+    m_is_to_run = false;
+    if (is_open()) m_run->pause();
+    Q_EMIT state_changed();
+}
+
+void SimulationDriver::step(std::uint64_t steps) {
+    if (is_open()) m_run->step(steps);
+}
+
+void SimulationDriver::stop() {
+    if (is_open()) m_run->stop();
+}
+
+void SimulationDriver::flip(const Flip& flip) {
+    if (is_open()) m_run->flip(flip);
+}
+
+bool SimulationDriver::follow(const Design& design) {
+    if (m_state.phase == RunPhase::idle) return false;
+    if (!same_cloth(m_started, design)) return true;
+    if (!is_open()) return m_started.scene != design.scene;
+    lead_parameters(design.scene);
+    if (m_started.scene.pins != design.scene.pins) m_run->hold(design.scene.pins);
+    if (m_started.scene.fields != design.scene.fields) m_run->push(design.scene.fields);
+    m_started.scene = design.scene;
+    return false;
+}
+
+void SimulationDriver::lead_parameters(const Scene& scene) {
+    const auto of = [&](const SystemScene& now, const SystemScene& before, System system) {
+        return changed(with_usual_values(now, system), with_usual_values(before, system));
+    };
+    m_run->set_parameters(of(scene.warp, m_started.scene.warp, System::warp), of(scene.weft, m_started.scene.weft, System::weft));
+}
+
+std::optional<double> SimulationDriver::share_done() const {
+    const Progress& progress = m_state.progress;
+    if (m_state.phase == RunPhase::at_rest) return 1;
+    if (!(progress.residual > 0) || !(progress.goal > 0) || !(m_highest > progress.goal)) return {};
+    return std::clamp(std::log(m_highest / progress.residual) / std::log(m_highest / progress.goal), 0.0, 1.0);
+}
+
+}  // namespace weave::studio

@@ -1,0 +1,68 @@
+#pragma once
+
+#include <weave/design/design.hpp>
+
+#include <QObject>
+
+#include <memory>
+#include <optional>
+#include <studio/jobs/relaxation.hpp>
+#include <studio/jobs/server_place.hpp>
+#include <studio/jobs/state_words.hpp>
+
+namespace weave::studio {
+
+/// Drives the run of one design: begins it here or on a server, leads changes of the design into it as far as a run takes them, and
+/// keeps what is known of it.
+class SimulationDriver : public QObject {
+    Q_OBJECT
+  public:
+    explicit SimulationDriver(QObject* parent = nullptr) : QObject(parent) {}
+
+    /// Lays out anew and waits; a run that there was is left.
+    void start(const Design& design, const sim::RunRequest& request, const std::optional<ServerWish>& server);
+    void run();
+    void pause();
+    void step(std::uint64_t steps);
+    void stop();
+    void flip(const Flip& flip);
+
+    /// The design as it is now: strain, stiffness, radii, pins and fields are led into the run. Whether the run shows another design all
+    /// the same, so that it would have to start again.
+    bool follow(const Design& design);
+
+    [[nodiscard]] const RunState& state() const { return m_state; }
+    [[nodiscard]] const std::shared_ptr<const PlanSummary>& plan() const { return m_plan; }
+    /// How much of the way to rest it has come, 0 to 1, by the logarithm of the residual; nothing while that is not known.
+    [[nodiscard]] std::optional<double> share_done() const;
+    [[nodiscard]] bool is_open() const { return m_run && m_run->is_open(); }
+    [[nodiscard]] bool is_running() const { return m_state.phase == RunPhase::running || m_is_to_run; }
+
+  Q_SIGNALS:
+    void begun();
+    void state_changed();
+    void planned();
+    void moved(const std::vector<weave::studio::ResidualPoint>& history);
+    void laid_out(const std::shared_ptr<const weave::studio::YarnLayout>& layout);
+    void frame_came(const std::shared_ptr<const weave::studio::Frame>& frame);
+    void yarns_came(const std::shared_ptr<const weave::Yarns>& yarns);
+    void flip_ended(const weave::Flip& flip, bool done, const QString& reason);
+    void refused(const weave::Error& error);
+    void troubled(const QString& words);
+
+  private:
+    void connect_run();
+    void enter(RunPhase phase);
+    void take(const Progress& progress);
+    void take_flip(const Flip& flip, bool done, const QString& reason);
+    void lead_parameters(const Scene& scene);
+
+    std::unique_ptr<Relaxation> m_run;
+    RunState m_state;
+    std::shared_ptr<const PlanSummary> m_plan;
+    Design m_started;  ///< what the run shows, with what was led into it
+    double m_highest = 0;
+    bool m_is_to_run = false;  ///< asked for, and not yet begun
+};
+
+}  // namespace weave::studio

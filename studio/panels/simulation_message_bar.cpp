@@ -1,0 +1,46 @@
+#include <studio/panels/simulation_message_bar.hpp>
+
+#include <QHBoxLayout>
+#include <QLabel>
+#include <QStyle>
+#include <QToolButton>
+
+namespace weave::studio {
+
+MessageBar::MessageBar(QWidget* parent) : QFrame(parent), m_icon(new QLabel(this)), m_words(new QLabel(this)), m_close(new QToolButton(this)) {
+    setFrameShape(QFrame::StyledPanel);
+    auto* line = new QHBoxLayout(this);
+    line->addWidget(m_icon, 0, Qt::AlignTop);
+    line->addWidget(m_words, 1);
+    line->addWidget(m_close, 0, Qt::AlignTop);
+    m_words->setWordWrap(true);
+    m_words->setTextFormat(Qt::PlainText);
+    m_words->setTextInteractionFlags(Qt::TextSelectableByMouse | Qt::TextSelectableByKeyboard);
+    m_close->setIcon(style()->standardIcon(QStyle::SP_TitleBarCloseButton));
+    m_close->setAutoRaise(true);
+    m_close->setToolTip(tr("Close this message"));
+    m_close->setAccessibleName(m_close->toolTip());
+    connect(m_close, &QToolButton::clicked, this, &MessageBar::clear);
+    hide();
+}
+
+void MessageBar::tell(Kind kind, const QString& words) {
+    m_kind = kind;
+    m_words->setText(words);
+    m_words->setAccessibleName(words);
+    const auto icon = kind == Kind::error ? QStyle::SP_MessageBoxCritical : kind == Kind::warning ? QStyle::SP_MessageBoxWarning : QStyle::SP_MessageBoxInformation;
+    const int size = style()->pixelMetric(QStyle::PM_SmallIconSize, nullptr, this);
+    m_icon->setPixmap(style()->standardIcon(icon).pixmap(QSize(size, size), devicePixelRatioF()));
+    show();
+}
+
+void MessageBar::clear() {
+    m_words->clear();
+    hide();
+}
+
+QString MessageBar::words() const {
+    return m_words->text();
+}
+
+}  // namespace weave::studio

@@ -1,0 +1,31 @@
+#pragma once
+
+#include <QFrame>
+
+#include <cstdint>
+
+class QLabel;
+class QToolButton;
+
+namespace weave::studio {
+
+/// A line that says what happened, without a box that has to be answered. It stays until it is closed, or what it says is over.
+class MessageBar : public QFrame {
+    Q_OBJECT
+  public:
+    enum class Kind : std::uint8_t { note, warning, error };
+
+    explicit MessageBar(QWidget* parent = nullptr);
+
+    void tell(Kind kind, const QString& words);
+    void clear();
+    [[nodiscard]] QString words() const;
+    [[nodiscard]] Kind kind() const { return m_kind; }
+
+  private:
+    Kind m_kind = Kind::note;
+    QLabel *m_icon, *m_words;
+    QToolButton* m_close;
+};
+
+}  // namespace weave::studio

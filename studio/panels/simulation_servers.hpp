@@ -1,0 +1,34 @@
+#pragma once
+
+#include <QDialog>
+
+#include <studio/jobs/server_place.hpp>
+#include <vector>
+
+class QTableWidget;
+
+namespace weave::studio {
+
+/// The simulation servers that a person has named; remembered between sessions.
+std::vector<ServerWish> remembered_servers();
+void remember_servers(const std::vector<ServerWish>& servers);
+
+/// A list of servers to be edited.
+class ServersDialog : public QDialog {
+    Q_OBJECT
+  public:
+    explicit ServersDialog(const std::vector<ServerWish>& servers, QWidget* parent = nullptr);
+
+    /// Those that have a place.
+    [[nodiscard]] std::vector<ServerWish> servers() const;
+    [[nodiscard]] QTableWidget* table() const { return m_table; }
+    void add(const ServerWish& server);
+
+  private:
+    void remove_chosen();
+    void choose_token_file();
+
+    QTableWidget* m_table;
+};
+
+}  // namespace weave::studio
