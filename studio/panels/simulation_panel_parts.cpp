@@ -26,7 +26,7 @@
 #include <studio/panels/simulation_driver.hpp>
 #include <studio/panels/simulation_fidelity_group.hpp>
 #include <studio/panels/simulation_findings.hpp>
-#include <studio/panels/simulation_message_bar.hpp>
+#include <studio/panels/message_bar.hpp>
 #include <studio/panels/simulation_region_group.hpp>
 #include <studio/panels/simulation_residual_plot.hpp>
 #include <studio/panels/simulation_scene_group.hpp>

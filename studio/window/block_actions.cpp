@@ -33,14 +33,6 @@ QString words(const std::string& text) {
     return QString::fromStdString(text);
 }
 
-/// A section with two wefts in each of four positions and one warp, to be drawn on.
-Slice first_drawing() {
-    Slice slice;
-    slice.dots = System::weft;
-    for (int position = 0; position < 4; ++position) slice.positions.push_back({{Slot::weft(0)}, {Slot::warp(0)}});
-    return slice;
-}
-
 /// The part of a design that a block is made from, with the block as its cloth.
 Design part_of(const Design& design, const std::string& block) {
     Design part = design;
@@ -51,6 +43,13 @@ Design part_of(const Design& design, const std::string& block) {
 }
 
 }  // namespace
+
+Slice first_drawing() {
+    Slice slice;
+    slice.dots = System::weft;
+    for (int position = 0; position < 4; ++position) slice.positions.push_back({{Slot::weft(0)}, {Slot::warp(0)}});
+    return slice;
+}
 
 BlockActions::BlockActions(Document& document, QWidget* window) : QObject(&document), m_document(document), m_window(window) {}
 

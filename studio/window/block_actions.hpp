@@ -1,6 +1,7 @@
 #pragma once
 
 #include <weave/block/operations.hpp>
+#include <weave/block/slice.hpp>
 
 #include <QMenu>
 #include <QObject>
@@ -10,6 +11,9 @@
 #include <studio/document/document.hpp>
 
 namespace weave::studio {
+
+/// What a drawing begins with: a section of four positions, each with a weft under the one warp.
+Slice first_drawing();
 
 /// What can be done to the blocks of a document: each asks what it has to, and makes one step that can be undone.
 class BlockActions : public QObject {

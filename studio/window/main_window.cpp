@@ -13,30 +13,46 @@
 #include <QMenuBar>
 #include <QMessageBox>
 #include <QPushButton>
+#include <QRubberBand>
 #include <QSettings>
 #include <QSplitter>
 #include <QStackedWidget>
 #include <QStatusBar>
 #include <QTabWidget>
+#include <QTimer>
 #include <QVBoxLayout>
+
+#include <array>
 
 #include <studio/commands/flip_crossing.hpp>
 #include <studio/editors/card_editor.hpp>
+#include <studio/editors/slice_editor.hpp>
+#include <studio/editors/stencil_editor.hpp>
 #include <studio/panels/design_tree.hpp>
 #include <studio/panels/findings_panel.hpp>
+#include <studio/panels/message_bar.hpp>
 #include <studio/panels/preset_dialog.hpp>
+#include <studio/panels/simulation_panel.hpp>
+#include <studio/panels/simulation_scene_group.hpp>
+#include <studio/panels/yarns_panel.hpp>
+#include <studio/viewport/viewer_panel.hpp>
 #include <studio/window/block_actions.hpp>
 #include <studio/window/design_files.hpp>
-#include <studio/window/message_bar.hpp>
+#include <studio/window/simulation_desk.hpp>
 #include <studio/window/slice_desk.hpp>
 #include <studio/window/start_page.hpp>
+#include <studio/window/stencil_desk.hpp>
+#include <studio/window/tutorial.hpp>
 #include <studio/window/viewer_desk.hpp>
 
 namespace weave::studio {
 
 MainWindow::MainWindow(QWidget* parent)
     : QMainWindow(parent), m_files(new DesignFiles(this)), m_pages(new QStackedWidget), m_work(new QSplitter), m_start(new StartPage),
-      m_editors(new QTabWidget), m_card(new CardEditor), m_slice(new SliceEditor), m_slice_desk(new SliceDesk(*m_slice, this)), m_viewport(new Viewport), m_viewer(new ViewerDesk(*m_viewport, this)), m_tree(new DesignTree), m_findings(new FindingsPanel), m_messages(new MessageBar), m_status(new QLabel) {
+      m_editors(new QTabWidget), m_card(new CardEditor), m_slice(new SliceEditor), m_slice_desk(new SliceDesk(*m_slice, this)), m_stencil(new StencilEditor),
+      m_stencil_desk(new StencilDesk(*m_stencil, this)), m_viewer(new ViewerPanel), m_viewer_desk(new ViewerDesk(*m_viewer, this)), m_tree(new DesignTree),
+      m_findings(new FindingsPanel), m_simulation(new SimulationPanel), m_simulation_desk(new SimulationDesk(*m_simulation, *m_viewer, this)), m_yarns(new YarnsPanel),
+      m_tutorial(new Tutorial), m_messages(new MessageBar), m_status(new QLabel) {
     setObjectName("studio");
     resize(1440, 920);
     make_workspace();
@@ -51,17 +67,27 @@ MainWindow::MainWindow(QWidget* parent)
 }
 
 MainWindow::~MainWindow() {
-    m_card->show_document(nullptr);
-    m_slice_desk->show_document(nullptr);
-    m_viewer->show_document(nullptr);
-    m_tree->show_document(nullptr);
-    m_findings->show_document(nullptr);
+    show_in_parts(nullptr);
+}
+
+/// All that looks at the document; null: at none any more.
+void MainWindow::show_in_parts(Document* document) {
+    m_card->show_document(document);
+    m_slice_desk->show_document(document);
+    m_stencil_desk->show_document(document);
+    m_viewer_desk->show_document(document);
+    m_simulation_desk->show_document(document);
+    m_yarns->show_document(document);
+    m_tree->show_document(document);
+    m_findings->show_document(document);
+    m_tutorial->show_document(document);
 }
 
 void MainWindow::make_workspace() {
     m_editors->setDocumentMode(true);
     m_editors->addTab(m_card, tr("Card"));
     m_editors->addTab(m_slice, tr("Section (slice)"));
+    m_editors->addTab(m_stencil, tr("Stencil"));
     auto* whole = new QWidget;
     auto* column = new QVBoxLayout(whole);
     column->setContentsMargins(0, 0, 0, 0);
@@ -71,7 +97,7 @@ void MainWindow::make_workspace() {
     m_pages->addWidget(m_start);
     m_pages->addWidget(m_work);
     m_work->addWidget(m_editors);
-    m_work->addWidget(m_viewport);
+    m_work->addWidget(m_viewer);
     m_work->setSizes({560, 560});
     m_work->setChildrenCollapsible(false);
     setCentralWidget(whole);
@@ -83,14 +109,34 @@ void MainWindow::make_workspace() {
     connect(m_slice, &SliceEditor::status, this, &MainWindow::tell);
     connect(m_slice_desk, &SliceDesk::failed, this, &MainWindow::warn);
     connect(m_slice_desk, &SliceDesk::flip_wanted, this, &MainWindow::flip_at_once);
-    connect(m_viewer, &ViewerDesk::told, this, &MainWindow::tell);
-    connect(m_viewer, &ViewerDesk::attach_wanted, this, [this](Face face) {
+    connect(m_viewer_desk, &ViewerDesk::told, this, &MainWindow::tell);
+    connect(m_viewer_desk, &ViewerDesk::attach_wanted, this, [this](Face face) {
         if (m_blocks != nullptr) m_blocks->ask_what_to_attach(m_document->shown_block(), face, QCursor::pos());
     });
-    connect(m_viewer, &ViewerDesk::flip_wanted, this, &MainWindow::flip);
+    connect(m_viewer_desk, &ViewerDesk::flip_wanted, this, &MainWindow::flip);
+    connect(m_stencil, &StencilEditor::status, this, &MainWindow::tell);
+    connect(m_stencil_desk, &StencilDesk::failed, this, &MainWindow::warn);
+    connect(m_stencil_desk, &StencilDesk::is_stencil, this, [this](bool is) { m_editors->setTabVisible(m_editors->indexOf(m_stencil), is); });
+    connect(m_simulation_desk, &SimulationDesk::failed, this, &MainWindow::warn);
+    connect(m_simulation_desk, &SimulationDesk::told, this, &MainWindow::tell);
+    connect(m_simulation_desk, &SimulationDesk::place_wanted, this, &MainWindow::go_to);
     connect(m_start, &StartPage::open_wanted, m_files, &DesignFiles::open);
     connect(m_start, &StartPage::file_wanted, this, &MainWindow::open_file);
     connect(m_start, &StartPage::sample_wanted, this, &MainWindow::show_sample);
+    connect(m_start, &StartPage::drawing_wanted, this, [this] {
+        Design design;
+        design.root = "slice";
+        design.blocks["slice"] = std::make_shared<const Node>(Node{SliceLeaf{first_drawing()}, {}});
+        show_design(std::move(design), {}, true);
+        m_editors->setCurrentWidget(m_slice);
+    });
+    connect(m_start, &StartPage::tutorial_wanted, this, &MainWindow::begin_tutorial);
+    connect(m_tutorial, &Tutorial::closed, this, [this] {
+        m_is_learning = false;
+        m_tutorial_dock->hide();
+    });
+    connect(m_tutorial, &Tutorial::help_wanted, this, &MainWindow::show_where);
+    connect(m_simulation_desk, &SimulationDesk::relaxed, m_tutorial, &Tutorial::note_relaxed);
     connect(m_start, &StartPage::weave_wanted, this, [this] {
         PresetDialog dialog(this);
         if (dialog.exec() != QDialog::Accepted) return;
@@ -111,16 +157,16 @@ void MainWindow::make_docks() {
     };
     auto* blocks = dock("blocks-dock", tr("Blocks"), m_tree, Qt::LeftDockWidgetArea);
     resizeDocks({blocks}, {300}, Qt::Horizontal);
+    auto* simulation = dock("simulation-dock", tr("Simulation"), m_simulation, Qt::RightDockWidgetArea);
+    auto* yarns = dock("yarns-dock", tr("Yarns"), m_yarns, Qt::RightDockWidgetArea);
+    m_tutorial_dock = dock("tutorial-dock", tr("Tutorial"), m_tutorial, Qt::LeftDockWidgetArea);
+    tabifyDockWidget(simulation, yarns);
+    simulation->raise();
     auto* findings = dock("findings-dock", tr("Findings"), m_findings, Qt::BottomDockWidgetArea);
     resizeDocks({findings}, {190}, Qt::Vertical);
     setCorner(Qt::BottomLeftCorner, Qt::LeftDockWidgetArea);
     setCorner(Qt::BottomRightCorner, Qt::RightDockWidgetArea);
-    connect(m_findings, &FindingsPanel::place_wanted, this, [this](const CardPlace& place) {
-        if (!m_document) return;
-        m_document->focus().show_block(m_document->design().root);
-        m_document->focus().go_to(place);
-        m_editors->setCurrentWidget(m_card);
-    });
+    connect(m_findings, &FindingsPanel::place_wanted, this, &MainWindow::go_to);
     connect(m_findings, &FindingsPanel::counted, findings, [findings](std::size_t errors, std::size_t warnings) {
         findings->setWindowTitle(errors + warnings == 0 ? tr("Findings") : tr("Findings (%1)").arg(errors + warnings));
     });
@@ -138,6 +184,14 @@ void MainWindow::make_docks() {
     });
 }
 
+/// Shows a crossing of the cloth.
+void MainWindow::go_to(const CardPlace& place) {
+    if (!m_document) return;
+    m_document->focus().show_block(m_document->design().root);
+    m_document->focus().go_to(place);
+    m_editors->setCurrentWidget(m_card);
+}
+
 void MainWindow::flip_at_once(const CardPlace& place) {
     m_document->focus().go_to(place);
     const auto step = flip_crossing(*m_document, place);
@@ -148,10 +202,11 @@ void MainWindow::flip_at_once(const CardPlace& place) {
 /// Offers two yarns that cross to change sides, or says why they cannot.
 void MainWindow::flip(const CardPlace& place) {
     m_document->focus().go_to(place);
-    auto step = flip_crossing(*m_document, place);
+    const auto step = flip_crossing(*m_document, place);
     QMenu menu;
     if (step) {
         menu.addAction(step->text, this, [&] {
+            if (m_viewer->mode() == ViewerPanel::Mode::relaxed && m_simulation_desk->flip(place)) return;
             if (Status made = m_document->perform(*step); !made) warn(QString::fromStdString(made.error().text()));
         });
     } else {
@@ -172,11 +227,7 @@ void MainWindow::show_start_page() {
 
 void MainWindow::close_document() {
     if (!m_document) return;
-    m_card->show_document(nullptr);
-    m_slice_desk->show_document(nullptr);
-    m_viewer->show_document(nullptr);
-    m_tree->show_document(nullptr);
-    m_findings->show_document(nullptr);
+    show_in_parts(nullptr);
     m_blocks = nullptr;
     m_document->discard();
     m_document.reset();
@@ -189,13 +240,9 @@ void MainWindow::take(std::unique_ptr<Document> document) {
     connect(m_blocks, &BlockActions::failed, this, &MainWindow::warn);
     connect(m_blocks, &BlockActions::told, this, &MainWindow::tell);
     follow_document();
-    m_card->show_document(m_document.get());
-    m_slice_desk->show_document(m_document.get());
-    m_viewer->show_document(m_document.get());
-    m_tree->show_document(m_document.get());
-    m_findings->show_document(m_document.get());
+    show_in_parts(m_document.get());
     m_pages->setCurrentWidget(m_work);
-    for (QDockWidget* dock : findChildren<QDockWidget*>()) dock->show();
+    for (QDockWidget* dock : findChildren<QDockWidget*>()) dock->setVisible(dock != m_tutorial_dock || m_is_learning);
     show_title();
     show_undo();
 }
@@ -221,8 +268,7 @@ void MainWindow::show_design(Design design, const QString& path, bool is_saved) 
 void MainWindow::recover(Recovery recovery) {
     const std::size_t steps = recovery.entries.size();
     take(std::make_unique<Document>(std::move(recovery)));
-    m_messages->say(tr("The studio was ended before this design was saved. All of it is here again, with its last %n step(s); undo takes them back.", nullptr, static_cast<int>(steps)),
-                    MessageBar::Weight::info);
+    m_messages->tell(MessageBar::Kind::note, tr("The studio was ended before this design was saved. All of it is here again, with its last %n step(s); undo takes them back.", nullptr, static_cast<int>(steps)));
 }
 
 void MainWindow::open_file(const QString& path) {
@@ -232,7 +278,7 @@ void MainWindow::open_file(const QString& path) {
 void MainWindow::opened(const Design& design, const QString& path, const QStringList& warnings) {
     if (!may_close()) return;
     show_design(design, path, !path.isEmpty());
-    if (!warnings.isEmpty()) m_messages->say(warnings.join('\n'), MessageBar::Weight::info);
+    if (!warnings.isEmpty()) m_messages->tell(MessageBar::Kind::note, warnings.join('\n'));
     tell(path.isEmpty() ? tr("Imported; save it as a design to keep it") : tr("Opened %1").arg(path));
 }
 
@@ -264,6 +310,34 @@ void MainWindow::closeEvent(QCloseEvent* event) {
     event->accept();
 }
 
+// ---- Learning ----
+
+void MainWindow::begin_tutorial() {
+    if (!may_close()) return;
+    m_is_learning = true;
+    Design design;
+    design.title = tr("My first pocket").toStdString();
+    design.root = "layer";
+    design.blocks["layer"] = std::make_shared<const Node>(Node{PresetLeaf{{"twill", {{"up", 1}, {"down", 4}}}}, {}});
+    show_design(std::move(design), {}, true);
+    m_tutorial->begin();
+}
+
+/// Rings what a step of the tutorial needs, for two seconds.
+void MainWindow::show_where(std::size_t step) {
+    const std::array<QWidget*, Tutorial::steps> places{m_tree, m_simulation, m_card, m_viewer, m_simulation->scene()};
+    if (step >= places.size()) return;
+    if (places[step] == m_card) m_editors->setCurrentWidget(m_card);
+    for (QWidget* above = places[step]; above != nullptr; above = above->parentWidget()) {
+        if (auto* dock = qobject_cast<QDockWidget*>(above)) dock->show(), dock->raise();
+        if (auto* tabs = qobject_cast<QTabWidget*>(above->parentWidget() ? above->parentWidget()->parentWidget() : nullptr)) tabs->setCurrentWidget(above);
+    }
+    auto* ring = new QRubberBand(QRubberBand::Rectangle, this);
+    ring->setGeometry(QRect(places[step]->mapTo(this, QPoint()), places[step]->size()));
+    ring->show();
+    QTimer::singleShot(2000, ring, &QObject::deleteLater);
+}
+
 // ---- What is told ----
 
 void MainWindow::show_title() {
@@ -288,7 +362,7 @@ void MainWindow::tell(const QString& words) {
 }
 
 void MainWindow::warn(const QString& reason) {
-    m_messages->say(reason, MessageBar::Weight::failure);
+    m_messages->tell(MessageBar::Kind::error, reason);
 }
 
 std::string MainWindow::chosen_block() const {

@@ -6,6 +6,7 @@
 #include <studio/document/document.hpp>
 
 class QAction;
+class QDockWidget;
 class QLabel;
 class QMenu;
 class QSplitter;
@@ -23,8 +24,14 @@ class MessageBar;
 class SliceDesk;
 class SliceEditor;
 class StartPage;
+class StencilDesk;
+class StencilEditor;
+class SimulationDesk;
+class SimulationPanel;
+class Tutorial;
 class ViewerDesk;
-class Viewport;
+class ViewerPanel;
+class YarnsPanel;
 
 /// The window of one design: the start page until there is one, then its editors and panels. It owns the document; all else looks
 /// at it.
@@ -57,16 +64,21 @@ class MainWindow : public QMainWindow {
     void make_file_menu();
     void make_edit_menu();
     void make_view_menu();
+    void make_simulation_menu();
     void make_help_menu();
     void take(std::unique_ptr<Document> document);
     void close_document();
+    void show_in_parts(Document* document);
     void show_start_page();
+    void begin_tutorial();
+    void show_where(std::size_t step);
     void follow_document();
     void show_title();
     void show_undo();
     void tell(const QString& words);
     void warn(const QString& reason);
     void flip(const CardPlace& place);
+    void go_to(const CardPlace& place);
     void flip_at_once(const CardPlace& place);
     void opened(const Design& design, const QString& path, const QStringList& warnings);
     QAction* add(QMenu& menu, const QString& text, const QKeySequence& keys, std::function<void()> deed, bool needs_design = true);
@@ -82,10 +94,18 @@ class MainWindow : public QMainWindow {
     CardEditor* m_card;
     SliceEditor* m_slice;
     SliceDesk* m_slice_desk;
-    Viewport* m_viewport;
-    ViewerDesk* m_viewer;
+    StencilEditor* m_stencil;
+    StencilDesk* m_stencil_desk;
+    ViewerPanel* m_viewer;
+    ViewerDesk* m_viewer_desk;
     DesignTree* m_tree;
     FindingsPanel* m_findings;
+    SimulationPanel* m_simulation;
+    SimulationDesk* m_simulation_desk;
+    YarnsPanel* m_yarns;
+    Tutorial* m_tutorial;
+    QDockWidget* m_tutorial_dock = nullptr;
+    bool m_is_learning = false;
     MessageBar* m_messages;
     QLabel* m_status;
     QAction* m_undo = nullptr;

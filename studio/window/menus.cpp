@@ -10,7 +10,8 @@
 
 #include <functional>
 #include <studio/editors/card_editor.hpp>
-#include <studio/viewport/viewport.hpp>
+#include <studio/panels/simulation_panel.hpp>
+#include <studio/viewport/viewer_panel.hpp>
 #include <studio/window/block_actions.hpp>
 #include <studio/window/design_files.hpp>
 
@@ -27,6 +28,7 @@ void MainWindow::make_menus() {
     make_file_menu();
     make_edit_menu();
     make_view_menu();
+    make_simulation_menu();
     make_help_menu();
 }
 
@@ -82,7 +84,10 @@ void MainWindow::make_view_menu() {
     QMenu& menu = *menuBar()->addMenu(tr("&View"));
     // One key for the editor in which the person is: the viewer has its own.
     const auto in_sight = [this](auto viewer, auto card) {
-        return [this, viewer, card] { m_viewport->hasFocus() ? viewer(*m_viewport) : card(m_card->canvas()); };
+        return [this, viewer, card] {
+            Viewport* viewport = m_viewer->viewport();
+            viewport != nullptr && viewport->hasFocus() ? viewer(*viewport) : card(m_card->canvas());
+        };
     };
     add(menu, tr("&Larger"), QKeySequence("+"), in_sight([](Viewport& view) { view.zoom(1.25); }, [](GridCanvas& card) { card.zoom_by(1.4); }));
     add(menu, tr("&Smaller"), QKeySequence("-"), in_sight([](Viewport& view) { view.zoom(0.8); }, [](GridCanvas& card) { card.zoom_by(1 / 1.4); }));
@@ -92,11 +97,9 @@ void MainWindow::make_view_menu() {
                                                               {StandardView::warp_side, tr("Along the picks (warp side)")}, {StandardView::weft_side, tr("Along the ends (weft side)")},
                                                               {StandardView::corner, tr("Corner")}, {StandardView::opposite_corner, tr("Opposite corner")}};
     for (std::size_t k = 0; k < views.size(); ++k)
-        add(menu, views[k].second, QKeySequence(QString::number(k + 1)), [this, view = views[k].first] { m_viewport->turn_to(view); });
-    QAction* lock = add(menu, tr("Lock the 3D &view"), {}, [] {});
-    lock->setCheckable(true);
-    connect(lock, &QAction::toggled, m_viewport, &Viewport::set_locked);
-    connect(m_viewport, &Viewport::locked_changed, lock, &QAction::setChecked);
+        add(menu, views[k].second, QKeySequence(QString::number(k + 1)), [this, view = views[k].first] {
+            if (m_viewer->viewport() != nullptr) m_viewer->viewport()->turn_to(view);
+        });
     menu.addSeparator();
     QMenu* corners = menu.addMenu(tr("Corner of &pick 1 and end 1"));
     auto* group = new QActionGroup(this);
@@ -113,8 +116,16 @@ void MainWindow::make_view_menu() {
     }
 }
 
+void MainWindow::make_simulation_menu() {
+    QMenu& menu = *menuBar()->addMenu(tr("&Simulation"));
+    for (QAction* action : {m_simulation->run_action(), m_simulation->step_action(), m_simulation->stop_action(), m_simulation->again_action()}) menu.addAction(action);
+    menu.addSeparator();
+    for (QAction* action : {m_simulation->save_action(), m_simulation->open_action()}) menu.addAction(action);
+}
+
 void MainWindow::make_help_menu() {
     QMenu& menu = *menuBar()->addMenu(tr("&Help"));
+    add(menu, tr("&Learn it in five steps"), {}, [this] { begin_tutorial(); }, false);
     add(menu, tr("&About"), {}, [this] {
         QMessageBox::about(this, tr("Weave studio"), tr("Weave studio %1\n3D woven cloth, from the first block to the loom.").arg(QApplication::applicationVersion()));
     }, false);

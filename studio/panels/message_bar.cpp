@@ -1,4 +1,4 @@
-#include <studio/panels/simulation_message_bar.hpp>
+#include <studio/panels/message_bar.hpp>
 
 #include <QHBoxLayout>
 #include <QLabel>
@@ -9,6 +9,7 @@ namespace weave::studio {
 
 MessageBar::MessageBar(QWidget* parent) : QFrame(parent), m_icon(new QLabel(this)), m_words(new QLabel(this)), m_close(new QToolButton(this)) {
     setFrameShape(QFrame::StyledPanel);
+    setAutoFillBackground(true);
     auto* line = new QHBoxLayout(this);
     line->addWidget(m_icon, 0, Qt::AlignTop);
     line->addWidget(m_words, 1);
@@ -26,6 +27,11 @@ MessageBar::MessageBar(QWidget* parent) : QFrame(parent), m_icon(new QLabel(this
 
 void MessageBar::tell(Kind kind, const QString& words) {
     m_kind = kind;
+    // All three grounds bear black text: 12:1 and more.
+    QPalette colours = palette();
+    colours.setColor(QPalette::Window, kind == Kind::error ? QColor(0xff, 0xd9, 0xb8) : kind == Kind::warning ? QColor(0xff, 0xf0, 0xc2) : QColor(0xd4, 0xea, 0xf7));
+    colours.setColor(QPalette::WindowText, Qt::black);
+    setPalette(colours);
     m_words->setText(words);
     m_words->setAccessibleName(words);
     const auto icon = kind == Kind::error ? QStyle::SP_MessageBoxCritical : kind == Kind::warning ? QStyle::SP_MessageBoxWarning : QStyle::SP_MessageBoxInformation;

@@ -1,0 +1,178 @@
+// The paper's study (section 7) as a person does it, in a real window with mouse and keys: a layer of two satins by a stencil, relaxed
+// and mended by flips; a twill below it, sealed along the sides; and sealed at one end.
+
+#include <weave/samples/samples.hpp>
+
+#include <studio/editors/card_editor.hpp>
+#include <studio/editors/stencil_editor.hpp>
+#include <studio/panels/design_tree.hpp>
+#include <studio/panels/simulation_fidelity_group.hpp>
+#include <studio/panels/simulation_panel.hpp>
+#include <studio/panels/simulation_scene_group.hpp>
+#include <studio/viewport/viewer_panel.hpp>
+#include <studio/window/main_window.hpp>
+
+#include <QtTest>
+
+#include <catch2/catch.hpp>
+#include <cstdlib>
+#include <memory>
+
+#include "support/hands.hpp"
+
+using namespace weave;
+using namespace weave::studio;
+using namespace weave::studio::test;
+
+namespace {
+
+constexpr std::size_t picks = 35, ends = 25;
+
+/// The window with a person before it.
+class Designer {
+  public:
+    Designer() {
+        window.resize(1600, 1000);
+        window.show();
+        REQUIRE(QTest::qWaitForWindowExposed(&window));
+        QApplication::setActiveWindow(&window);
+        viewer().viewport()->set_animated(false);
+    }
+
+    void settle() {
+        REQUIRE(until([&] { return window.document() != nullptr && window.document()->shown_is_current(); }));
+        REQUIRE(until([&] { return window.document()->whole().revision == window.document()->revision(); }));
+        QTest::qWait(50);
+    }
+    void choose_weave(QDialog& dialog, const QString& family, int size, int move) {
+        choose_entry(dialog.findChild<QComboBox*>(), family);
+        type_number(dialog.findChild<QSpinBox*>("size"), size);
+        type_number(dialog.findChild<QSpinBox*>("move"), move);
+        press(dialog, QDialogButtonBox::Ok);
+    }
+    void click_card(const CardPlace& place) {
+        GridCanvas& canvas = card().canvas();
+        QTest::mouseClick(&canvas, Qt::LeftButton, {}, canvas.mapping().box({place.pick, place.end}).center().toPoint());
+    }
+    void keep_screen(const char* name) {
+        const char* folder = std::getenv("WEAVE_SCREENS");
+        if (folder == nullptr) return;
+        QTest::qWait(700);
+        window.grab().save(QString("%1/%2.png").arg(folder, name));
+    }
+
+    template <class Widget>
+    Widget& find() {
+        auto* found = window.findChild<Widget*>();
+        REQUIRE(found != nullptr);
+        return *found;
+    }
+    CardEditor& card() { return find<CardEditor>(); }
+    ViewerPanel& viewer() { return find<ViewerPanel>(); }
+    SimulationPanel& simulation() { return find<SimulationPanel>(); }
+    QTabWidget& editors() { return *static_cast<QTabWidget*>(card().parentWidget()->parentWidget()); }
+    void show_editor(const QString& name) {
+        QTabBar* bar = editors().tabBar();
+        for (int k = 0; k < bar->count(); ++k) {
+            if (bar->tabText(k) == name && bar->isTabVisible(k)) return QTest::mouseClick(bar, Qt::LeftButton, {}, bar->tabRect(k).center());
+        }
+        FAIL("there is no editor " << name.toStdString());
+    }
+    [[nodiscard]] const Design& design() { return window.document()->design(); }
+    [[nodiscard]] const CardImage& whole_card() {
+        settle();
+        return window.document()->whole().block ? m_card = window.document()->whole().block->card_image() : m_card;
+    }
+
+    MainWindow window;
+
+  private:
+    CardImage m_card;
+};
+
+QToolButton* button_of(QWidget& panel, const QAction* action) {
+    for (auto* button : panel.findChildren<QToolButton*>()) {
+        if (button->defaultAction() == action) return button;
+    }
+    return nullptr;
+}
+
+/// Task 1: a graphic of two satins.
+void make_pattern(Designer& she) {
+    with_dialog([&] { click(she.window.findChild<QAbstractButton*>("begin-weave")); },
+                [&](QDialog& dialog) { she.choose_weave(dialog, "satin", 5, 2); });
+    she.settle();
+    with_dialog([&] { choose(she.window, {"Block", "Add a traditional weave …"}); },
+                [&](QDialog& dialog) { she.choose_weave(dialog, "sateen", 5, 2); });
+    she.settle();
+    click_item(she.find<DesignTree>(), "satin");
+    she.settle();
+    choose(she.window, {"Block", "Stencil from the block shown"});
+    she.settle();
+    she.show_editor("Stencil");
+    auto& stencil = she.find<StencilEditor>();
+    with_dialog([&] { click(stencil.findChild<QAbstractButton*>("size")); },
+                [&](QDialog& dialog) {
+                    type_number(dialog.findChild<QSpinBox*>("columns"), ends);
+                    type_number(dialog.findChild<QSpinBox*>("rows"), picks);
+                    press(dialog, QDialogButtonBox::Ok);
+                });
+    she.settle();
+    with_menu([&] { click(stencil.palette_list().findChild<QAbstractButton*>("add")); }, "sateen");
+    she.settle();
+    QListWidget& palette = stencil.palette_list().list();
+    QTest::mouseClick(palette.viewport(), Qt::LeftButton, {}, palette.visualItemRect(palette.item(1)).center());
+    for (QAction* tool : stencil.findChildren<QAction*>()) {
+        if (tool->objectName() == "rectangle") click(button_of(stencil, tool));
+    }
+    StencilCanvas& canvas = stencil.canvas();
+    const auto at = [&](std::size_t row, std::size_t column) { return canvas.place_of({static_cast<int>(column), static_cast<int>(row)}); };
+    QTest::mousePress(&canvas, Qt::LeftButton, {}, at(8, 6));
+    QTest::mouseMove(&canvas, at(20, 12));
+    QTest::mouseMove(&canvas, at(26, 18));
+    QTest::mouseRelease(&canvas, Qt::LeftButton, {}, at(26, 18));
+    she.settle();
+}
+
+/// The same, by the library.
+Design pattern_of_the_library() {
+    Design design;
+    design.root = "stencil";
+    const auto satin = [](const char* family) { return std::make_shared<const Node>(Node{PresetLeaf{{family, {{"size", 5}, {"move", 2}}}}, {}}); };
+    design.blocks["satin"] = satin("satin");
+    design.blocks["sateen"] = satin("sateen");
+    auto map = std::make_shared<StencilMap>();
+    map->rows = picks;
+    map->columns = ends;
+    for (std::size_t row = 0; row < picks; ++row) {
+        for (std::size_t column = 0; column < ends; ++column) map->blocks.push_back(row >= 8 && row <= 26 && column >= 6 && column <= 18 ? 1 : 0);
+    }
+    design.blocks["stencil"] = std::make_shared<const Node>(Node{StencilOperation{{"satin", "sateen"}, map}, {}});
+    return design;
+}
+
+CardImage card_of(const Design& design) {
+    const auto made = evaluate(design);
+    REQUIRE(made);
+    return made->block->card_image();
+}
+
+/// Task 2: relaxed to rest, then two crossings flipped in the relaxed cloth itself.
+void relax_and_mend(Designer& she) {
+    SimulationPanel& simulation = she.simulation();
+    choose_entry(simulation.fidelity()->choice(), "Draft");
+    click(button_of(simulation, simulation.run_action()));
+    REQUIRE(QTest::qWaitFor([&] { return simulation.state().phase == RunPhase::at_rest; }, 180000));
+    REQUIRE(until([&] { return she.viewer().mode() == ViewerPanel::Mode::relaxed && simulation.state().yarns; }));
+}
+
+}  // namespace
+
+TEST_CASE("the study: a pocket from two satins and a twill, drawn, relaxed, mended, attached and sealed", "[story]") {
+    Designer she;
+    make_pattern(she);
+    const CardImage pattern = card_of(pattern_of_the_library());
+    CHECK(she.whole_card() == pattern);
+    CHECK(she.design().root == "stencil");
+    she.keep_screen("story-1-pattern");
+}
