@@ -113,6 +113,7 @@ QString TubePainter::start() {
     const auto* const name = reinterpret_cast<const char*>(gl->glGetString(GL_RENDERER));
     m_renderer = QString::fromUtf8(name);
     m_is_software = m_renderer.contains("llvmpipe") || m_renderer.contains("softpipe") || m_renderer.contains("SWR");
+    find_by_processor(m_is_software);
     QString trouble;
     m_find[0] = program(shaders::vertex({}), shaders::find({}), trouble);
     m_find[1] = program(shaders::vertex({"PLANES"}), shaders::find({"PLANES"}), trouble);
@@ -292,10 +293,12 @@ void TubePainter::bind(QOpenGLShaderProgram& program) {
     }
 }
 
-void TubePainter::find(const TubeFrame& frame) {
-    const auto width = std::max(1, static_cast<int>(std::lround(frame.size.width * frame.scale))),
-               height = std::max(1, static_cast<int>(std::lround(frame.size.height * frame.scale)));
-    make_sheet(width, height);
+void TubePainter::find_by_processor(bool processor) {
+    m_finder = processor ? std::make_unique<SoftwareFinder>() : nullptr;
+    m_has_found = false;
+}
+
+void TubePainter::set_depths(const TubeFrame& frame) {
     m_near = std::numeric_limits<double>::infinity();
     m_far = -m_near;
     for (const Vec3& corner : box_of(*m_model, frame.shown.repeat).corners()) {
@@ -306,9 +309,67 @@ void TubePainter::find(const TubeFrame& frame) {
     const double rim = 0.01 * (m_far - m_near) + 2 * m_model->thinnest_mm();
     m_near = frame.camera.perspective ? std::max(m_near - rim, 0.0) : m_near - rim;
     m_far = std::max(m_far + rim, m_near + rim);
+}
+
+/// The pieces that a picture may show, of each repeat those that are not flat first.
+std::vector<PieceRange> TubePainter::ranges_of(const TubeFrame& frame, const Level& level) const {
+    std::vector<PieceRange> ranges;
+    for (std::size_t i = 0; i < frame.shown.repeat[0]; ++i) {
+        for (std::size_t j = 0; j < frame.shown.repeat[1]; ++j) {
+            const Sieve sieve(frame, move_of(*m_model, i, j));
+            bool joins = false;
+            for (const Chunk& chunk : level.chunks) {
+                if (!sieve.keeps(chunk)) {
+                    joins = false;
+                    continue;
+                }
+                joins = joins && chunk.first != level.first_flat;
+                if (joins) {
+                    ranges.back().count += chunk.count;
+                } else {
+                    ranges.push_back({chunk.first, chunk.count, i, j});
+                }
+                joins = true;
+            }
+        }
+    }
+    return ranges;
+}
+
+void TubePainter::find(const TubeFrame& frame) {
+    const auto width = std::max(1, static_cast<int>(std::lround(frame.size.width * frame.scale))),
+               height = std::max(1, static_cast<int>(std::lround(frame.size.height * frame.scale)));
+    make_sheet(width, height);
+    set_depths(frame);
+    const Level& level = level_for(*m_model, frame);
+    const std::vector<PieceRange> ranges = ranges_of(frame, level);
+    m_drawn = 0;
+    for (const PieceRange& range : ranges) m_drawn += range.count;
+    if (m_finder != nullptr) {
+        find_here(frame, ranges);
+    } else {
+        find_there(frame, level, ranges);
+    }
+    m_found = frame;
+    m_has_found = true;
+}
+
+void TubePainter::find_here(const TubeFrame& frame, const std::vector<PieceRange>& ranges) {
+    m_finder->run(*m_model, {frame.camera, frame.size, m_sheet.width, m_sheet.height, m_near, m_far, frame.shown.clip, ranges});
+    m_gl->glActiveTexture(GL_TEXTURE0);
+    m_gl->glPixelStorei(GL_UNPACK_ALIGNMENT, 4);
+    m_gl->glBindTexture(GL_TEXTURE_2D, m_sheet.seen);
+    m_gl->glTexSubImage2D(GL_TEXTURE_2D, 0, 0, 0, m_sheet.width, m_sheet.height, GL_RG_INTEGER, GL_UNSIGNED_INT,
+                          m_finder->seen().data());
+    m_gl->glBindTexture(GL_TEXTURE_2D, m_sheet.depth);
+    m_gl->glTexSubImage2D(GL_TEXTURE_2D, 0, 0, 0, m_sheet.width, m_sheet.height, GL_DEPTH_COMPONENT, GL_FLOAT,
+                          m_finder->depth().data());
+}
+
+void TubePainter::find_there(const TubeFrame& frame, const Level& level, const std::vector<PieceRange>& ranges) {
     m_gl->glBindFramebuffer(GL_FRAMEBUFFER, m_sheet.frame);
     m_gl->glDrawBuffer(GL_COLOR_ATTACHMENT0);
-    m_gl->glViewport(0, 0, width, height);
+    m_gl->glViewport(0, 0, m_sheet.width, m_sheet.height);
     m_gl->glDisable(GL_BLEND);
     m_gl->glDisable(GL_SCISSOR_TEST);
     m_gl->glDisable(GL_CULL_FACE);
@@ -319,45 +380,25 @@ void TubePainter::find(const TubeFrame& frame) {
     constexpr float far[1]{1};
     m_gl->glClearBufferuiv(GL_COLOR, 0, nothing);
     m_gl->glClearBufferfv(GL_DEPTH, 0, far);
-    m_drawn = 0;
-    const Level& level = level_for(*m_model, frame);
-    for (std::size_t i = 0; i < frame.shown.repeat[0]; ++i)
-        for (std::size_t j = 0; j < frame.shown.repeat[1]; ++j) draw_copy(frame, level, i, j);
-    m_found = frame;
-    m_has_found = true;
-}
-
-void TubePainter::draw_copy(const TubeFrame& frame, const Level& level, std::size_t i, std::size_t j) {
-    const auto copy = static_cast<std::uint32_t>(i | j << 4U);
-    const Vec3 move = move_of(*m_model, i, j);
-    draw_ranges(frame, level, move, false, *m_find[frame.shown.clip ? 1 : 0], copy);
-    draw_ranges(frame, level, move, true, *m_find[1], copy);
-}
-
-void TubePainter::draw_ranges(const TubeFrame& frame, const Level& level, const Vec3& move, bool flat,
-                              QOpenGLShaderProgram& program, std::uint32_t copy) {
-    const Sieve sieve(frame, move);
-    std::vector<GLsizei> counts;
-    std::vector<const void*> starts;
-    std::uint32_t next = 0;
-    for (const Chunk& chunk : level.chunks) {
-        if ((chunk.first >= level.first_flat) != flat || !sieve.keeps(chunk)) continue;
-        m_drawn += chunk.count;
-        const auto corners = static_cast<GLsizei>(6 * chunk.count);
-        if (!counts.empty() && next == chunk.first) {
-            counts.back() += corners;
-        } else {
-            counts.push_back(corners);
-            starts.push_back(reinterpret_cast<const void*>(std::uintptr_t{6} * chunk.first * sizeof(std::uint32_t)));
-        }
-        next = chunk.first + chunk.count;
-    }
-    if (counts.empty()) return;
-    bind(program);
-    use_camera(program, frame, move);
-    m_gl->glUniform1ui(program.uniformLocation("u_copy"), copy);
     m_gl->glBindBuffer(GL_ELEMENT_ARRAY_BUFFER, m_indices);
-    m_gl->glMultiDrawElements(GL_TRIANGLES, counts.data(), GL_UNSIGNED_INT, starts.data(), static_cast<GLsizei>(counts.size()));
+    // Those of one repeat and one program at a time.
+    for (std::size_t at = 0; at < ranges.size();) {
+        const PieceRange& first = ranges[at];
+        const bool flat = first.first >= level.first_flat;
+        std::vector<GLsizei> counts;
+        std::vector<const void*> starts;
+        for (; at < ranges.size() && ranges[at].i == first.i && ranges[at].j == first.j &&
+               (ranges[at].first >= level.first_flat) == flat;
+             ++at) {
+            counts.push_back(static_cast<GLsizei>(6 * ranges[at].count));
+            starts.push_back(reinterpret_cast<const void*>(std::uintptr_t{6} * ranges[at].first * sizeof(std::uint32_t)));
+        }
+        QOpenGLShaderProgram& program = *m_find[flat || frame.shown.clip ? 1 : 0];
+        bind(program);
+        use_camera(program, frame, move_of(*m_model, first.i, first.j));
+        m_gl->glUniform1ui(program.uniformLocation("u_copy"), static_cast<GLuint>(first.i | first.j << 4U));
+        m_gl->glMultiDrawElements(GL_TRIANGLES, counts.data(), GL_UNSIGNED_INT, starts.data(), static_cast<GLsizei>(counts.size()));
+    }
 }
 
 void TubePainter::light(const TubeFrame& frame, GLuint target) {

@@ -1,6 +1,6 @@
 #pragma once
 
-#include <studio/viewport/picking.hpp>
+#include <studio/viewport/software_finder.hpp>
 
 #include <QOpenGLFunctions_3_3_Core>
 #include <QOpenGLShaderProgram>
@@ -54,6 +54,8 @@ class TubePainter {
     [[nodiscard]] QString renderer() const { return m_renderer; }
     /// Whether the processor draws.
     [[nodiscard]] bool is_software() const { return m_is_software; }
+    /// Whether the processor finds what is seen, instead of OpenGL; so from the start where OpenGL is drawn by the processor itself.
+    void find_by_processor(bool processor);
     /// Of the last picture that was looked for.
     [[nodiscard]] std::size_t drawn_pieces() const { return m_drawn; }
 
@@ -77,9 +79,10 @@ class TubePainter {
     void drop_sheet();
     void use_camera(QOpenGLShaderProgram& program, const TubeFrame& frame, const Vec3& move);
     void find(const TubeFrame& frame);
-    void draw_copy(const TubeFrame& frame, const Level& level, std::size_t i, std::size_t j);
-    void draw_ranges(const TubeFrame& frame, const Level& level, const Vec3& move, bool flat, QOpenGLShaderProgram& program,
-                     std::uint32_t copy);
+    [[nodiscard]] std::vector<PieceRange> ranges_of(const TubeFrame& frame, const Level& level) const;
+    void set_depths(const TubeFrame& frame);
+    void find_here(const TubeFrame& frame, const std::vector<PieceRange>& ranges);
+    void find_there(const TubeFrame& frame, const Level& level, const std::vector<PieceRange>& ranges);
     void light(const TubeFrame& frame, GLuint target);
     void bind(QOpenGLShaderProgram& program);
 
@@ -98,6 +101,7 @@ class TubePainter {
     std::vector<std::uint8_t> m_states;
     bool m_is_marked = false;
     std::size_t m_drawn = 0;
+    std::unique_ptr<SoftwareFinder> m_finder;  ///< null: OpenGL finds
     bool m_has_found = false;  ///< whether the sheet holds m_found
     TubeFrame m_found;
     double m_near = 0, m_far = 1;

@@ -4,6 +4,10 @@
 #include <weave/picture/tube_render.hpp>
 
 #include <QApplication>
+#include <QLabel>
+#include <QOffscreenSurface>
+#include <QOpenGLContext>
+#include <QOpenGLFramebufferObject>
 #include <QSignalSpy>
 #include <QTemporaryDir>
 #include <QToolBar>
@@ -247,14 +251,16 @@ TEST_CASE("selected yarns stand out and the others pale") {
 
 TEST_CASE("OpenGL draws what the processor draws") {
     const auto yarns = sample_yarns();
-    for (const bool perspective : {false}) {
+    for (const bool perspective : {false, true}) {
         ClothView view;
         view.perspective = perspective;
         TubeCamera camera(view.azimuth_deg, view.elevation_deg);
         auto scene = make_scene(*yarns, view, camera);
         REQUIRE(scene);
         constexpr int wide = 500, high = 400;
-        camera.fit(box_of(*scene, camera), {20, 20, wide - 40, high - 40});
+        // With perspective as our own camera does it: the eye as far away as 1.7 heights of the picture.
+        camera.fit(perspective ? Rectangle{-0.5 * wide / (1.7 * high), -0.5 / 1.7, wide / (1.7 * high), 1 / 1.7} : box_of(*scene, camera),
+                   perspective ? Rectangle{0, 0, wide, high} : Rectangle{20, 20, wide - 40, high - 40});
         const auto expected = render(*scene, camera, wide, high);
 
         Viewport viewport;
@@ -272,7 +278,7 @@ TEST_CASE("OpenGL draws what the processor draws") {
         own.azimuth_deg = view.azimuth_deg;
         own.elevation_deg = view.elevation_deg;
         own.centre = centre;
-        own.height_mm = high / camera.pixels_per_unit() * (perspective ? seen.z() : 1);
+        own.height_mm = perspective ? seen.z() / 1.7 : high / camera.pixels_per_unit();
         own.pan(at.x - wide / 2.0, at.y - high / 2.0, {wide, high});
         viewport.set_camera(own);
         const QImage drawn = viewport.grabFramebuffer();
@@ -389,4 +395,50 @@ TEST_CASE("without OpenGL the panel says so in words and goes on") {
     panel.set_mode(ViewerPanel::Mode::relaxed);
     CHECK(QTest::qWaitFor([&] { return panel.viewport()->model() != nullptr; }));
     CHECK_FALSE(panel.save_picture("/tmp/none.png"));
+}
+
+TEST_CASE("the shaders see what the processor's own finder sees, cut or whole, in both kinds of view") {
+    QOpenGLContext context;
+    QSurfaceFormat format;
+    format.setVersion(3, 3);
+    format.setProfile(QSurfaceFormat::CoreProfile);
+    context.setFormat(format);
+    REQUIRE(context.create());
+    QOffscreenSurface surface;
+    surface.setFormat(context.format());
+    surface.create();
+    REQUIRE(context.makeCurrent(&surface));
+    TubePainter painter;
+    REQUIRE(painter.start().isEmpty());
+    const auto model = model_of(sample_yarns());
+    painter.set_model(model.get());
+    QOpenGLFramebufferObject target(400, 300);
+    for (const bool perspective : {false, true}) {
+        for (const bool cut : {false, true}) {
+            TubeFrame frame;
+            frame.size = {400, 300};
+            frame.shown.repeat = {2, 1};
+            frame.camera.perspective = perspective;
+            frame.camera.fit(box_of(*model, {2, 1}), frame.size);
+            if (cut) frame.shown.clip = Plane{{-1, 0, 0}, -model->box().centre().x()};
+            QImage images[2];
+            for (const bool processor : {false, true}) {
+                painter.find_by_processor(processor);
+                painter.draw(frame, target.handle());
+                images[processor ? 1 : 0] = target.toImage().convertToFormat(QImage::Format_RGB32);
+            }
+            int differ = 0, yarn = 0;
+            for (int y = 0; y < 300; ++y) {
+                for (int x = 0; x < 400; ++x) {
+                    const QColor a = images[0].pixelColor(x, y), b = images[1].pixelColor(x, y);
+                    yarn += a.lightness() < 215 ? 1 : 0;
+                    differ += std::abs(a.red() - b.red()) + std::abs(a.green() - b.green()) + std::abs(a.blue() - b.blue()) > 24 ? 1 : 0;
+                }
+            }
+            INFO((perspective ? "perspective" : "parallel") << (cut ? ", cut: " : ": ") << differ << " of " << yarn << " pixels differ");
+            CHECK(yarn > 10'000);
+            CHECK(differ < 0.005 * yarn);
+        }
+    }
+    painter.release();
 }
