@@ -97,6 +97,10 @@ QPoint SliceCanvas::place_of_marks() const {
     return space().center().toPoint();
 }
 
+void SliceCanvas::tell(const QString& words) {
+    if (!m_bubble.isVisible()) Q_EMIT status(words);
+}
+
 void SliceCanvas::refuse(const QString& why, QPoint place) {
     QString words = why;
     if (!words.isEmpty()) words[0] = words[0].toUpper();

@@ -58,6 +58,8 @@ class SliceCanvas : public QWidget {
     /// What an empty slice says in its middle.
     [[nodiscard]] virtual QString empty_words() const { return {}; }
 
+    /// Tells what lies under the pointer, unless a bubble says why something could not be done: that stays.
+    void tell(const QString& words);
     /// Says at a place why something cannot be done, and in the status line.
     void refuse(const QString& why, QPoint place);
     /// The middle of a marked yarn, or of the widget.

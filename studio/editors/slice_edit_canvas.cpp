@@ -81,14 +81,14 @@ void SliceEditCanvas::hover(QPointF place, std::optional<SliceYarnId> yarn) {
     if (m_tool == SliceTool::add_dot && position && !(yarn && !yarn->path)) {
         m_marks.dot_preview =
             QPointF(static_cast<double>(*position), std::max(0.0, std::round(view().level_at(place.y()))));
-        Q_EMIT status(tr("Click adds a %1 to position %2, level %3")
-                          .arg(kind_of_dots(m_slice))
-                          .arg(*position + 1)
-                          .arg(m_marks.dot_preview->y() + 1));
+        tell(tr("Click adds a %1 to position %2, level %3")
+                 .arg(kind_of_dots(m_slice))
+                 .arg(*position + 1)
+                 .arg(m_marks.dot_preview->y() + 1));
     } else if (yarn) {
-        Q_EMIT status(told(m_slice, *yarn));
+        tell(told(m_slice, *yarn));
     } else {
-        Q_EMIT status(position ? tr("position %1").arg(*position + 1) : QString());
+        tell(position ? tr("position %1").arg(*position + 1) : QString());
     }
     const bool grasp = m_tool == SliceTool::draw && yarn && yarn->path;
     const bool draws = m_tool == SliceTool::add_path || m_tool == SliceTool::add_dot;

@@ -93,13 +93,13 @@ void SliceReadCanvas::hover(QPointF place, std::optional<SliceYarnId> yarn) {
     setCursor(crossing ? Qt::PointingHandCursor : Qt::ArrowCursor);
     if (crossing) {
         m_marks.crossing = {crossing->dot->yarn, crossing->path->yarn};
-        Q_EMIT status(words_of(*crossing));
+        tell(words_of(*crossing));
     } else if (yarn && yarn->path) {
         const ScenePath* path = path_of(scene(), yarn->number);
         const QString words = m_dots == System::weft ? tr("end %1") : tr("pick %1");
-        Q_EMIT status(path != nullptr && path->number ? words.arg(*path->number + 1) : QString());
+        tell(path != nullptr && path->number ? words.arg(*path->number + 1) : QString());
     } else {
-        Q_EMIT status({});
+        tell({});
     }
 }
 

@@ -37,7 +37,9 @@ void StencilCanvas::show_map(std::shared_ptr<const StencilMap> map, const std::v
     const bool same = map == m_before && colours == m_colours && !m_image.isNull();
     if (same && !m_begin) return;  // what was told of last, shown again
     m_begin.reset();
+    m_last.reset();
     m_before = map;
+    if (same_size && colours == m_colours) return take_rows(*map);
     m_map = std::make_shared<StencilMap>(*map);
     m_colours = colours;
     if (!same_size)
@@ -54,6 +56,16 @@ void StencilCanvas::set_tool(StencilTool tool) {
     give_up_stroke();
     m_tool = tool;
     setCursor(tool == StencilTool::pick ? Qt::PointingHandCursor : Qt::CrossCursor);
+}
+
+/// Takes over the rows that differ, which after an undo are few.
+void StencilCanvas::take_rows(const StencilMap& map) {
+    for (std::size_t row = 0; row < map.rows; ++row) {
+        if (std::ranges::equal(map.row(row), m_map->row(row))) continue;
+        std::ranges::copy(map.row(row),
+                          m_map->blocks.begin() + static_cast<std::ptrdiff_t>(row * map.columns));
+        changed(QRect(0, static_cast<int>(row), m_image.width(), 1));
+    }
 }
 
 /// Brings the image and the screen up to date with a part of the map.
@@ -203,6 +215,7 @@ QString StencilCanvas::name_of(std::uint16_t block) const {
 }
 
 void StencilCanvas::tell(QPoint stack) {
+    if (m_bubble.isVisible()) return;  // what it says stands in the status line too
     if (!holds(*m_map, stack)) return Q_EMIT status({});
     Q_EMIT status(
         tr("row %1, column %2: %3").arg(stack.y() + 1).arg(stack.x() + 1).arg(name_of(at(*m_map, stack))));
@@ -251,8 +264,7 @@ void StencilCanvas::give_up_stroke() {
     if (!m_begin) return;
     m_begin.reset();
     m_last.reset();
-    *m_map = *m_before;
-    changed(QRect(0, 0, m_image.width(), m_image.height()));
+    take_rows(*m_before);
     update();
 }
 

@@ -61,6 +61,7 @@ class StencilCanvas : public QWidget {
     [[nodiscard]] QRectF square_of(const QRect& stacks) const;
     void zoom_by(double factor, QPointF fixed);
     void changed(const QRect& stacks);
+    void take_rows(const StencilMap& map);
     void begin_stroke(QPoint stack);
     void lead_stroke(QPoint stack);
     void end_stroke();

@@ -6,6 +6,7 @@
 #include <QFormLayout>
 #include <QGridLayout>
 #include <QScrollArea>
+#include <QScrollBar>
 #include <QStandardItemModel>
 #include <QToolButton>
 #include <QVBoxLayout>
@@ -88,6 +89,8 @@ PictureMapDialog::PictureMapDialog(const std::vector<CountedColour>& colours,
             item->setEnabled(choice.reason.isEmpty());
         }
         box->setCurrentIndex(-1);
+        box->setSizeAdjustPolicy(QComboBox::AdjustToMinimumContentsLengthWithIcon);
+        box->setMinimumContentsLength(28);
         connect(box, &QComboBox::currentIndexChanged, this, &PictureMapDialog::check);
         m_boxes.push_back(box);
         const int row = static_cast<int>(k);
@@ -104,6 +107,8 @@ PictureMapDialog::PictureMapDialog(const std::vector<CountedColour>& colours,
     area->setWidget(table);
     area->setWidgetResizable(true);
     area->setFrameShape(QFrame::NoFrame);
+    area->setHorizontalScrollBarPolicy(Qt::ScrollBarAlwaysOff);
+    area->setMinimumWidth(table->sizeHint().width() + area->verticalScrollBar()->sizeHint().width());
     m_trouble->setObjectName("trouble");
     m_trouble->setWordWrap(true);
     auto* buttons = new QDialogButtonBox(QDialogButtonBox::Ok | QDialogButtonBox::Cancel, this);
@@ -135,8 +140,9 @@ void PictureMapDialog::check() {
     const QString obstacle = chosen.empty() ? QString() : m_obstacle(chosen);
     const std::size_t open = m_boxes.size() - chosen.size();
     m_trouble->setText(!obstacle.isEmpty() ? obstacle
-                       : open > 0 ? tr("%n colour(s) still without a block", nullptr, static_cast<int>(open))
-                                  : QString());
+                       : open > 0          ? (open == 1 ? tr("1 colour is still without a block")
+                                                        : tr("%1 colours are still without a block").arg(open))
+                                           : QString());
     m_accept->setEnabled(open == 0 && obstacle.isEmpty());
 }
 

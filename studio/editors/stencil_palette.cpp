@@ -101,7 +101,8 @@ void StencilPalette::show_entries(const std::vector<PaletteEntry>& entries) {
     m_list->clear();
     for (const PaletteEntry& entry : entries) {
         QString words = entry.name;
-        if (entry.stacks) words += "\n" + tr("%n stack(s)", nullptr, static_cast<int>(*entry.stacks));
+        if (entry.stacks)
+            words += "\n" + (*entry.stacks == 1 ? tr("1 stack") : tr("%L1 stacks").arg(*entry.stacks));
         if (!entry.reason.isEmpty()) words = entry.name + "\n" + entry.reason;
         auto* item = new QListWidgetItem(icon_of(entry, fontMetrics().height() * 2, devicePixelRatioF()),
                                          words, m_list);

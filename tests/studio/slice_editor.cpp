@@ -199,3 +199,22 @@ TEST_CASE("slice: shown again after undo, the view does not jump and what is lef
     REQUIRE(open.canvas().place_of(0, 0) == before);
     REQUIRE(open.canvas().marks().selected == std::set{SliceYarnId::dot(0, 0)});
 }
+
+TEST_CASE("slice: the menu offers what can be done, with its keys") {
+    OpenSliceEditor open(slice_of(System::weft, {"T0 P0 T1", "P0 T0 T1"}));
+    Rows words;
+    QTimer::singleShot(0, [&] {  // while the menu is open
+        const auto* menu = open.canvas().findChild<QMenu*>("slice_menu");
+        for (const QAction* action : menu->actions())
+            words.push_back((action->text() + "|" + action->shortcut().toString()).toStdString());
+        QMetaObject::invokeMethod(const_cast<QMenu*>(menu), "close");
+    });
+    const QPoint place = open.canvas().place_of(0, 2);
+    QContextMenuEvent event(QContextMenuEvent::Mouse, place, open.canvas().mapToGlobal(place));
+    QApplication::sendEvent(&open.canvas(), &event);
+    REQUIRE(open.canvas().marks().selected == std::set{SliceYarnId::dot(0, 1)});
+    REQUIRE(words.front() == "weft 2 of position 1: pick 2 on the loom|");
+    for (const char* wish : {"Duplicate|Ctrl+D", "Remove|Del", "Enable or disable weft|E",
+                             "Earlier on the loom|Ctrl+Left", "Add a yarn like it|Ins"})
+        REQUIRE(std::ranges::find(words, wish) != words.end());
+}
