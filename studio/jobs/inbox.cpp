@@ -21,7 +21,8 @@ bool is_taken_in(Order& last, const Order& newer) {
         put_over(values->weft, std::get<wire::Parameters>(newer).weft);
         return true;
     }
-    if (!std::holds_alternative<wire::Pins>(last) && !std::holds_alternative<wire::Fields>(last)) return false;
+    if (!std::holds_alternative<wire::Pins>(last) && !std::holds_alternative<wire::Fields>(last))
+        return false;
     last = newer;
     return true;
 }
@@ -57,8 +58,10 @@ std::deque<Order> Inbox::take() {
 void Inbox::wait(std::optional<std::chrono::milliseconds> most) {
     std::unique_lock lock(m_mutex);
     const auto came = [this] { return !m_orders.empty() || m_finish != Finish::no; };
-    if (most) m_came.wait_for(lock, *most, came);
-    else m_came.wait(lock, came);
+    if (most)
+        m_came.wait_for(lock, *most, came);
+    else
+        m_came.wait(lock, came);
 }
 
 }  // namespace weave::studio

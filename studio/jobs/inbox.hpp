@@ -30,8 +30,8 @@ enum class Finish : std::uint8_t {
 /// What the window has asked for, until the computing thread gets to it.
 class Inbox {
   public:
-    /// From the window's thread. Values that are asked for anew take the place of those that wait last: a slider that is dragged
-    /// asks for its last place alone.
+    /// From the window's thread. Values that are asked for anew take the place of those that wait last: a
+    /// slider that is dragged asks for its last place alone.
     void order(Order order);
     void finish(Finish finish);
 

@@ -4,8 +4,8 @@
 
 namespace weave::studio {
 
-/// Begins a thread that nobody has to wait for: who asked it to end may go on at once. What it uses must be its own. At the end of
-/// the program the last of them get two seconds.
+/// Begins a thread that nobody has to wait for: who asked it to end may go on at once. What it uses must be
+/// its own. At the end of the program the last of them get two seconds.
 void run_apart(std::function<void()> work);
 
 }  // namespace weave::studio

@@ -5,7 +5,9 @@
 namespace weave::studio {
 
 Relaxation::Work LocalRelaxation::work_of(const Design& design, const sim::RunRequest& request) const {
-    return [design, request, means = m_means](Inbox& inbox, Outbox& outbox) { LocalWork(design, request, means, inbox, outbox).run(); };
+    return [design, request, means = m_means](Inbox& inbox, Outbox& outbox) {
+        LocalWork(design, request, means, inbox, outbox).run();
+    };
 }
 
 }  // namespace weave::studio

@@ -18,7 +18,8 @@ struct LocalMeans {
 class LocalRelaxation : public Relaxation {
     Q_OBJECT
   public:
-    explicit LocalRelaxation(const LocalMeans& means = {}, QObject* parent = nullptr) : Relaxation(parent), m_means(means) {}
+    explicit LocalRelaxation(const LocalMeans& means = {}, QObject* parent = nullptr)
+        : Relaxation(parent), m_means(means) {}
 
   protected:
     [[nodiscard]] Work work_of(const Design& design, const sim::RunRequest& request) const override;

@@ -15,8 +15,13 @@ constexpr std::chrono::milliseconds between_frames{34};  // at most 30 a second
 
 }  // namespace
 
-LocalWork::LocalWork(Design design, sim::RunRequest request, const LocalMeans& means, Inbox& inbox, Outbox& outbox)
-    : m_design(std::move(design)), m_request(std::move(request)), m_means(means), m_inbox(inbox), m_outbox(outbox) {}
+LocalWork::LocalWork(Design design, sim::RunRequest request, const LocalMeans& means, Inbox& inbox,
+                     Outbox& outbox)
+    : m_design(std::move(design)),
+      m_request(std::move(request)),
+      m_means(means),
+      m_inbox(inbox),
+      m_outbox(outbox) {}
 
 void LocalWork::run() {
     Status done = begin();
@@ -39,7 +44,8 @@ Status LocalWork::check_room(std::size_t times) const {
     const std::uint64_t needed = sim::expected_bytes(sim::points_of(m_run->now().plan()) * times);
     if (!m_means.memory_bytes || needed <= *m_means.memory_bytes) return {};
     return Error{ErrorCode::refused,
-                 "this takes about " + sim::memory_text(needed) + " of memory, and " + sim::memory_text(*m_means.memory_bytes) +
+                 "this takes about " + sim::memory_text(needed) + " of memory, and " +
+                     sim::memory_text(*m_means.memory_bytes) +
                      " are free; simulate a part of the cloth, or as draft, or on a server",
                  {}};
 }
@@ -70,7 +76,8 @@ Status LocalWork::loop() {
         m_leg_began = m_step;
         m_stands = false;
         m_in_leg = true;
-        WEAVE_CHECK_OK(m_run->advance(m_leg_steps, [this](const sim::Progress& progress) { return watch(progress); }));
+        WEAVE_CHECK_OK(
+            m_run->advance(m_leg_steps, [this](const sim::Progress& progress) { return watch(progress); }));
         m_in_leg = false;
         m_meter.end_leg(m_run->steps(), m_run->now().last().residual);
     }
@@ -129,7 +136,8 @@ Status LocalWork::flip(const Flip& flip) {
     m_meter.go_on();
     m_outbox.tell(m_meter.take());
     const Status made = m_run->flip(flip, [this](const sim::Progress& progress) { return watch(progress); });
-    if (m_run->now().is_flipping()) m_run->now().end_flip();  // looked at as it lies: the whole may be long in coming to rest
+    if (m_run->now().is_flipping())
+        m_run->now().end_flip();  // looked at as it lies: the whole may be long in coming to rest
     m_is_flipping = false;
     m_meter.see_flip(false);
     if (!made) {
@@ -138,7 +146,8 @@ Status LocalWork::flip(const Flip& flip) {
     }
     const Json& flips = m_run->now().flips();
     if (flips.empty()) return {};
-    m_outbox.tell(FlipEnd{flip, flips.back().at("done").get<bool>(), flips.back().at("reason").get<std::string>()});
+    m_outbox.tell(
+        FlipEnd{flip, flips.back().at("done").get<bool>(), flips.back().at("reason").get<std::string>()});
     return {};
 }
 
@@ -209,7 +218,8 @@ void LocalWork::hear(Order&& order) {
         m_pause_at.reset();
     } else if (const auto* steps = std::get_if<StepOrder>(&order)) {
         m_runs = true;
-        m_pause_at = std::max(m_step, m_pause_at.value_or(m_step)) + std::min(steps->steps, wire::most_number);
+        m_pause_at =
+            std::max(m_step, m_pause_at.value_or(m_step)) + std::min(steps->steps, wire::most_number);
     } else {
         m_changes.push_back(std::move(order));
     }
@@ -233,7 +243,8 @@ void LocalWork::tell_phase(RunPhase phase) {
 
 void LocalWork::tell_layout() {
     const sim::LedParameters& parameters = m_run->now().parameters();
-    const Laid laid{m_run->level(), parameters.wanted(System::warp).radius, parameters.wanted(System::weft).radius};
+    const Laid laid{m_run->level(), parameters.wanted(System::warp).radius,
+                    parameters.wanted(System::weft).radius};
     if (m_laid == laid) return;
     m_laid = laid;
     YarnLayout layout = wire::layout_of(*m_run);
@@ -283,7 +294,8 @@ void LocalWork::tell_yarns() {
     }
     m_outbox.tell(std::shared_ptr<const Yarns>(yarns));
     if (m_in_leg || !m_run->is_over()) return;
-    if (auto inspection = inspect(*yarns)) m_outbox.tell(Inspected{yarns, std::make_shared<const Inspection>(std::move(*inspection))});
+    if (auto inspection = inspect(*yarns))
+        m_outbox.tell(Inspected{yarns, std::make_shared<const Inspection>(std::move(*inspection))});
 }
 
 }  // namespace weave::studio

@@ -15,8 +15,9 @@
 
 namespace weave::studio {
 
-/// The work of one run on this computer, from its plan to its end, leg by leg. Changes come between two legs; a pause stands still
-/// within one, so that a run which was paused comes to the same bits as one that never was.
+/// The work of one run on this computer, from its plan to its end, leg by leg. Changes come between two legs;
+/// a pause stands still within one, so that a run which was paused comes to the same bits as one that never
+/// was.
 class LocalWork {
   public:
     LocalWork(Design design, sim::RunRequest request, const LocalMeans& means, Inbox& inbox, Outbox& outbox);

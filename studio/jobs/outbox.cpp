@@ -14,8 +14,10 @@ namespace {
 constexpr std::size_t most_history = 4096;
 
 bool is_state(const Happening& happening) {
-    return std::holds_alternative<std::shared_ptr<const Frame>>(happening) || std::holds_alternative<Progress>(happening) ||
-           std::holds_alternative<std::shared_ptr<const Yarns>>(happening) || std::holds_alternative<Inspected>(happening);
+    return std::holds_alternative<std::shared_ptr<const Frame>>(happening) ||
+           std::holds_alternative<Progress>(happening) ||
+           std::holds_alternative<std::shared_ptr<const Yarns>>(happening) ||
+           std::holds_alternative<Inspected>(happening);
 }
 
 void thin_out(std::vector<ResidualPoint>& history) {
@@ -49,7 +51,8 @@ void Outbox::forget_older(Happening& newest) {
     if (!is_state(newest)) return;
     const auto older = std::ranges::find(m_waiting, newest.index(), &Happening::index);
     if (older == m_waiting.end()) return;
-    if (auto* progress = std::get_if<Progress>(&newest)) take_over(progress->history, std::get<Progress>(*older).history);
+    if (auto* progress = std::get_if<Progress>(&newest))
+        take_over(progress->history, std::get<Progress>(*older).history);
     m_waiting.erase(older);
 }
 

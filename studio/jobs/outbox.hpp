@@ -9,11 +9,13 @@ class QObject;
 
 namespace weave::studio {
 
-/// What a computing thread has to tell, until the window's thread has time for it. Of frames, progress and yarns the newest alone
-/// waits, in its place among what else happened: who is slow misses some, and nothing piles up.
+/// What a computing thread has to tell, until the window's thread has time for it. Of frames, progress and
+/// yarns the newest alone waits, in its place among what else happened: who is slow misses some, and nothing
+/// piles up.
 class Outbox {
   public:
-    /// From here on `deliver` is called in the thread of `receiver`, once for all that has come since the last call.
+    /// From here on `deliver` is called in the thread of `receiver`, once for all that has come since the
+    /// last call.
     void open(QObject* receiver, std::function<void()> deliver);
     /// Nobody is told any more; from the receiver's thread, before it goes.
     void close();

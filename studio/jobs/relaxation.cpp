@@ -41,7 +41,9 @@ void Relaxation::start(const Design& design, const sim::RunRequest& request) {
         try {
             work(line->inbox, line->outbox);
         } catch (const std::bad_alloc&) {
-            line->outbox.tell(system_fault("the memory of this computer is not enough for it; simulate a part of the cloth, or as draft"));
+            line->outbox.tell(
+                system_fault("the memory of this computer is not enough for it; simulate a part of the "
+                             "cloth, or as draft"));
         } catch (const std::exception& fault) {
             line->outbox.tell(system_fault(fault.what()));
         }
@@ -113,7 +115,9 @@ void Relaxation::tell(const Happening& happening) {
         [this](const Progress& progress) { Q_EMIT progressed(progress); },
         [this](const std::shared_ptr<const Yarns>& yarns) { Q_EMIT ended(yarns); },
         [this](const Inspected& one) { Q_EMIT inspected(one.yarns, one.inspection); },
-        [this](const FlipEnd& end) { Q_EMIT flip_ended(end.flip, end.done, QString::fromStdString(end.reason)); },
+        [this](const FlipEnd& end) {
+            Q_EMIT flip_ended(end.flip, end.done, QString::fromStdString(end.reason));
+        },
         [this](const ParametersArrived&) { Q_EMIT parameters_arrived(); },
         [this](const ChangeRefused& change) { Q_EMIT refused(change.error); },
         [this](const Trouble& trouble) { Q_EMIT troubled(QString::fromStdString(trouble.words)); },

@@ -17,8 +17,9 @@
 
 namespace weave::studio {
 
-/// Yarns that relax elsewhere, as the window sees them: all calls return at once, and signals come in the window's thread. What is
-/// computed where, say LocalRelaxation and RemoteRelaxation. It may be destroyed at any time; its thread ends by itself.
+/// Yarns that relax elsewhere, as the window sees them: all calls return at once, and signals come in the
+/// window's thread. What is computed where, say LocalRelaxation and RemoteRelaxation. It may be destroyed at
+/// any time; its thread ends by itself.
 class Relaxation : public QObject {
     Q_OBJECT
   public:
@@ -61,7 +62,8 @@ class Relaxation : public QObject {
     /// The yarns with their report, each time they come to rest, are paused or stopped after a step.
     void ended(const std::shared_ptr<const weave::Yarns>& yarns);
     /// What a weaver wants to know of them, once they get no further.
-    void inspected(const std::shared_ptr<const weave::Yarns>& yarns, const std::shared_ptr<const weave::Inspection>& inspection);
+    void inspected(const std::shared_ptr<const weave::Yarns>& yarns,
+                   const std::shared_ptr<const weave::Inspection>& inspection);
     void flip_ended(const weave::Flip& flip, bool done, const QString& reason);
     /// Parameters have come to what was asked for. A server does not tell before the cloth is at rest.
     void parameters_arrived();

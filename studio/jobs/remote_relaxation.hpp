@@ -6,12 +6,14 @@
 
 namespace weave::studio {
 
-/// A run that a simulation server (simd) computes: a session of its own, which is closed when the run is left.
+/// A run that a simulation server (simd) computes: a session of its own, which is closed when the run is
+/// left.
 class RemoteRelaxation : public Relaxation {
     Q_OBJECT
   public:
     /// `patience`: how long it goes on trying once a connection is lost.
-    explicit RemoteRelaxation(ServerWish server, std::chrono::milliseconds patience = std::chrono::hours(1), QObject* parent = nullptr)
+    explicit RemoteRelaxation(ServerWish server, std::chrono::milliseconds patience = std::chrono::hours(1),
+                              QObject* parent = nullptr)
         : Relaxation(parent), m_server(std::move(server)), m_patience(patience) {}
 
   protected:

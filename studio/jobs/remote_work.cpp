@@ -17,8 +17,8 @@ namespace {
 using namespace std::chrono_literals;
 using Clock = std::chrono::steady_clock;
 
-/// How long a session may take to be planned and admitted; how soon the window's wishes are looked at; how long one question waits
-/// before the window is looked at again; what a run that is left may take to say so.
+/// How long a session may take to be planned and admitted; how soon the window's wishes are looked at; how
+/// long one question waits before the window is looked at again; what a run that is left may take to say so.
 constexpr std::chrono::minutes creation{5};
 constexpr std::chrono::milliseconds look{15}, question{500}, farewell{2000};
 /// A refusal that says so is waited for, when it is short.
@@ -30,7 +30,8 @@ wire::Simulation simulation_of(const sim::RunRequest& request) {
     simulation.plan = request.plan;
     simulation.solver = request.goal.solver;
     simulation.residual = request.goal.residual;
-    if (request.goal.most_iterations < wire::most_number) simulation.most_steps = request.goal.most_iterations;
+    if (request.goal.most_iterations < wire::most_number)
+        simulation.most_steps = request.goal.most_iterations;
     if (request.goal.most_seconds < 1e9) simulation.most_seconds = request.goal.most_seconds;
     simulation.start_from = request.start_from;
     return simulation;
@@ -43,9 +44,12 @@ double goal_of(const sim::RunRequest& request, bool is_coarse) {
 
 RunPhase shown(wire::Phase phase) {
     switch (phase) {
-        case wire::Phase::running: return RunPhase::running;
-        case wire::Phase::at_rest: return RunPhase::at_rest;
-        case wire::Phase::paused: break;
+        case wire::Phase::running:
+            return RunPhase::running;
+        case wire::Phase::at_rest:
+            return RunPhase::at_rest;
+        case wire::Phase::paused:
+            break;
     }
     return RunPhase::paused;
 }
@@ -59,8 +63,13 @@ Error plain(Error error) {
 
 }  // namespace
 
-RemoteWork::RemoteWork(Design design, sim::RunRequest request, ServerWish server, Inbox& inbox, Outbox& outbox)
-    : m_design(std::move(design)), m_request(std::move(request)), m_server(std::move(server)), m_inbox(inbox), m_outbox(outbox) {}
+RemoteWork::RemoteWork(Design design, sim::RunRequest request, ServerWish server, Inbox& inbox,
+                       Outbox& outbox)
+    : m_design(std::move(design)),
+      m_request(std::move(request)),
+      m_server(std::move(server)),
+      m_inbox(inbox),
+      m_outbox(outbox) {}
 
 void RemoteWork::run(std::chrono::milliseconds patience) {
     Status done = begin(patience);
@@ -69,7 +78,8 @@ void RemoteWork::run(std::chrono::milliseconds patience) {
     finish();
 }
 
-/// The plan is made here too: what is wrong with a design shows before anything is sent, and what is modelled can be told.
+/// The plan is made here too: what is wrong with a design shows before anything is sent, and what is modelled
+/// can be told.
 Status RemoteWork::begin(std::chrono::milliseconds patience) {
     WEAVE_TRY(const wire::ServerPlace place, place_of(m_server));
     WEAVE_TRY(const Evaluation evaluation, evaluate(m_design));
@@ -77,8 +87,11 @@ Status RemoteWork::begin(std::chrono::milliseconds patience) {
     m_outbox.tell(std::make_shared<const PlanSummary>(summary_of(plan, m_design.title)));
     if (m_inbox.finish() != Finish::no) return {};
     WEAVE_TRY(m_follower, wire::Follower::connect(place, "weave studio", patience));
-    m_follower->on_trouble([this](const Error* trouble) { tell_trouble(trouble != nullptr ? plain(*trouble).text() : std::string()); });
-    WEAVE_TRY(const wire::Accepted accepted, m_follower->create(write_document(m_design), simulation_of(m_request), creation));
+    m_follower->on_trouble([this](const Error* trouble) {
+        tell_trouble(trouble != nullptr ? plain(*trouble).text() : std::string());
+    });
+    WEAVE_TRY(const wire::Accepted accepted,
+              m_follower->create(write_document(m_design), simulation_of(m_request), creation));
     m_session = accepted.session.value_or(0);
     m_meter.aim_at(goal_of(m_request, m_request.start_from.has_value()));
     return {};
@@ -93,19 +106,23 @@ Status RemoteWork::loop() {
     return {};
 }
 
-/// The session is closed, so that its server has the room for others; one that cannot be reached closes it by itself in time.
+/// The session is closed, so that its server has the room for others; one that cannot be reached closes it by
+/// itself in time.
 void RemoteWork::finish() {
     if (m_session == 0) return;
     const bool wants_yarns = m_inbox.finish() == Finish::report;
     if (wants_yarns && !m_is_over) {
         static_cast<void>(m_follower->ask(wire::Pause{wire::new_request_id(), m_session}, farewell));
-        while (take_news(look) && m_phase == wire::Phase::running && !m_follower->trouble()) {}
+        while (take_news(look) && m_phase == wire::Phase::running && !m_follower->trouble()) {
+        }
         m_outbox.tell(m_meter.take());
         if (m_meter.step() > 0) static_cast<void>(fetch_yarns_now());
     }
-    if (!m_is_over && !m_follower->trouble()) static_cast<void>(m_follower->ask(wire::Close{wire::new_request_id(), m_session}, farewell));
+    if (!m_is_over && !m_follower->trouble())
+        static_cast<void>(m_follower->ask(wire::Close{wire::new_request_id(), m_session}, farewell));
     const auto end = Clock::now() + farewell;
-    while (!m_is_over && Clock::now() < end && !m_follower->trouble() && take_news(look)) {}
+    while (!m_is_over && Clock::now() < end && !m_follower->trouble() && take_news(look)) {
+    }
     static_cast<void>(m_follower->acknowledge());
     m_follower->close();
     if (wants_yarns) m_outbox.tell(RunPhase::stopped);
@@ -125,10 +142,14 @@ wire::ClientMessage RemoteWork::message_of(const Order& order, const std::string
     return std::visit(
         [&](const auto& one) -> wire::ClientMessage {
             using One = std::decay_t<decltype(one)>;
-            if constexpr (std::is_same_v<One, RunOrder>) return wire::Run{request, m_session};
-            else if constexpr (std::is_same_v<One, PauseOrder>) return wire::Pause{request, m_session};
-            else if constexpr (std::is_same_v<One, StepOrder>) return wire::Step{request, m_session, one.steps};
-            else return wire::MakeChange{request, m_session, one};
+            if constexpr (std::is_same_v<One, RunOrder>)
+                return wire::Run{request, m_session};
+            else if constexpr (std::is_same_v<One, PauseOrder>)
+                return wire::Pause{request, m_session};
+            else if constexpr (std::is_same_v<One, StepOrder>)
+                return wire::Step{request, m_session, one.steps};
+            else
+                return wire::MakeChange{request, m_session, one};
         },
         order);
 }
@@ -147,7 +168,8 @@ Status RemoteWork::send(const Order& order) {
         const auto* refused = std::get_if<wire::Refused>(&**answer);
         if (refused == nullptr) return {};
         if (!refused->wait_s || *refused->wait_s > longest_wait_s) return refuse(order, *refused);
-        WEAVE_CHECK_OK(take_news(std::chrono::milliseconds(static_cast<std::int64_t>(1000 * *refused->wait_s) + 1)));
+        WEAVE_CHECK_OK(
+            take_news(std::chrono::milliseconds(static_cast<std::int64_t>(1000 * *refused->wait_s) + 1)));
         if (m_inbox.finish() != Finish::no || m_is_over) return {};
     }
 }
@@ -156,8 +178,10 @@ Status RemoteWork::send(const Order& order) {
 Status RemoteWork::refuse(const Order& order, const wire::Refused& refused) {
     std::erase_if(m_flips, [&](const auto& flip) { return flip.first == refused.request; });
     const Error error = plain(refused.error);
-    if (const auto* flip = std::get_if<Flip>(&order)) m_outbox.tell(FlipEnd{*flip, false, error.text()});
-    else m_outbox.tell(ChangeRefused{error});
+    if (const auto* flip = std::get_if<Flip>(&order))
+        m_outbox.tell(FlipEnd{*flip, false, error.text()});
+    else
+        m_outbox.tell(ChangeRefused{error});
     return {};
 }
 
@@ -177,17 +201,21 @@ Result<std::optional<wire::ServerMessage>> RemoteWork::ask(const wire::ClientMes
 Status RemoteWork::take_news(std::chrono::milliseconds most) {
     const auto end = Clock::now() + most;
     do {
-        const auto left = std::max(0ms, std::chrono::duration_cast<std::chrono::milliseconds>(end - Clock::now()));
+        const auto left =
+            std::max(0ms, std::chrono::duration_cast<std::chrono::milliseconds>(end - Clock::now()));
         WEAVE_TRY(auto received, m_follower->receive(left));
         if (!received) return {};
-        if (auto* frame = std::get_if<wire::Frame>(&*received)) take(std::move(*frame));
-        else WEAVE_CHECK_OK(take(std::get<wire::ServerMessage>(*received)));
+        if (auto* frame = std::get_if<wire::Frame>(&*received))
+            take(std::move(*frame));
+        else
+            WEAVE_CHECK_OK(take(std::get<wire::ServerMessage>(*received)));
     } while (Clock::now() < end && !m_is_over && m_inbox.finish() != Finish::leave);
     return {};
 }
 
 Status RemoteWork::take(const wire::ServerMessage& message) {
-    if (const auto* layout = std::get_if<wire::Layout>(&message)) m_outbox.tell(std::make_shared<const YarnLayout>(*layout));
+    if (const auto* layout = std::get_if<wire::Layout>(&message))
+        m_outbox.tell(std::make_shared<const YarnLayout>(*layout));
     if (const auto* changed = std::get_if<wire::PhaseChanged>(&message)) take(*changed);
     if (const auto* applied = std::get_if<wire::Applied>(&message)) take(*applied);
     if (const auto* flipped = std::get_if<wire::Flipped>(&message)) take(*flipped);
@@ -198,8 +226,10 @@ Status RemoteWork::take(const wire::ServerMessage& message) {
 
 void RemoteWork::take(const wire::PhaseChanged& changed) {
     m_phase = changed.phase;
-    if (m_phase == wire::Phase::running) m_meter.go_on();
-    else m_meter.stand();
+    if (m_phase == wire::Phase::running)
+        m_meter.go_on();
+    else
+        m_meter.stand();
     m_outbox.tell(shown(m_phase));
     m_wants_yarns = m_phase != wire::Phase::running && changed.step > 0;
     m_next_fetch = {};
@@ -228,8 +258,12 @@ Status RemoteWork::take(const wire::Ended& ended) {
         case wire::Why::closed:
             if (m_inbox.finish() != Finish::no) return {};
             return Error{ErrorCode::refused, "the session was closed elsewhere", m_follower->place().name};
-        case wire::Why::expired: return Error{ErrorCode::refused, "the server ended the session, as nobody had been connected for long", m_follower->place().name};
-        case wire::Why::failed: break;
+        case wire::Why::expired:
+            return Error{ErrorCode::refused,
+                         "the server ended the session, as nobody had been connected for long",
+                         m_follower->place().name};
+        case wire::Why::failed:
+            break;
     }
     return ended.error.value_or(system_fault("the session ended without a reason", m_follower->place().name));
 }
@@ -271,7 +305,8 @@ bool RemoteWork::fetch_yarns_now() {
     const auto yarns = std::make_shared<const Yarns>(std::move(*read));
     m_outbox.tell(yarns);
     if (m_phase != wire::Phase::at_rest) return true;
-    if (auto inspection = inspect(*yarns)) m_outbox.tell(Inspected{yarns, std::make_shared<const Inspection>(std::move(*inspection))});
+    if (auto inspection = inspect(*yarns))
+        m_outbox.tell(Inspected{yarns, std::make_shared<const Inspection>(std::move(*inspection))});
     return true;
 }
 

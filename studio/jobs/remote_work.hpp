@@ -16,8 +16,8 @@
 
 namespace weave::studio {
 
-/// The work of one run on a server: a session that it follows, and asks for what the window wants. Connections may break; what was
-/// asked for is asked for again.
+/// The work of one run on a server: a session that it follows, and asks for what the window wants.
+/// Connections may break; what was asked for is asked for again.
 class RemoteWork {
   public:
     RemoteWork(Design design, sim::RunRequest request, ServerWish server, Inbox& inbox, Outbox& outbox);

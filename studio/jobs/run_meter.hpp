@@ -9,7 +9,8 @@
 
 namespace weave::studio {
 
-/// Keeps what a run's progress is told from: the residuals since it was told last, and the time that it took without its pauses.
+/// Keeps what a run's progress is told from: the residuals since it was told last, and the time that it took
+/// without its pauses.
 class RunMeter {
   public:
     /// From here on towards this residual.

@@ -38,7 +38,10 @@ Status take_token(wire::ServerPlace& place, std::string file) {
 Result<wire::ServerPlace> place_of(const ServerWish& wish) {
     WEAVE_TRY(wire::ServerPlace place, wire::place_of(wish.host));
     if (!wish.fingerprint.empty()) {
-        if (!place.options.tls) return Error{ErrorCode::usage, "a certificate's fingerprint is of TLS, which this place is not reached by", wish.host};
+        if (!place.options.tls)
+            return Error{ErrorCode::usage,
+                         "a certificate's fingerprint is of TLS, which this place is not reached by",
+                         wish.host};
         place.options.tls->fingerprint = wish.fingerprint;
     }
     WEAVE_CHECK_OK(take_token(place, wish.token_file));

@@ -15,9 +15,9 @@ namespace weave::studio {
 struct RunState {
     RunPhase phase = RunPhase::idle;
     Progress progress;
-    std::optional<Error> error;                     ///< of a failed one
-    std::shared_ptr<const Yarns> yarns;             ///< as it stands, where it stands
-    std::shared_ptr<const Inspection> inspection;   ///< of these
+    std::optional<Error> error;                    ///< of a failed one
+    std::shared_ptr<const Yarns> yarns;            ///< as it stands, where it stands
+    std::shared_ptr<const Inspection> inspection;  ///< of these
 };
 
 /// Where the state is to be looked at: picks and ends from 0.

@@ -68,9 +68,12 @@ void YarnsFiles::begin(std::function<std::function<void(YarnsFiles&)>()> work) {
         }
         const std::lock_guard lock(bridge->mutex);
         if (bridge->files == nullptr) return;
-        QMetaObject::invokeMethod(bridge->files, [bridge, tell] {
-            if (bridge->files != nullptr) tell(*bridge->files);
-        }, Qt::QueuedConnection);
+        QMetaObject::invokeMethod(
+            bridge->files,
+            [bridge, tell] {
+                if (bridge->files != nullptr) tell(*bridge->files);
+            },
+            Qt::QueuedConnection);
     });
 }
 

@@ -24,7 +24,8 @@ class YarnsFiles : public QObject {
 
   Q_SIGNALS:
     void written(const QString& file);
-    void was_read(const std::shared_ptr<const weave::Yarns>& yarns, const std::shared_ptr<const weave::Inspection>& inspection);
+    void was_read(const std::shared_ptr<const weave::Yarns>& yarns,
+                  const std::shared_ptr<const weave::Inspection>& inspection);
     void failed(const weave::Error& error);
 
   private:

@@ -7,7 +7,8 @@
 
 namespace weave::studio {
 
-MessageBar::MessageBar(QWidget* parent) : QFrame(parent), m_icon(new QLabel(this)), m_words(new QLabel(this)), m_close(new QToolButton(this)) {
+MessageBar::MessageBar(QWidget* parent)
+    : QFrame(parent), m_icon(new QLabel(this)), m_words(new QLabel(this)), m_close(new QToolButton(this)) {
     setFrameShape(QFrame::StyledPanel);
     setAutoFillBackground(true);
     auto* line = new QHBoxLayout(this);
@@ -34,7 +35,9 @@ void MessageBar::tell(Kind kind, const QString& words) {
     setPalette(colours);
     m_words->setText(words);
     m_words->setAccessibleName(words);
-    const auto icon = kind == Kind::error ? QStyle::SP_MessageBoxCritical : kind == Kind::warning ? QStyle::SP_MessageBoxWarning : QStyle::SP_MessageBoxInformation;
+    const auto icon = kind == Kind::error     ? QStyle::SP_MessageBoxCritical
+                      : kind == Kind::warning ? QStyle::SP_MessageBoxWarning
+                                              : QStyle::SP_MessageBoxInformation;
     const int size = style()->pixelMetric(QStyle::PM_SmallIconSize, nullptr, this);
     m_icon->setPixmap(style()->standardIcon(icon).pixmap(QSize(size, size), devicePixelRatioF()));
     show();

@@ -9,7 +9,8 @@ class QToolButton;
 
 namespace weave::studio {
 
-/// A line that says what happened, without a box that has to be answered. It stays until it is closed, or what it says is over.
+/// A line that says what happened, without a box that has to be answered. It stays until it is closed, or
+/// what it says is over.
 class MessageBar : public QFrame {
     Q_OBJECT
   public:

@@ -18,7 +18,8 @@ const char* const remembered_place = "simulation/place";
 
 }  // namespace
 
-BackendRow::BackendRow(QWidget* parent) : QWidget(parent), m_choice(new QComboBox(this)), m_edit(new QToolButton(this)) {
+BackendRow::BackendRow(QWidget* parent)
+    : QWidget(parent), m_choice(new QComboBox(this)), m_edit(new QToolButton(this)) {
     auto* label = new QLabel(tr("C&omputed on"), this);
     label->setBuddy(m_choice);
     auto* line = new QHBoxLayout(this);
@@ -28,7 +29,8 @@ BackendRow::BackendRow(QWidget* parent) : QWidget(parent), m_choice(new QComboBo
     line->addWidget(m_edit);
     m_choice->setSizeAdjustPolicy(QComboBox::AdjustToMinimumContentsLengthWithIcon);
     m_choice->setAccessibleName(tr("Computed on"));
-    m_choice->setToolTip(tr("This computer, or a simulation server (simd). Takes effect when the simulation starts again."));
+    m_choice->setToolTip(
+        tr("This computer, or a simulation server (simd). Takes effect when the simulation starts again."));
     m_edit->setText(tr("Servers …"));
     m_edit->setToolTip(tr("Name simulation servers"));
     set_servers(remembered_servers());
@@ -58,7 +60,8 @@ std::optional<ServerWish> BackendRow::server() const {
 }
 
 void BackendRow::remember() const {
-    QSettings().setValue(remembered_place, m_choice->currentIndex() > 0 ? m_choice->currentText() : QString());
+    QSettings().setValue(remembered_place,
+                         m_choice->currentIndex() > 0 ? m_choice->currentText() : QString());
 }
 
 void BackendRow::edit_servers() {

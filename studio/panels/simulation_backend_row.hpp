@@ -11,7 +11,8 @@ class QToolButton;
 
 namespace weave::studio {
 
-/// Where a simulation is computed: on this computer, or on one of the servers that the person has named. Remembered.
+/// Where a simulation is computed: on this computer, or on one of the servers that the person has named.
+/// Remembered.
 class BackendRow : public QWidget {
     Q_OBJECT
   public:

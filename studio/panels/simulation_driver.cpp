@@ -14,9 +14,10 @@ namespace {
 
 /// Nodes never change, so those that are one object need not be looked into.
 bool same_blocks(const Design& one, const Design& other) {
-    return std::equal(one.blocks.begin(), one.blocks.end(), other.blocks.begin(), other.blocks.end(), [](const auto& a, const auto& b) {
-        return a.first == b.first && (a.second == b.second || *a.second == *b.second);
-    });
+    return std::equal(one.blocks.begin(), one.blocks.end(), other.blocks.begin(), other.blocks.end(),
+                      [](const auto& a, const auto& b) {
+                          return a.first == b.first && (a.second == b.second || *a.second == *b.second);
+                      });
 }
 
 /// Whether a run of the one shows the other, but for what can be led into it.
@@ -27,7 +28,8 @@ bool same_cloth(const Design& one, const Design& other) {
     led.weft = other.scene.weft;
     led.pins = other.scene.pins;
     led.fields = other.scene.fields;
-    return same_feed && led == other.scene && one.root == other.root && one.warp == other.warp && one.weft == other.weft && same_blocks(one, other);
+    return same_feed && led == other.scene && one.root == other.root && one.warp == other.warp &&
+           one.weft == other.weft && same_blocks(one, other);
 }
 
 /// What of these values is not as it was.
@@ -41,9 +43,12 @@ SystemScene changed(const SystemScene& now, const SystemScene& before) {
 
 }  // namespace
 
-void SimulationDriver::start(const Design& design, const sim::RunRequest& request, const std::optional<ServerWish>& server) {
-    if (server) m_run = std::make_unique<RemoteRelaxation>(*server);
-    else m_run = std::make_unique<LocalRelaxation>();
+void SimulationDriver::start(const Design& design, const sim::RunRequest& request,
+                             const std::optional<ServerWish>& server) {
+    if (server)
+        m_run = std::make_unique<RemoteRelaxation>(*server);
+    else
+        m_run = std::make_unique<LocalRelaxation>();
     m_state = {};
     m_plan.reset();
     m_started = design;
@@ -145,14 +150,16 @@ void SimulationDriver::lead_parameters(const Scene& scene) {
     const auto of = [&](const SystemScene& now, const SystemScene& before, System system) {
         return changed(with_usual_values(now, system), with_usual_values(before, system));
     };
-    m_run->set_parameters(of(scene.warp, m_started.scene.warp, System::warp), of(scene.weft, m_started.scene.weft, System::weft));
+    m_run->set_parameters(of(scene.warp, m_started.scene.warp, System::warp),
+                          of(scene.weft, m_started.scene.weft, System::weft));
 }
 
 std::optional<double> SimulationDriver::share_done() const {
     const Progress& progress = m_state.progress;
     if (m_state.phase == RunPhase::at_rest) return 1;
     if (!(progress.residual > 0) || !(progress.goal > 0) || !(m_highest > progress.goal)) return {};
-    return std::clamp(std::log(m_highest / progress.residual) / std::log(m_highest / progress.goal), 0.0, 1.0);
+    return std::clamp(std::log(m_highest / progress.residual) / std::log(m_highest / progress.goal), 0.0,
+                      1.0);
 }
 
 }  // namespace weave::studio

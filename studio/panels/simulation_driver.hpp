@@ -12,8 +12,8 @@
 
 namespace weave::studio {
 
-/// Drives the run of one design: begins it here or on a server, leads changes of the design into it as far as a run takes them, and
-/// keeps what is known of it.
+/// Drives the run of one design: begins it here or on a server, leads changes of the design into it as far as
+/// a run takes them, and keeps what is known of it.
 class SimulationDriver : public QObject {
     Q_OBJECT
   public:
@@ -27,13 +27,14 @@ class SimulationDriver : public QObject {
     void stop();
     void flip(const Flip& flip);
 
-    /// The design as it is now: strain, stiffness, radii, pins and fields are led into the run. Whether the run shows another design all
-    /// the same, so that it would have to start again.
+    /// The design as it is now: strain, stiffness, radii, pins and fields are led into the run. Whether the
+    /// run shows another design all the same, so that it would have to start again.
     bool follow(const Design& design);
 
     [[nodiscard]] const RunState& state() const { return m_state; }
     [[nodiscard]] const std::shared_ptr<const PlanSummary>& plan() const { return m_plan; }
-    /// How much of the way to rest it has come, 0 to 1, by the logarithm of the residual; nothing while that is not known.
+    /// How much of the way to rest it has come, 0 to 1, by the logarithm of the residual; nothing while that
+    /// is not known.
     [[nodiscard]] std::optional<double> share_done() const;
     [[nodiscard]] bool is_open() const { return m_run && m_run->is_open(); }
     [[nodiscard]] bool is_running() const { return m_state.phase == RunPhase::running || m_is_to_run; }

@@ -12,15 +12,20 @@ namespace {
 
 constexpr int pick_role = Qt::UserRole, end_role = Qt::UserRole + 1;
 
-/// Lines as tall as their words need in the width that there is; Qt's own measures them as if they had all the width they want.
+/// Lines as tall as their words need in the width that there is; Qt's own measures them as if they had all
+/// the width they want.
 class WrappingLines : public QStyledItemDelegate {
   public:
     explicit WrappingLines(QTreeView* view) : QStyledItemDelegate(view), m_view(view) {}
-    [[nodiscard]] QSize sizeHint(const QStyleOptionViewItem& option, const QModelIndex& index) const override {
+    [[nodiscard]] QSize sizeHint(const QStyleOptionViewItem& option,
+                                 const QModelIndex& index) const override {
         const int levels = index.parent().isValid() ? 2 : 1, margin = 8;
-        const int width = std::max(margin, m_view->viewport()->width() - levels * m_view->indentation() - margin);
-        const QFontMetrics font(index.data(Qt::FontRole).isValid() ? index.data(Qt::FontRole).value<QFont>() : option.font);
-        const QRect box = font.boundingRect(QRect(0, 0, width, 1 << 20), Qt::TextWordWrap, index.data().toString());
+        const int width =
+            std::max(margin, m_view->viewport()->width() - levels * m_view->indentation() - margin);
+        const QFontMetrics font(index.data(Qt::FontRole).isValid() ? index.data(Qt::FontRole).value<QFont>()
+                                                                   : option.font);
+        const QRect box =
+            font.boundingRect(QRect(0, 0, width, 1 << 20), Qt::TextWordWrap, index.data().toString());
         return {width, box.height() + font.height() / 4};
     }
 

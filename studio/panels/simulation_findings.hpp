@@ -8,8 +8,8 @@
 
 namespace weave::studio {
 
-/// What a weaver wants to know of the cloth at rest, and what is modelled and why, as two lists that open and close. Lines that speak of
-/// a place lead there.
+/// What a weaver wants to know of the cloth at rest, and what is modelled and why, as two lists that open and
+/// close. Lines that speak of a place lead there.
 class SimulationFindings : public QTreeWidget {
     Q_OBJECT
   public:

@@ -111,22 +111,32 @@ void SimulationPanel::open(const QString& file) {
 void SimulationPanel::ask_to_save() {
     const QString kinds = tr("Relaxed yarns (*.yarns);;ParaView centrelines (*.vtp);;Yarns as tubes (*.obj)");
     QString kind;
-    QString file = QFileDialog::getSaveFileName(this, tr("Save yarns"), QString::fromStdString(m_design.title.empty() ? "cloth" : m_design.title) + QStringLiteral(".yarns"), kinds, &kind);
+    QString file = QFileDialog::getSaveFileName(
+        this, tr("Save yarns"),
+        QString::fromStdString(m_design.title.empty() ? "cloth" : m_design.title) + QStringLiteral(".yarns"),
+        kinds, &kind);
     if (file.isEmpty()) return;
-    if (QFileInfo(file).suffix().isEmpty()) file += kind.contains(QStringLiteral("vtp")) ? QStringLiteral(".vtp") : kind.contains(QStringLiteral("obj")) ? QStringLiteral(".obj") : QStringLiteral(".yarns");
+    if (QFileInfo(file).suffix().isEmpty())
+        file += kind.contains(QStringLiteral("vtp"))   ? QStringLiteral(".vtp")
+                : kind.contains(QStringLiteral("obj")) ? QStringLiteral(".obj")
+                                                       : QStringLiteral(".yarns");
     save_to(file);
 }
 
 void SimulationPanel::ask_to_open() {
-    const QString file = QFileDialog::getOpenFileName(this, tr("Open yarns"), {}, tr("Relaxed yarns (*.yarns)"));
+    const QString file =
+        QFileDialog::getOpenFileName(this, tr("Open yarns"), {}, tr("Relaxed yarns (*.yarns)"));
     if (!file.isEmpty()) open(file);
 }
 
-void SimulationPanel::show_file(const std::shared_ptr<const Yarns>& yarns, const std::shared_ptr<const Inspection>& inspection) {
+void SimulationPanel::show_file(const std::shared_ptr<const Yarns>& yarns,
+                                const std::shared_ptr<const Inspection>& inspection) {
     if (m_driver->is_running()) m_driver->pause();
     m_yarns = yarns;
-    m_findings->set_inspection(inspection ? inspection_words(*inspection) : std::vector<StateLine>(), inspection != nullptr);
-    m_message->tell(MessageBar::Kind::note, tr("These are yarns from a file: %1").arg(QString::fromStdString(yarns->title)));
+    m_findings->set_inspection(inspection ? inspection_words(*inspection) : std::vector<StateLine>(),
+                               inspection != nullptr);
+    m_message->tell(MessageBar::Kind::note,
+                    tr("These are yarns from a file: %1").arg(QString::fromStdString(yarns->title)));
     show_actions();
     Q_EMIT yarns_came(yarns);
 }
@@ -154,7 +164,7 @@ void SimulationPanel::show_progress() {
     m_progress->setRange(0, is_working && !share ? 0 : whole);  // 0: it works, and nobody knows how long
     m_progress->setValue(static_cast<int>(share.value_or(0) * whole));
     const bool has_time = state.phase == RunPhase::running && state.progress.seconds_left;
-    m_progress->setFormat(has_time                            ? tr("%1 to go").arg(duration_words(*state.progress.seconds_left))
+    m_progress->setFormat(has_time ? tr("%1 to go").arg(duration_words(*state.progress.seconds_left))
                           : state.phase == RunPhase::at_rest  ? tr("at rest")
                           : state.phase == RunPhase::planning ? tr("laying out")
                                                               : QString());
@@ -164,7 +174,8 @@ void SimulationPanel::show_findings() {
     const auto& inspection = m_driver->state().inspection;
     if (m_shown_inspection == inspection) return;
     m_shown_inspection = inspection;
-    m_findings->set_inspection(inspection ? inspection_words(*inspection) : std::vector<StateLine>(), inspection != nullptr);
+    m_findings->set_inspection(inspection ? inspection_words(*inspection) : std::vector<StateLine>(),
+                               inspection != nullptr);
 }
 
 void SimulationPanel::show_actions() {
@@ -179,8 +190,10 @@ void SimulationPanel::show_actions() {
     m_again_action->setEnabled(m_has_design && phase != RunPhase::idle);
     m_save_action->setEnabled(m_yarns != nullptr);
     m_out_of_date->setVisible(phase != RunPhase::idle && (m_is_out_of_date || m_choices_differ));
-    m_out_of_date->setText(m_is_out_of_date ? tr("The design has changed in a way that this run does not show. Start again to see it.")
-                                            : tr("What was chosen counts from the next start on."));
+    m_out_of_date->setText(
+        m_is_out_of_date
+            ? tr("The design has changed in a way that this run does not show. Start again to see it.")
+            : tr("What was chosen counts from the next start on."));
 }
 
 }  // namespace weave::studio

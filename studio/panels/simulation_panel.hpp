@@ -28,22 +28,24 @@ class SimulationFindings;
 class SystemGroup;
 class YarnsFiles;
 
-/// Runs the simulation of a design and shows how it goes. It does not own the design: what is changed here is told by scene_edited(),
-/// and what became of it comes back by set_design().
+/// Runs the simulation of a design and shows how it goes. It does not own the design: what is changed here is
+/// told by scene_edited(), and what became of it comes back by set_design().
 class SimulationPanel : public QWidget {
     Q_OBJECT
   public:
     explicit SimulationPanel(QWidget* parent = nullptr);
     ~SimulationPanel() override;
 
-    /// The design as it is now; a run goes on with it as far as changes can be led in, else it is marked as out of date.
+    /// The design as it is now; a run goes on with it as far as changes can be led in, else it is marked as
+    /// out of date.
     void set_design(const Design& design);
     /// Rows and columns of stacks of its cloth, for the part that is simulated.
     void set_cloth_size(std::size_t rows, std::size_t columns);
     /// Leads a crossing of the running simulation to its other side.
     void flip(const Flip& flip);
 
-    /// Actions for a menu; Space toggles run and pause while this panel has the focus, or in the window that adds the action.
+    /// Actions for a menu; Space toggles run and pause while this panel has the focus, or in the window that
+    /// adds the action.
     [[nodiscard]] QAction* run_action() const { return m_run_action; }
     [[nodiscard]] QAction* step_action() const { return m_step_action; }
     [[nodiscard]] QAction* stop_action() const { return m_stop_action; }
@@ -110,7 +112,8 @@ class SimulationPanel : public QWidget {
     void show_actions();
     void show_progress();
     void show_findings();
-    void show_file(const std::shared_ptr<const Yarns>& yarns, const std::shared_ptr<const Inspection>& inspection);
+    void show_file(const std::shared_ptr<const Yarns>& yarns,
+                   const std::shared_ptr<const Inspection>& inspection);
 
     Design m_design;
     bool m_has_design = false, m_is_out_of_date = false, m_choices_differ = false;

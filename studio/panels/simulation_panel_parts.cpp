@@ -56,10 +56,23 @@ QToolButton* button_of(QAction* action, Qt::ToolButtonStyle look) {
 }  // namespace
 
 SimulationPanel::SimulationPanel(QWidget* parent)
-    : QWidget(parent), m_driver(new SimulationDriver(this)), m_files(new YarnsFiles(this)), m_message(new MessageBar(this)), m_backend(new BackendRow(this)),
-      m_fidelity(new FidelityGroup(this)), m_steps(new QSpinBox(this)), m_sentence(new QLabel(this)), m_out_of_date(new QLabel(this)), m_progress(new QProgressBar(this)),
-      m_tabs(new QTabWidget(this)), m_plot(new ResidualPlot(this)), m_findings(new SimulationFindings(this)), m_warp(new SystemGroup(System::warp, this)),
-      m_weft(new SystemGroup(System::weft, this)), m_scene(new SceneGroup(this)), m_region(new RegionGroup(this)) {
+    : QWidget(parent),
+      m_driver(new SimulationDriver(this)),
+      m_files(new YarnsFiles(this)),
+      m_message(new MessageBar(this)),
+      m_backend(new BackendRow(this)),
+      m_fidelity(new FidelityGroup(this)),
+      m_steps(new QSpinBox(this)),
+      m_sentence(new QLabel(this)),
+      m_out_of_date(new QLabel(this)),
+      m_progress(new QProgressBar(this)),
+      m_tabs(new QTabWidget(this)),
+      m_plot(new ResidualPlot(this)),
+      m_findings(new SimulationFindings(this)),
+      m_warp(new SystemGroup(System::warp, this)),
+      m_weft(new SystemGroup(System::weft, this)),
+      m_scene(new SceneGroup(this)),
+      m_region(new RegionGroup(this)) {
     make_actions();
     auto* lines = new QVBoxLayout(this);
     lines->addWidget(m_message);
@@ -75,17 +88,25 @@ SimulationPanel::SimulationPanel(QWidget* parent)
 }
 
 void SimulationPanel::make_actions() {
-    const auto make = [&](QStyle::StandardPixmap icon, const QString& words, const QString& tip, void (SimulationPanel::*done)()) {
+    const auto make = [&](QStyle::StandardPixmap icon, const QString& words, const QString& tip,
+                          void (SimulationPanel::*done)()) {
         auto* action = new QAction(style()->standardIcon(icon), words, this);
         action->setToolTip(tip);
         connect(action, &QAction::triggered, this, done);
         return action;
     };
-    m_run_action = make(QStyle::SP_MediaPlay, tr("Run"), tr("Run or pause the simulation (Space)"), &SimulationPanel::toggle_run);
-    m_step_action = make(QStyle::SP_MediaSkipForward, tr("Step"), tr("So many steps, then pause"), &SimulationPanel::step);
-    m_again_action = make(QStyle::SP_BrowserReload, tr("Start again"), tr("Lay the yarns out anew, as designed now, and run"), &SimulationPanel::start_again);
-    m_save_action = make(QStyle::SP_DialogSaveButton, tr("Save yarns …"), tr("Save the relaxed yarns: .yarns, or for other programs .vtp and .obj"), &SimulationPanel::ask_to_save);
-    m_open_action = make(QStyle::SP_DialogOpenButton, tr("Open yarns …"), tr("Look at relaxed yarns from a file"), &SimulationPanel::ask_to_open);
+    m_run_action = make(QStyle::SP_MediaPlay, tr("Run"), tr("Run or pause the simulation (Space)"),
+                        &SimulationPanel::toggle_run);
+    m_step_action = make(QStyle::SP_MediaSkipForward, tr("Step"), tr("So many steps, then pause"),
+                         &SimulationPanel::step);
+    m_again_action =
+        make(QStyle::SP_BrowserReload, tr("Start again"),
+             tr("Lay the yarns out anew, as designed now, and run"), &SimulationPanel::start_again);
+    m_save_action = make(QStyle::SP_DialogSaveButton, tr("Save yarns …"),
+                         tr("Save the relaxed yarns: .yarns, or for other programs .vtp and .obj"),
+                         &SimulationPanel::ask_to_save);
+    m_open_action = make(QStyle::SP_DialogOpenButton, tr("Open yarns …"),
+                         tr("Look at relaxed yarns from a file"), &SimulationPanel::ask_to_open);
     m_stop_action = new QAction(style()->standardIcon(QStyle::SP_MediaStop), tr("Stop"), this);
     m_stop_action->setToolTip(tr("End the simulation; the yarns stay as they lie"));
     connect(m_stop_action, &QAction::triggered, m_driver, &SimulationDriver::stop);
@@ -170,10 +191,14 @@ void SimulationPanel::connect_parts() {
     connect(m_fidelity, &FidelityGroup::edited, this, &SimulationPanel::compare_choices);
     connect(m_backend, &BackendRow::edited, this, &SimulationPanel::compare_choices);
     connect(m_findings, &SimulationFindings::place_wanted, this, &SimulationPanel::place_wanted);
-    const auto tell_error = [this](const Error& error) { m_message->tell(MessageBar::Kind::error, error_words(error)); };
+    const auto tell_error = [this](const Error& error) {
+        m_message->tell(MessageBar::Kind::error, error_words(error));
+    };
     connect(m_files, &YarnsFiles::failed, this, tell_error);
     connect(m_files, &YarnsFiles::was_read, this, &SimulationPanel::show_file);
-    connect(m_files, &YarnsFiles::written, this, [this](const QString& file) { m_message->tell(MessageBar::Kind::note, tr("Saved: %1").arg(file)); });
+    connect(m_files, &YarnsFiles::written, this, [this](const QString& file) {
+        m_message->tell(MessageBar::Kind::note, tr("Saved: %1").arg(file));
+    });
 }
 
 void SimulationPanel::connect_driver() {
@@ -183,7 +208,8 @@ void SimulationPanel::connect_driver() {
         m_yarns.reset();
         show_state();
     });
-    connect(m_driver, &SimulationDriver::planned, this, [this] { m_findings->set_plan(plan_words(*m_driver->plan())); });
+    connect(m_driver, &SimulationDriver::planned, this,
+            [this] { m_findings->set_plan(plan_words(*m_driver->plan())); });
     connect(m_driver, &SimulationDriver::state_changed, this, &SimulationPanel::show_state);
     connect(m_driver, &SimulationDriver::moved, m_plot, &ResidualPlot::add);
     connect(m_driver, &SimulationDriver::laid_out, this, &SimulationPanel::laid_out);
@@ -192,26 +218,37 @@ void SimulationPanel::connect_driver() {
         m_yarns = yarns;
         Q_EMIT yarns_came(yarns);
     });
-    connect(m_driver, &SimulationDriver::flip_ended, this, [this](const Flip& flip, bool done, const QString& reason) {
-        if (!done)
-            m_message->tell(MessageBar::Kind::warning, tr("Pick %1 and end %2 stay as they lie: %3").arg(QString::number(flip.pick + 1), QString::number(flip.end + 1), reason));
-        Q_EMIT flip_ended(flip, done, reason);
+    connect(m_driver, &SimulationDriver::flip_ended, this,
+            [this](const Flip& flip, bool done, const QString& reason) {
+                if (!done)
+                    m_message->tell(
+                        MessageBar::Kind::warning,
+                        tr("Pick %1 and end %2 stay as they lie: %3")
+                            .arg(QString::number(flip.pick + 1), QString::number(flip.end + 1), reason));
+                Q_EMIT flip_ended(flip, done, reason);
+            });
+    connect(m_driver, &SimulationDriver::refused, this, [this](const Error& error) {
+        m_message->tell(MessageBar::Kind::warning, tr("Not done: %1").arg(error_words(error)));
     });
-    connect(m_driver, &SimulationDriver::refused, this, [this](const Error& error) { m_message->tell(MessageBar::Kind::warning, tr("Not done: %1").arg(error_words(error))); });
     connect(m_driver, &SimulationDriver::troubled, this, [this](const QString& words) {
-        if (words.isEmpty()) m_message->clear();
-        else m_message->tell(MessageBar::Kind::warning, tr("%1; trying again").arg(words));
+        if (words.isEmpty())
+            m_message->clear();
+        else
+            m_message->tell(MessageBar::Kind::warning, tr("%1; trying again").arg(words));
     });
 }
 
 // ---- Keys and wheel ----
 
-/// Space is for the part that has the focus where that does something with it; and the wheel, over a part that has none, moves the page
-/// and no value.
+/// Space is for the part that has the focus where that does something with it; and the wheel, over a part
+/// that has none, moves the page and no value.
 void SimulationPanel::guard_keys() {
     for (QWidget* part : findChildren<QWidget*>()) {
-        const bool takes_wheel = qobject_cast<QAbstractSpinBox*>(part) != nullptr || qobject_cast<QAbstractSlider*>(part) != nullptr || qobject_cast<QComboBox*>(part) != nullptr;
-        const bool takes_space = qobject_cast<QAbstractButton*>(part) != nullptr || qobject_cast<QComboBox*>(part) != nullptr;
+        const bool takes_wheel = qobject_cast<QAbstractSpinBox*>(part) != nullptr ||
+                                 qobject_cast<QAbstractSlider*>(part) != nullptr ||
+                                 qobject_cast<QComboBox*>(part) != nullptr;
+        const bool takes_space =
+            qobject_cast<QAbstractButton*>(part) != nullptr || qobject_cast<QComboBox*>(part) != nullptr;
         if (takes_wheel && part->focusPolicy() == Qt::WheelFocus) part->setFocusPolicy(Qt::StrongFocus);
         if (takes_wheel || takes_space) part->installEventFilter(this);
     }
@@ -224,8 +261,11 @@ bool SimulationPanel::eventFilter(QObject* watched, QEvent* event) {
         event->ignore();
         return true;
     }
-    const bool takes_space = qobject_cast<const QAbstractButton*>(part) != nullptr || qobject_cast<const QComboBox*>(part) != nullptr;
-    if (takes_space && event->type() == QEvent::ShortcutOverride && static_cast<QKeyEvent*>(event)->key() == Qt::Key_Space) event->accept();
+    const bool takes_space = qobject_cast<const QAbstractButton*>(part) != nullptr ||
+                             qobject_cast<const QComboBox*>(part) != nullptr;
+    if (takes_space && event->type() == QEvent::ShortcutOverride &&
+        static_cast<QKeyEvent*>(event)->key() == Qt::Key_Space)
+        event->accept();
     return QWidget::eventFilter(watched, event);
 }
 

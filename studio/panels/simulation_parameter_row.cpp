@@ -17,7 +17,10 @@ constexpr int places = 1000;
 }  // namespace
 
 ParameterRow::ParameterRow(const ParameterRange& range, QWidget* parent)
-    : QWidget(parent), m_range(range), m_spin(new QDoubleSpinBox(this)), m_slider(new QSlider(Qt::Horizontal, this)) {
+    : QWidget(parent),
+      m_range(range),
+      m_spin(new QDoubleSpinBox(this)),
+      m_slider(new QSlider(Qt::Horizontal, this)) {
     auto* line = new QHBoxLayout(this);
     line->setContentsMargins(0, 0, 0, 0);
     line->addWidget(m_slider, 1);
@@ -44,7 +47,9 @@ ParameterRow::ParameterRow(const ParameterRange& range, QWidget* parent)
 void ParameterRow::name(const QString& name, const QString& tool_tip) {
     m_spin->setAccessibleName(name);
     m_slider->setAccessibleName(name);
-    for (QWidget* one : {static_cast<QWidget*>(this), static_cast<QWidget*>(m_spin), static_cast<QWidget*>(m_slider)}) one->setToolTip(tool_tip);
+    for (QWidget* one :
+         {static_cast<QWidget*>(this), static_cast<QWidget*>(m_spin), static_cast<QWidget*>(m_slider)})
+        one->setToolTip(tool_tip);
 }
 
 double ParameterRow::value() const {
@@ -59,13 +64,16 @@ void ParameterRow::set_value(double value) {
 }
 
 int ParameterRow::place_of(double value) const {
-    const double share = m_range.is_ratio ? std::log(value / m_range.least) / std::log(m_range.most / m_range.least) : (value - m_range.least) / (m_range.most - m_range.least);
+    const double share = m_range.is_ratio
+                             ? std::log(value / m_range.least) / std::log(m_range.most / m_range.least)
+                             : (value - m_range.least) / (m_range.most - m_range.least);
     return static_cast<int>(std::lround(std::clamp(share, 0.0, 1.0) * places));
 }
 
 double ParameterRow::value_at(int place) const {
     const double share = static_cast<double>(place) / places;
-    return m_range.is_ratio ? m_range.least * std::pow(m_range.most / m_range.least, share) : m_range.least + share * (m_range.most - m_range.least);
+    return m_range.is_ratio ? m_range.least * std::pow(m_range.most / m_range.least, share)
+                            : m_range.least + share * (m_range.most - m_range.least);
 }
 
 void ParameterRow::slide(int place) {

@@ -17,7 +17,8 @@ struct ParameterRange {
     QString unit;
 };
 
-/// A number as a spin box and a slider beside it. A value of a document that lies beyond the range shows as it is.
+/// A number as a spin box and a slider beside it. A value of a document that lies beyond the range shows as
+/// it is.
 class ParameterRow : public QWidget {
     Q_OBJECT
   public:
@@ -32,7 +33,8 @@ class ParameterRow : public QWidget {
     [[nodiscard]] QSlider* slider() const { return m_slider; }
 
   Q_SIGNALS:
-    /// By the person's hand; while the slider is held it is being dragged, and told once more when it is let go.
+    /// By the person's hand; while the slider is held it is being dragged, and told once more when it is let
+    /// go.
     void edited(double value, bool is_dragging);
 
   private:

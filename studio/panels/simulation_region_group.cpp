@@ -24,9 +24,16 @@ int limited(std::size_t count) {
 }  // namespace
 
 RegionGroup::RegionGroup(QWidget* parent)
-    : QGroupBox(tr("What is simulated"), parent), m_whole(new QRadioButton(tr("The &whole cloth"), this)), m_part(new QRadioButton(tr("A &part of it"), this)),
-      m_first_row(new QSpinBox(this)), m_last_row(new QSpinBox(this)), m_first_column(new QSpinBox(this)), m_last_column(new QSpinBox(this)) {
-    m_part->setToolTip(tr("A part of a huge cloth, at least three rows and columns of stacks. Its rims are held as planned, so what lies within two rows and columns of them is disturbed."));
+    : QGroupBox(tr("What is simulated"), parent),
+      m_whole(new QRadioButton(tr("The &whole cloth"), this)),
+      m_part(new QRadioButton(tr("A &part of it"), this)),
+      m_first_row(new QSpinBox(this)),
+      m_last_row(new QSpinBox(this)),
+      m_first_column(new QSpinBox(this)),
+      m_last_column(new QSpinBox(this)) {
+    m_part->setToolTip(
+        tr("A part of a huge cloth, at least three rows and columns of stacks. Its rims are held as planned, "
+           "so what lies within two rows and columns of them is disturbed."));
     auto* grid = new QGridLayout(this);
     grid->addWidget(m_whole, 0, 0, 1, 5);
     grid->addWidget(m_part, 1, 0, 1, 5);

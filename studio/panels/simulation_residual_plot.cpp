@@ -34,7 +34,9 @@ ResidualPlot::ResidualPlot(QWidget* parent) : QWidget(parent) {
     setFocusPolicy(Qt::StrongFocus);
     setSizePolicy(QSizePolicy::Expanding, QSizePolicy::Preferred);
     setAccessibleName(tr("Residual by step"));
-    setToolTip(tr("How much force is left, against the force that holds the cloth, after each step.\nThe dashed line is where it counts as at rest. Click for a value; the arrow keys go on from there."));
+    setToolTip(
+        tr("How much force is left, against the force that holds the cloth, after each step.\nThe dashed "
+           "line is where it counts as at rest. Click for a value; the arrow keys go on from there."));
 }
 
 QSize ResidualPlot::sizeHint() const {
@@ -56,7 +58,8 @@ void ResidualPlot::clear() {
 void ResidualPlot::add(const std::vector<ResidualPoint>& points) {
     for (const ResidualPoint& point : points) {
         if (!(point.residual > 0) || !std::isfinite(point.residual)) continue;
-        if (!m_points.empty() && point.step < m_points.back().step) {  // a server went on from an earlier step
+        if (!m_points.empty() &&
+            point.step < m_points.back().step) {  // a server went on from an earlier step
             std::erase_if(m_points, [&](const ResidualPoint& old) { return old.step >= point.step; });
             m_marked.reset();
         }
@@ -91,7 +94,8 @@ std::optional<ResidualPoint> ResidualPlot::marked() const {
 ResidualScale ResidualPlot::scale() const {
     const QFontMetricsF font(this->font());
     const double line = font.height(), left = font.horizontalAdvance(QStringLiteral("0.0001")) + line / 2;
-    const QRectF area(left, line / 2, std::max(1.0, width() - left - line), std::max(1.0, height() - 2.75 * line));
+    const QRectF area(left, line / 2, std::max(1.0, width() - left - line),
+                      std::max(1.0, height() - 2.75 * line));
     double least = m_goal > 0 ? m_goal : 1e-3, most = least;
     for (const ResidualPoint& point : m_points) {
         least = std::min(least, point.residual);
@@ -132,17 +136,21 @@ void ResidualPlot::draw_grid(QPainter& painter, const ResidualScale& scale) cons
         painter.setPen(QPen(grid, 1));
         painter.drawLine(QPointF(area.left(), y), QPointF(area.right(), y));
         painter.setPen(text);
-        painter.drawText(QRectF(0, y - font.height(), area.left() - font.height() / 3, 2 * font.height()), Qt::AlignRight | Qt::AlignVCenter, decade_label(decade));
+        painter.drawText(QRectF(0, y - font.height(), area.left() - font.height() / 3, 2 * font.height()),
+                         Qt::AlignRight | Qt::AlignVCenter, decade_label(decade));
     }
     for (const std::uint64_t step : scale.steps(static_cast<int>(area.width() / (4.5 * font.height())))) {
         const double x = scale.x_of(static_cast<double>(step));
         painter.setPen(QPen(grid, 1));
         painter.drawLine(QPointF(x, area.top()), QPointF(x, area.bottom()));
         painter.setPen(text);
-        painter.drawText(QRectF(x - 60, area.bottom() + font.height() * 0.15, 120, font.height()), Qt::AlignHCenter | Qt::AlignTop, QString::number(step));
+        painter.drawText(QRectF(x - 60, area.bottom() + font.height() * 0.15, 120, font.height()),
+                         Qt::AlignHCenter | Qt::AlignTop, QString::number(step));
     }
     painter.setPen(text);
-    painter.drawText(QRectF(area.left(), area.bottom() + 1.1 * font.height(), area.width(), font.height() * 1.2), Qt::AlignHCenter | Qt::AlignVCenter, tr("steps"));
+    painter.drawText(
+        QRectF(area.left(), area.bottom() + 1.1 * font.height(), area.width(), font.height() * 1.2),
+        Qt::AlignHCenter | Qt::AlignVCenter, tr("steps"));
 }
 
 void ResidualPlot::draw_goal(QPainter& painter, const ResidualScale& scale) const {
@@ -155,8 +163,11 @@ void ResidualPlot::draw_goal(QPainter& painter, const ResidualScale& scale) cons
     painter.drawLine(QPointF(area.left(), y), QPointF(area.right(), y));
     painter.setPen(colour);
     const QString words = tr("at rest below %1").arg(QString::number(m_goal, 'g', 2));
-    const double top = y - font.height() * 1.1 > area.top() ? y - font.height() * 1.1 : y + font.height() * 0.1;
-    painter.drawText(QRectF(area.left() + font.height() / 3, top, area.width() - font.height() / 3, font.height()), Qt::AlignLeft | Qt::AlignVCenter, words);
+    const double top =
+        y - font.height() * 1.1 > area.top() ? y - font.height() * 1.1 : y + font.height() * 0.1;
+    painter.drawText(
+        QRectF(area.left() + font.height() / 3, top, area.width() - font.height() / 3, font.height()),
+        Qt::AlignLeft | Qt::AlignVCenter, words);
 }
 
 void ResidualPlot::draw_curve(QPainter& painter, const ResidualScale& scale) const {
@@ -165,7 +176,8 @@ void ResidualPlot::draw_curve(QPainter& painter, const ResidualScale& scale) con
         QColor text = palette().color(QPalette::Text);
         text.setAlphaF(0.6F);
         painter.setPen(text);
-        painter.drawText(scale.area(), Qt::AlignCenter | Qt::TextWordWrap, tr("The residual shows here once yarns move"));
+        painter.drawText(scale.area(), Qt::AlignCenter | Qt::TextWordWrap,
+                         tr("The residual shows here once yarns move"));
         return;
     }
     QPainterPath path;
@@ -195,7 +207,8 @@ void ResidualPlot::draw_mark(QPainter& painter, const ResidualScale& scale) cons
     painter.setBrush(palette().color(QPalette::Base));
     painter.drawEllipse(at, font.height() / 4, font.height() / 4);
     const QString words = tr("step %1: %2").arg(point->step).arg(QString::number(point->residual, 'g', 3));
-    const double width = font.horizontalAdvance(words) + font.height(), left = std::clamp(at.x() + font.height() / 2, area.left(), area.right() - width);
+    const double width = font.horizontalAdvance(words) + font.height(),
+                 left = std::clamp(at.x() + font.height() / 2, area.left(), area.right() - width);
     const QRectF box(left, area.top() + font.height() / 4, width, font.height() * 1.4);
     painter.setPen(QPen(palette().color(QPalette::Mid), 1));
     painter.setBrush(palette().color(QPalette::ToolTipBase));
@@ -208,16 +221,21 @@ void ResidualPlot::draw_mark(QPainter& painter, const ResidualScale& scale) cons
 
 void ResidualPlot::mark(std::optional<std::size_t> point) {
     m_marked = point;
-    if (const auto one = marked()) setAccessibleDescription(tr("Residual %1 after step %2").arg(QString::number(one->residual, 'g', 3)).arg(one->step));
+    if (const auto one = marked())
+        setAccessibleDescription(
+            tr("Residual %1 after step %2").arg(QString::number(one->residual, 'g', 3)).arg(one->step));
     update();
 }
 
 void ResidualPlot::mark_at(double x) {
     if (m_points.empty()) return;
     const double step = scale().step_at(x);
-    const auto after = std::ranges::lower_bound(m_points, step, {}, [](const ResidualPoint& point) { return static_cast<double>(point.step); });
+    const auto after = std::ranges::lower_bound(
+        m_points, step, {}, [](const ResidualPoint& point) { return static_cast<double>(point.step); });
     auto nearest = after == m_points.end() ? after - 1 : after;
-    if (nearest != m_points.begin() && step - static_cast<double>((nearest - 1)->step) < static_cast<double>(nearest->step) - step) --nearest;
+    if (nearest != m_points.begin() &&
+        step - static_cast<double>((nearest - 1)->step) < static_cast<double>(nearest->step) - step)
+        --nearest;
     mark(static_cast<std::size_t>(nearest - m_points.begin()));
 }
 

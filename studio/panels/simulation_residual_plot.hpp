@@ -10,8 +10,8 @@
 
 namespace weave::studio {
 
-/// How the residual falls, step by step, on a logarithmic axis, with the line at which it is at rest. A click, or the arrow keys,
-/// shows the value at a step.
+/// How the residual falls, step by step, on a logarithmic axis, with the line at which it is at rest. A
+/// click, or the arrow keys, shows the value at a step.
 class ResidualPlot : public QWidget {
     Q_OBJECT
   public:

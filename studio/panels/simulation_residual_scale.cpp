@@ -25,7 +25,9 @@ std::uint64_t round_step(double least) {
 }  // namespace
 
 ResidualScale::ResidualScale(const QRectF& area, std::uint64_t last_step, double least, double most)
-    : m_area(area), m_last_step(std::max<std::uint64_t>(1, last_step)), m_lowest(static_cast<int>(std::floor(decade(least) + 1e-9))),
+    : m_area(area),
+      m_last_step(std::max<std::uint64_t>(1, last_step)),
+      m_lowest(static_cast<int>(std::floor(decade(least) + 1e-9))),
       m_highest(static_cast<int>(std::ceil(decade(most) - 1e-9))) {
     m_highest = std::max(m_highest, m_lowest + 1);
 }

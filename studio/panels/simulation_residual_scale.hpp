@@ -7,7 +7,8 @@
 
 namespace weave::studio {
 
-/// Where steps and residuals lie on a plot: steps evenly from 0 at the left, residuals by their logarithm in whole decades.
+/// Where steps and residuals lie on a plot: steps evenly from 0 at the left, residuals by their logarithm in
+/// whole decades.
 class ResidualScale {
   public:
     /// `least` and `most` are residuals that must show, above 0.

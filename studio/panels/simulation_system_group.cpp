@@ -12,9 +12,11 @@ namespace weave::studio {
 
 namespace {
 
-// What the catalogue of extremes (libweave/weave/sim/extremes.cpp, `weave bench stability`) brings to rest, jumps while it relaxes
-// included: S from 1 to 1.5, EA and EI by 1/1000 and 1000, radii by 0.5 and 1.5. Beyond, nobody has looked.
-constexpr double most_strain_percent = 50, least_stiffness = 0.001, most_stiffness = 1000, least_radius = 0.5, most_radius = 1.5;
+// What the catalogue of extremes (libweave/weave/sim/extremes.cpp, `weave bench stability`) brings to rest,
+// jumps while it relaxes included: S from 1 to 1.5, EA and EI by 1/1000 and 1000, radii by 0.5 and 1.5.
+// Beyond, nobody has looked.
+constexpr double most_strain_percent = 50, least_stiffness = 0.001, most_stiffness = 1000, least_radius = 0.5,
+                 most_radius = 1.5;
 
 double percent_of(double strain) {
     return 100 * (strain - 1);
@@ -31,7 +33,8 @@ SystemScene with_usual_values(const SystemScene& values, System system) {
 }
 
 SystemGroup::SystemGroup(System system, QWidget* parent)
-    : QGroupBox(system == System::warp ? tr("Warp (ends)") : tr("Weft (picks)"), parent), m_system(system),
+    : QGroupBox(system == System::warp ? tr("Warp (ends)") : tr("Weft (picks)"), parent),
+      m_system(system),
       m_strain(new ParameterRow({0, most_strain_percent, false, 2, 0.1, tr(" %")}, this)),
       m_stiffness(new ParameterRow({least_stiffness, most_stiffness, true, 3, 0.1, tr(" ×")}, this)),
       m_radius(new ParameterRow({least_radius, most_radius, true, 2, 0.05, tr(" ×")}, this)) {
@@ -39,16 +42,25 @@ SystemGroup::SystemGroup(System system, QWidget* parent)
     form->setRowWrapPolicy(QFormLayout::WrapLongRows);
     if (system == System::weft) {
         m_is_fed = new QCheckBox(tr("Fed at constant &tension"), this);
-        m_is_fed->setToolTip(tr("Off: each pick is cut to the length that the loom inserts. On: it is pulled through until it has the target strain, as ends are.\nTakes effect when the simulation starts again."));
+        m_is_fed->setToolTip(
+            tr("Off: each pick is cut to the length that the loom inserts. On: it is pulled through until it "
+               "has the target strain, as ends are.\nTakes effect when the simulation starts again."));
         form->addRow(m_is_fed);
         connect(m_is_fed, &QCheckBox::toggled, this, &SystemGroup::feed);
     }
     form->addRow(tr("Target strain"), m_strain);
     form->addRow(tr("Stiffness"), m_stiffness);
     form->addRow(tr("Yarn radius"), m_radius);
-    m_strain->name(tr("Target strain"), tr("How far the yarn is stretched by its tension at rest. 0 to 50 %: the range in which the simulator was tried to its limits (weave bench stability).\nA change while it runs is led in by and by."));
-    m_stiffness->name(tr("Stiffness"), tr("Times the yarn's own stiffness in stretching and bending. 0.001 to 1000: the range in which the simulator was tried to its limits (weave bench stability).\nA change while it runs is led in by and by."));
-    m_radius->name(tr("Yarn radius"), tr("Times the yarn's own radius. 0.5 to 1.5: the range in which the simulator was tried to its limits (weave bench stability).\nA change while it runs is led in by and by."));
+    m_strain->name(tr("Target strain"), tr("How far the yarn is stretched by its tension at rest. 0 to 50 %: "
+                                           "the range in which the simulator was tried to its limits (weave "
+                                           "bench stability).\nA change while it runs is led in by and by."));
+    m_stiffness->name(tr("Stiffness"),
+                      tr("Times the yarn's own stiffness in stretching and bending. 0.001 to 1000: the range "
+                         "in which the simulator was tried to its limits (weave bench stability).\nA change "
+                         "while it runs is led in by and by."));
+    m_radius->name(tr("Yarn radius"),
+                   tr("Times the yarn's own radius. 0.5 to 1.5: the range in which the simulator was tried "
+                      "to its limits (weave bench stability).\nA change while it runs is led in by and by."));
     connect(m_strain, &ParameterRow::edited, this, [this](double value, bool is_dragging) {
         m_values.strain = 1 + value / 100;
         Q_EMIT edited(is_dragging);

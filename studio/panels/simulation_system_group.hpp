@@ -23,7 +23,8 @@ class SystemGroup : public QGroupBox {
     [[nodiscard]] ParameterRow* strain() const { return m_strain; }
     [[nodiscard]] ParameterRow* stiffness() const { return m_stiffness; }
     [[nodiscard]] ParameterRow* radius() const { return m_radius; }
-    /// Of the weft: whether it is fed at constant tension instead of being cut to length. Null for the warp, which always is.
+    /// Of the weft: whether it is fed at constant tension instead of being cut to length. Null for the warp,
+    /// which always is.
     [[nodiscard]] QCheckBox* is_fed() const { return m_is_fed; }
 
   Q_SIGNALS:
@@ -38,7 +39,8 @@ class SystemGroup : public QGroupBox {
     QCheckBox* m_is_fed = nullptr;
 };
 
-/// The values that a system has where its scene does not say: what a run is led to when an edit takes them away.
+/// The values that a system has where its scene does not say: what a run is led to when an edit takes them
+/// away.
 SystemScene with_usual_values(const SystemScene& values, System system);
 
 }  // namespace weave::studio

@@ -91,7 +91,9 @@ TEST_CASE("what happened is told in its order, each phase, and frames behind the
 
 TEST_CASE("values of a slider that is dragged wait as one, and never pass a flip by") {
     Inbox box;
-    const auto strain = [](double value) { return SystemScene{.strain = value, .stiffness_scale = {}, .radius_scale = {}}; };
+    const auto strain = [](double value) {
+        return SystemScene{.strain = value, .stiffness_scale = {}, .radius_scale = {}};
+    };
     box.order(wire::Parameters{strain(1.01), {}});
     box.order(wire::Parameters{{}, strain(1.02)});
     box.order(wire::Parameters{strain(1.03), {}});

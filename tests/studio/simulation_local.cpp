@@ -27,10 +27,13 @@ Yarns simulated(const char* name, sim::Fidelity fidelity) {
 }
 
 /// The same in legs, with a change before the step `at`.
-Yarns changed_at(const char* name, sim::Fidelity fidelity, const SystemScene& warp, const SystemScene& weft, std::size_t at) {
+Yarns changed_at(const char* name, sim::Fidelity fidelity, const SystemScene& warp, const SystemScene& weft,
+                 std::size_t at) {
     const auto run = std::move(sim::Run::begin(sample(name), request_at(fidelity), 0)).value();
     const std::size_t leg = sim::leg_steps(run->now().plan(), sim::Solver::relax);
-    const auto until = [&](const sim::Progress& progress) { return run->now().steps_before() + progress.iteration < at; };
+    const auto until = [&](const sim::Progress& progress) {
+        return run->now().steps_before() + progress.iteration < at;
+    };
     while (run->steps() < at && !run->is_over()) REQUIRE(run->advance(leg, until));
     REQUIRE(run->steps() == at);
     REQUIRE(run->change(warp, weft));
@@ -55,7 +58,8 @@ TEST_CASE("a simulation run here comes to the bits of the library's, and tells i
     run.run();
     REQUIRE(told.until([&] { return told.inspection != nullptr; }));
     CHECK(run.phase() == RunPhase::at_rest);
-    CHECK(told.phases == std::vector{RunPhase::planning, RunPhase::paused, RunPhase::running, RunPhase::at_rest});
+    CHECK(told.phases ==
+          std::vector{RunPhase::planning, RunPhase::paused, RunPhase::running, RunPhase::at_rest});
     REQUIRE(told.yarns.size() == 1);
     check_same(*told.yarns.back(), simulated(cloth, sim::Fidelity::draft));
     CHECK(told.frame->head.at_rest);
@@ -64,7 +68,8 @@ TEST_CASE("a simulation run here comes to the bits of the library's, and tells i
     CHECK(told.progress.residual <= told.progress.goal);
     CHECK(told.progress.lost_crossings == 0);
     REQUIRE(told.history.size() >= told.progress.step);
-    for (std::size_t k = 1; k < told.history.size(); ++k) CHECK(told.history[k].step >= told.history[k - 1].step);
+    for (std::size_t k = 1; k < told.history.size(); ++k)
+        CHECK(told.history[k].step >= told.history[k - 1].step);
 }
 
 TEST_CASE("a simulation run that is stepped and paused comes to the bits of one that is not") {
@@ -92,7 +97,8 @@ TEST_CASE("a simulation run that is stepped and paused comes to the bits of one 
 }
 
 TEST_CASE("a simulation run takes parameters between two steps, as the library's run does there") {
-    const SystemScene warp{.strain = 1.03, .stiffness_scale = {}, .radius_scale = 1.1}, weft{.strain = {}, .stiffness_scale = 0.5, .radius_scale = {}};
+    const SystemScene warp{.strain = 1.03, .stiffness_scale = {}, .radius_scale = 1.1},
+        weft{.strain = {}, .stiffness_scale = 0.5, .radius_scale = {}};
     LocalRelaxation run;
     FollowedRun told(run);
     run.start(sample(cloth), request_at(sim::Fidelity::draft));
@@ -192,7 +198,8 @@ TEST_CASE("a simulation run can be destroyed or begun anew at any moment") {
         QElapsedTimer clock;
         clock.start();
         run.reset();
-        CHECK(clock.elapsed() < (is_instrumented ? 10'000 : 1'000));  // it waits for nothing, so the time is that of a call
+        CHECK(clock.elapsed() <
+              (is_instrumented ? 10'000 : 1'000));  // it waits for nothing, so the time is that of a call
     }
     // From within its own signals too.
     auto run = std::make_unique<LocalRelaxation>();
@@ -242,6 +249,7 @@ TEST_CASE("a cloth that this computer has no room for is refused before it begin
     FollowedRun told(run);
     run.start(sample(cloth), request_at(sim::Fidelity::draft));
     REQUIRE(QTest::qWaitFor([&] { return told.error.has_value(); }, patience_ms));
-    CHECK_THAT(told.error->message, Catch::Contains("MiB of memory") && Catch::Contains("a part of the cloth"));
+    CHECK_THAT(told.error->message,
+               Catch::Contains("MiB of memory") && Catch::Contains("a part of the cloth"));
     CHECK(told.plan);  // what it would have been
 }

@@ -33,7 +33,8 @@ namespace {
 class OwnSettings {
   public:
     OwnSettings() {
-        QSettings::setPath(QSettings::NativeFormat, QSettings::UserScope, QString::fromStdString(m_folder.path.string()));
+        QSettings::setPath(QSettings::NativeFormat, QSettings::UserScope,
+                           QString::fromStdString(m_folder.path.string()));
         QCoreApplication::setOrganizationName("weave-test");
         QCoreApplication::setApplicationName("studio-test");
         QSettings().clear();
@@ -48,24 +49,32 @@ class Shown {
   public:
     explicit Shown(const Design& design, bool follows = true) : m_design(design) {
         window.setCentralWidget(panel);
-        QObject::connect(panel, &SimulationPanel::scene_edited, &window, [this, follows](const Scene& scene, bool is_dragging) {
-            edits.push_back({scene, is_dragging});
-            m_design.scene = scene;
-            if (follows) panel->set_design(m_design);  // as the owner of the document does
-        });
-        QObject::connect(panel, &SimulationPanel::place_wanted, &window, [this](std::size_t pick, std::size_t end) { place = ClothPlace{pick, end}; });
+        QObject::connect(panel, &SimulationPanel::scene_edited, &window,
+                         [this, follows](const Scene& scene, bool is_dragging) {
+                             edits.push_back({scene, is_dragging});
+                             m_design.scene = scene;
+                             if (follows) panel->set_design(m_design);  // as the owner of the document does
+                         });
+        QObject::connect(panel, &SimulationPanel::place_wanted, &window,
+                         [this](std::size_t pick, std::size_t end) {
+                             place = ClothPlace{pick, end};
+                         });
         QObject::connect(panel, &SimulationPanel::laid_out, &window, [this] { ++layouts; });
         QObject::connect(panel, &SimulationPanel::frame_came, &window, [this] { ++frames; });
-        QObject::connect(panel, &SimulationPanel::yarns_came, &window, [this](const auto& one) { yarns = one; });
+        QObject::connect(panel, &SimulationPanel::yarns_came, &window,
+                         [this](const auto& one) { yarns = one; });
         panel->set_design(design);
         window.resize(480, 1000);
         window.show();
         REQUIRE(QTest::qWaitForWindowExposed(&window));
-        QApplication::setActiveWindow(&window);  // there is nobody else who would: shortcuts are of the active window
+        QApplication::setActiveWindow(
+            &window);  // there is nobody else who would: shortcuts are of the active window
     }
     [[nodiscard]] bool until(const std::function<bool()>& enough) const {
         const bool came = QTest::qWaitFor(enough, patience_ms);
-        if (!came) UNSCOPED_INFO(panel->sentence()->text().toStdString() << "; " << panel->message_bar()->words().toStdString());
+        if (!came)
+            UNSCOPED_INFO(panel->sentence()->text().toStdString()
+                          << "; " << panel->message_bar()->words().toStdString());
         return came;
     }
     [[nodiscard]] bool until_phase(RunPhase phase) const {
@@ -134,7 +143,8 @@ TEST_CASE("the simulation panel runs a cloth to rest by its button, and tells wh
     }
     REQUIRE(line != nullptr);
     panel.findings()->scrollToItem(line);
-    QTest::mouseClick(panel.findings()->viewport(), Qt::LeftButton, {}, panel.findings()->visualItemRect(line).center());
+    QTest::mouseClick(panel.findings()->viewport(), Qt::LeftButton, {},
+                      panel.findings()->visualItemRect(line).center());
     REQUIRE(shown.place);
     CHECK(shown.place->pick == line->data(0, Qt::UserRole).toULongLong());
     shown.press(panel.again_action());
@@ -158,7 +168,9 @@ TEST_CASE("Space runs and pauses the simulation panel, and is left to what has t
     CHECK(panel.sentence()->text().startsWith("Paused after"));
     const std::uint64_t before = panel.state().progress.step;
     shown.press(panel.step_action());
-    REQUIRE(shown.until([&] { return panel.state().phase == RunPhase::paused && panel.state().progress.step == before + 1; }));
+    REQUIRE(shown.until([&] {
+        return panel.state().phase == RunPhase::paused && panel.state().progress.step == before + 1;
+    }));
     panel.tabs()->setCurrentIndex(2);
     panel.scene()->gravity()->setFocus();
     QTest::keyClick(panel.scene()->gravity(), Qt::Key_Space);
@@ -172,7 +184,8 @@ TEST_CASE("Space runs and pauses the simulation panel, and is left to what has t
     CHECK(panel.sentence()->text().startsWith("Stopped after"));
 }
 
-TEST_CASE("parameters changed in the simulation panel are led in while it runs, and are edits of the design") {
+TEST_CASE(
+    "parameters changed in the simulation panel are led in while it runs, and are edits of the design") {
     const OwnSettings settings;
     Shown shown(sample("plain"));
     SimulationPanel& panel = *shown.panel;
@@ -185,7 +198,8 @@ TEST_CASE("parameters changed in the simulation panel are led in while it runs, 
     REQUIRE(shown.edits.size() == 1);
     CHECK(shown.edits.back().scene.warp.radius_scale == 1.2);
     CHECK_FALSE(shown.edits.back().is_dragging);
-    REQUIRE(shown.until([&] { return shown.yarns->yarns.back().radius_mm > 1.1 * before && panel.state().inspection; }));
+    REQUIRE(shown.until(
+        [&] { return shown.yarns->yarns.back().radius_mm > 1.1 * before && panel.state().inspection; }));
     CHECK(shown.yarns->yarns.back().radius_mm == Approx(1.2 * before));
     CHECK_FALSE(panel.is_out_of_date());
     // A slider that is held is one edit for the undo list.
@@ -197,7 +211,8 @@ TEST_CASE("parameters changed in the simulation panel are led in while it runs, 
     option.minimum = slider->minimum();
     option.maximum = slider->maximum();
     option.sliderPosition = option.sliderValue = slider->sliderPosition();
-    const QPoint handle = slider->style()->subControlRect(QStyle::CC_Slider, &option, QStyle::SC_SliderHandle, slider).center();
+    const QPoint handle =
+        slider->style()->subControlRect(QStyle::CC_Slider, &option, QStyle::SC_SliderHandle, slider).center();
     QTest::mousePress(slider, Qt::LeftButton, {}, handle);
     QTest::mouseMove(slider, handle + QPoint(20, 0));
     QTest::mouseMove(slider, handle + QPoint(40, 0));
@@ -212,10 +227,13 @@ TEST_CASE("parameters changed in the simulation panel are led in while it runs, 
     Design plain = sample("plain");
     panel.set_design(plain);
     CHECK(panel.warp()->strain()->value() == Approx(1.0));
-    REQUIRE(shown.until([&] { return shown.yarns->yarns.back().radius_mm == Approx(before) && panel.state().inspection; }));
+    REQUIRE(shown.until(
+        [&] { return shown.yarns->yarns.back().radius_mm == Approx(before) && panel.state().inspection; }));
 }
 
-TEST_CASE("the simulation panel asks for ranges that cannot break the solver, and shows what a document has beyond them") {
+TEST_CASE(
+    "the simulation panel asks for ranges that cannot break the solver, and shows what a document has beyond "
+    "them") {
     const OwnSettings settings;
     Design design = sample("plain");
     design.scene.warp.radius_scale = 3;
@@ -231,7 +249,8 @@ TEST_CASE("the simulation panel asks for ranges that cannot break the solver, an
     CHECK_FALSE(shown.panel->weft()->strain()->isEnabled());
     CHECK(shown.edits.empty());  // to show something is no edit
     shown.panel->tabs()->setCurrentIndex(1);
-    QTest::mouseClick(shown.panel->weft()->is_fed(), Qt::LeftButton, {}, {8, shown.panel->weft()->is_fed()->height() / 2});
+    QTest::mouseClick(shown.panel->weft()->is_fed(), Qt::LeftButton, {},
+                      {8, shown.panel->weft()->is_fed()->height() / 2});
     REQUIRE(shown.edits.size() == 1);
     CHECK(shown.edits.back().scene.weft.strain == 1.01);
     CHECK(shown.edits.back().scene.warp.radius_scale == 3);
@@ -257,14 +276,17 @@ TEST_CASE("a part of the cloth is what the simulation panel simulates when that 
     shown.press(panel.run_action());
     REQUIRE(shown.until_inspected());
     CHECK(shown.yarns->region == Region{1, 3, 1, 3});
-    QTest::mouseClick(panel.region()->whole(), Qt::LeftButton, {}, {8, panel.region()->whole()->height() / 2});
+    QTest::mouseClick(panel.region()->whole(), Qt::LeftButton, {},
+                      {8, panel.region()->whole()->height() / 2});
     CHECK_FALSE(panel.region()->region());
 }
 
 TEST_CASE("yarns of the simulation panel are saved and opened, and what goes wrong is told in words") {
     const OwnSettings settings;
     const weave::testing::TemporaryFolder folder;
-    const auto in_folder = [&](const char* name) { return QString::fromStdString((folder.path / name).string()); };
+    const auto in_folder = [&](const char* name) {
+        return QString::fromStdString((folder.path / name).string());
+    };
     Shown shown(sample("plain"));
     SimulationPanel& panel = *shown.panel;
     shown.press(panel.run_action());
@@ -289,7 +311,8 @@ TEST_CASE("yarns of the simulation panel are saved and opened, and what goes wro
     CHECK_FALSE(panel.message_bar()->isVisible());
 }
 
-TEST_CASE("a design that the simulator refuses, and a server that is not there, show in the simulation panel") {
+TEST_CASE(
+    "a design that the simulator refuses, and a server that is not there, show in the simulation panel") {
     const OwnSettings settings;
     Design design = sample("plain");
     design.scene.boundary_x = Boundary::free;
@@ -338,16 +361,26 @@ TEST_CASE("servers and the fidelity are remembered, a token's file by its name a
 }
 
 TEST_CASE("figures of each fidelity stand in the documents that they name") {
-    const auto document = [](const char* name) { return read_file(std::filesystem::path(WEAVE_SOURCE_DIR) / name).value(); };
-    const std::string summary = document("docs/simulation/README.md"), table = document("docs/simulation/tradeoff.md");
-    CHECK_THAT(summary, Catch::Contains("`standard` 0.08 percentage points, but 0.46 on layer to layer") && Catch::Contains("`draft` 0.43, and 1.7") &&
-                            Catch::Contains("`standard` 0.0 to 3.4 %, `draft` 0.0 to 13 %") && Catch::Contains("after 29 to 52 % of the time") &&
+    const auto document = [](const char* name) {
+        return read_file(std::filesystem::path(WEAVE_SOURCE_DIR) / name).value();
+    };
+    const std::string summary = document("docs/simulation/README.md"),
+                      table = document("docs/simulation/tradeoff.md");
+    CHECK_THAT(summary, Catch::Contains("`standard` 0.08 percentage points, but 0.46 on layer to layer") &&
+                            Catch::Contains("`draft` 0.43, and 1.7") &&
+                            Catch::Contains("`standard` 0.0 to 3.4 %, `draft` 0.0 to 13 %") &&
+                            Catch::Contains("after 29 to 52 % of the time") &&
                             Catch::Contains("0.7 to 1.4 times the work"));
     // Least and most seconds of the structures that come to rest, and the error of the finest.
-    CHECK_THAT(table, Catch::Contains("| draft | relax | raw | 350 | 0.05 | 0.10 |") && Catch::Contains("| draft | relax | raw | 2248 | 1.86 | 2.38 |") &&
-                          Catch::Contains("| standard | relax | raw | 690 | 0.05 | 0.08 | 0.17 |") && Catch::Contains("| standard | relax | raw | 4472 | 1.76 | 2.46 | 3.11 |") &&
-                          Catch::Contains("| reference | relax | raw | 1390 | 0.23 | 0.27 | 0.34 | 0.70 | 0.73 |") &&
-                          Catch::Contains("| reference | relax | raw | 9000 | 3.99 | 8.98 | 11.95 | 17.44 | 19.53 |") && Catch::Contains("+0.053 / -0.003 / +0.30 / 0.057"));
+    CHECK_THAT(
+        table,
+        Catch::Contains("| draft | relax | raw | 350 | 0.05 | 0.10 |") &&
+            Catch::Contains("| draft | relax | raw | 2248 | 1.86 | 2.38 |") &&
+            Catch::Contains("| standard | relax | raw | 690 | 0.05 | 0.08 | 0.17 |") &&
+            Catch::Contains("| standard | relax | raw | 4472 | 1.76 | 2.46 | 3.11 |") &&
+            Catch::Contains("| reference | relax | raw | 1390 | 0.23 | 0.27 | 0.34 | 0.70 | 0.73 |") &&
+            Catch::Contains("| reference | relax | raw | 9000 | 3.99 | 8.98 | 11.95 | 17.44 | 19.53 |") &&
+            Catch::Contains("+0.053 / -0.003 / +0.30 / 0.057"));
     CHECK(words_of(sim::Fidelity::draft).source.contains("tradeoff.md"));
 }
 
@@ -355,7 +388,9 @@ TEST_CASE("the simulation panel as it looks", "[.screens]") {
     const OwnSettings settings;
     Shown shown(sample("angle-interlock-b"));
     SimulationPanel& panel = *shown.panel;
-    const auto save = [&](const char* name) { shown.window.grab().save(QStringLiteral("/tmp/st-sim-%1.png").arg(QLatin1String(name))); };
+    const auto save = [&](const char* name) {
+        shown.window.grab().save(QStringLiteral("/tmp/st-sim-%1.png").arg(QLatin1String(name)));
+    };
     panel.fidelity()->choice()->setCurrentIndex(1);
     save("idle");
     shown.press(panel.run_action());

@@ -24,7 +24,8 @@ TEST_CASE("the plot of residuals has whole decades, and steps evenly") {
     CHECK(scale.step_at(300) == Approx(100));
     CHECK(scale.step_at(-5) == 0);
     CHECK(scale.step_at(900) == 200);
-    for (const double residual : {0.9, 0.04, 2e-3}) CHECK(scale.residual_at(scale.y_of(residual)) == Approx(residual));
+    for (const double residual : {0.9, 0.04, 2e-3})
+        CHECK(scale.residual_at(scale.y_of(residual)) == Approx(residual));
     CHECK(scale.decades(10) == std::vector{-3, -2, -1, 0});
     CHECK(scale.decades(2) == std::vector{-3, -1});
     CHECK(scale.steps(5) == std::vector<std::uint64_t>{0, 50, 100, 150, 200});
@@ -48,7 +49,8 @@ TEST_CASE("a click on the plot shows the nearest step's value, and arrow keys go
     plot.resize(400, 200);
     plot.set_goal(1e-3);
     std::vector<ResidualPoint> points;
-    for (std::uint64_t step = 1; step <= 100; ++step) points.push_back({step, std::pow(10, -0.03 * static_cast<double>(step))});
+    for (std::uint64_t step = 1; step <= 100; ++step)
+        points.push_back({step, std::pow(10, -0.03 * static_cast<double>(step))});
     plot.add(points);
     plot.show();
     REQUIRE(QTest::qWaitForWindowExposed(&plot));

@@ -25,7 +25,9 @@ class Server {
     Server() { start(); }
     void start() {
         std::ofstream(config()) << R"({"address":""})";
-        m_program.emplace("simd", std::vector<std::string>{"serve", folder().string(), "--config", config(), "--json"}, (m_folder.path / "told").string());
+        m_program.emplace(
+            "simd", std::vector<std::string>{"serve", folder().string(), "--config", config(), "--json"},
+            (m_folder.path / "told").string());
         const auto answer = parse_json(m_program->line());
         REQUIRE(answer);
         REQUIRE_FALSE(answer->contains("error"));
@@ -35,7 +37,9 @@ class Server {
         m_program->end(SIGKILL);
         m_program->exit_code();
     }
-    [[nodiscard]] ServerWish wish() const { return {.host = "unix:" + (folder() / "simd.sock").string(), .token_file = {}, .fingerprint = {}}; }
+    [[nodiscard]] ServerWish wish() const {
+        return {.host = "unix:" + (folder() / "simd.sock").string(), .token_file = {}, .fingerprint = {}};
+    }
     [[nodiscard]] std::size_t sessions() const {
         const auto text = wire::download(place_of(wish()).value(), "/api/v1/status", 1 << 24);
         REQUIRE(text);
@@ -160,9 +164,12 @@ TEST_CASE("a server that is not there, and one that refuses, are told as they ar
         CHECK(run.phase() == RunPhase::failed);
         return told.error->text();
     };
-    const ServerWish nowhere{.host = "unix:" + (folder.path / "none").string(), .token_file = {}, .fingerprint = {}};
+    const ServerWish nowhere{
+        .host = "unix:" + (folder.path / "none").string(), .token_file = {}, .fingerprint = {}};
     CHECK_THAT(error_of(nowhere, sample("plain")), Catch::Contains("none"));
-    CHECK_THAT(error_of({.host = "http://far.example:9", .token_file = {}, .fingerprint = {}}, sample("plain")), Catch::Contains("plain HTTP"));
+    CHECK_THAT(
+        error_of({.host = "http://far.example:9", .token_file = {}, .fingerprint = {}}, sample("plain")),
+        Catch::Contains("plain HTTP"));
     ServerWish no_token = nowhere;
     no_token.token_file = (folder.path / "token").string();
     CHECK_THAT(error_of(no_token, sample("plain")), Catch::Contains("token"));

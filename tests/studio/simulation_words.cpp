@@ -32,10 +32,13 @@ TEST_CASE("a run that settles says how far it is, and how long it will take") {
     state.progress.lost_crossings = 0;
     CHECK(said(state) == "Still settling: residual 0.041, about 12 s to go");
     state.progress.lost_crossings = 3;
-    CHECK(said(state) == "Still settling: residual 0.041, about 12 s to go; 3 crossings no longer lie as the card says");
+    CHECK(said(state) ==
+          "Still settling: residual 0.041, about 12 s to go; 3 crossings no longer lie as the card says");
     state.progress.lost_crossings = 1;
     state.progress.is_coarse = true;
-    CHECK(said(state) == "Still settling, as a draft first: residual 0.041, about 12 s to go; 1 crossing no longer lies as the card says");
+    CHECK(said(state) ==
+          "Still settling, as a draft first: residual 0.041, about 12 s to go; 1 crossing no longer lies as "
+          "the card says");
     state.progress.is_flipping = true;
     CHECK(said(state) == "Leading two yarns past one another …");
 }
@@ -46,10 +49,13 @@ TEST_CASE("a run that came to rest says so, with what is wrong in the cloth") {
     auto inspection = std::make_shared<Inspection>();
     inspection->jammed = {{{System::weft, 13}, 2, 4, {6, 7}, -0.1}, {{System::warp, 2}, 1, 4, {5, 6}, -0.05}};
     state.inspection = inspection;
-    CHECK(said(state) == "Converged: at rest within 0.001 after 214 steps; 2 yarns are jammed, tightest at pick 14, end 7");
+    CHECK(said(state) ==
+          "Converged: at rest within 0.001 after 214 steps; 2 yarns are jammed, tightest at pick 14, end 7");
     inspection->changed = {{2, 4, true, true}, {3, 3, true, true}, {7, 1, false, true}};
     inspection->jammed.erase(inspection->jammed.begin());
-    CHECK(said(state) == "Converged: at rest within 0.001 after 214 steps; 3 crossings no longer lie as the card says (pick 3, end 5 …); 1 yarn is jammed at pick 6, end 3");
+    CHECK(said(state) ==
+          "Converged: at rest within 0.001 after 214 steps; 3 crossings no longer lie as the card says (pick "
+          "3, end 5 …); 1 yarn is jammed at pick 6, end 3");
     state.progress.step = 1;
     state.inspection.reset();
     CHECK(said(state) == "Converged: at rest within 0.001 after 1 step");

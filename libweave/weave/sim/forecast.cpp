@@ -19,8 +19,10 @@ std::uint64_t expected_bytes(std::size_t points) {
 std::string memory_text(std::uint64_t bytes) {
     std::array<char, 32> text{};
     const double mib = static_cast<double>(bytes) / (1 << 20);
-    if (mib < 1024) std::snprintf(text.data(), text.size(), "%.0f MiB", mib);
-    else std::snprintf(text.data(), text.size(), "%.1f GiB", mib / 1024);
+    if (mib < 1024)
+        std::snprintf(text.data(), text.size(), "%.0f MiB", mib);
+    else
+        std::snprintf(text.data(), text.size(), "%.1f GiB", mib / 1024);
     return text.data();
 }
 

@@ -11,8 +11,8 @@ namespace weave::sim {
 /// Control points of all yarns that a plan simulates.
 std::size_t points_of(const Plan& plan);
 
-/// Memory that a cloth of so many control points is expected to take while it relaxes, bytes. Measured: 980,000 points took
-/// 5.7 kB each at their most (docs/simulation), small ones some 30 MiB in all.
+/// Memory that a cloth of so many control points is expected to take while it relaxes, bytes. Measured:
+/// 980,000 points took 5.7 kB each at their most (docs/simulation), small ones some 30 MiB in all.
 std::uint64_t expected_bytes(std::size_t points);
 
 /// An amount of memory for people, such as `3.1 GiB`.

@@ -33,9 +33,11 @@ inline Design sample(const char* name) {
 class FollowedRun {
   public:
     explicit FollowedRun(Relaxation& run) : m_run(run) {
-        QObject::connect(&run, &Relaxation::phase_changed, &m_context, [this](RunPhase phase) { phases.push_back(phase); });
+        QObject::connect(&run, &Relaxation::phase_changed, &m_context,
+                         [this](RunPhase phase) { phases.push_back(phase); });
         QObject::connect(&run, &Relaxation::planned, &m_context, [this](const auto& one) { plan = one; });
-        QObject::connect(&run, &Relaxation::laid_out, &m_context, [this](const auto& one) { layouts.push_back(one); });
+        QObject::connect(&run, &Relaxation::laid_out, &m_context,
+                         [this](const auto& one) { layouts.push_back(one); });
         QObject::connect(&run, &Relaxation::frame_came, &m_context, [this](const auto& one) {
             ++frames;
             CHECK((!frame || one->head.number > frame->head.number));
@@ -47,17 +49,25 @@ class FollowedRun {
             history.insert(history.end(), one.history.begin(), one.history.end());
             progress = one;
         });
-        QObject::connect(&run, &Relaxation::ended, &m_context, [this](const auto& one) { yarns.push_back(one); });
-        QObject::connect(&run, &Relaxation::inspected, &m_context, [this](const auto&, const auto& one) { inspection = one; });
+        QObject::connect(&run, &Relaxation::ended, &m_context,
+                         [this](const auto& one) { yarns.push_back(one); });
+        QObject::connect(&run, &Relaxation::inspected, &m_context,
+                         [this](const auto&, const auto& one) { inspection = one; });
         QObject::connect(&run, &Relaxation::flip_ended, &m_context,
-                         [this](const Flip& flip, bool done, const QString& reason) { flips.push_back({flip, done, reason.toStdString()}); });
+                         [this](const Flip& flip, bool done, const QString& reason) {
+                             flips.push_back({flip, done, reason.toStdString()});
+                         });
         QObject::connect(&run, &Relaxation::parameters_arrived, &m_context, [this] { ++arrivals; });
-        QObject::connect(&run, &Relaxation::refused, &m_context, [this](const Error& one) { refusals.push_back(one); });
-        QObject::connect(&run, &Relaxation::troubled, &m_context, [this](const QString& words) { troubles.push_back(words); });
+        QObject::connect(&run, &Relaxation::refused, &m_context,
+                         [this](const Error& one) { refusals.push_back(one); });
+        QObject::connect(&run, &Relaxation::troubled, &m_context,
+                         [this](const QString& words) { troubles.push_back(words); });
         QObject::connect(&run, &Relaxation::failed, &m_context, [this](const Error& one) { error = one; });
     }
 
-    [[nodiscard]] bool until(const std::function<bool()>& enough) const { return QTest::qWaitFor([&] { return enough() || error; }, patience_ms) && enough(); }
+    [[nodiscard]] bool until(const std::function<bool()>& enough) const {
+        return QTest::qWaitFor([&] { return enough() || error; }, patience_ms) && enough();
+    }
     [[nodiscard]] bool until_phase(RunPhase phase) const {
         return until([&] { return m_run.phase() == phase; });
     }
@@ -94,7 +104,8 @@ inline void check_same(const Yarns& one, const Yarns& other) {
         different += one.yarns[y].radius_mm == other.yarns[y].radius_mm ? 0 : 1;
     }
     CHECK(different == 0);
-    for (const char* member : {"iterations", "residual", "energy_N_mm", "converged", "scene_sha256", "design_sha256"}) {
+    for (const char* member :
+         {"iterations", "residual", "energy_N_mm", "converged", "scene_sha256", "design_sha256"}) {
         INFO(member);
         CHECK(one.report.at(member) == other.report.at(member));
     }
