@@ -1,7 +1,8 @@
 // The paper's study (section 7) as a person does it, in a real window with mouse and keys: a layer of two satins by a stencil, relaxed
 // and mended by flips; a twill below it, sealed along the sides; and sealed at one end.
 
-#include <weave/samples/samples.hpp>
+#include <weave/design/edit.hpp>
+#include <weave/design/evaluate.hpp>
 
 #include <studio/editors/card_editor.hpp>
 #include <studio/editors/stencil_editor.hpp>
@@ -157,13 +158,121 @@ CardImage card_of(const Design& design) {
     return made->block->card_image();
 }
 
-/// Task 2: relaxed to rest, then two crossings flipped in the relaxed cloth itself.
-void relax_and_mend(Designer& she) {
+/// Waits until the viewer shows yarns that were measured, with their crossings.
+void wait_for_relaxed(Designer& she) {
+    REQUIRE(until([&] {
+        const TubeModel* model = she.viewer().viewport()->model();
+        return she.viewer().mode() == ViewerPanel::Mode::relaxed && model != nullptr && !model->crossings().empty();
+    }));
+}
+
+void click_crossing(Designer& she, const CardPlace& place, const QString& item) {
+    Viewport& view = *she.viewer().viewport();
+    for (const ModelCrossing& crossing : view.model()->crossings()) {
+        if (crossing.pick != place.pick || crossing.end != place.end) continue;
+        const auto at = view.camera().project(crossing.place, {static_cast<double>(view.width()), static_cast<double>(view.height())});
+        with_menu([&] { QTest::mouseClick(&view, Qt::LeftButton, {}, QPointF(at.x, at.y).toPoint()); }, item);
+        return;
+    }
+    FAIL("no crossing of pick " << place.pick + 1 << " and end " << place.end + 1);
+}
+
+void run_to_rest(Designer& she) {
     SimulationPanel& simulation = she.simulation();
-    choose_entry(simulation.fidelity()->choice(), "Draft");
     click(button_of(simulation, simulation.run_action()));
-    REQUIRE(QTest::qWaitFor([&] { return simulation.state().phase == RunPhase::at_rest; }, 180000));
-    REQUIRE(until([&] { return she.viewer().mode() == ViewerPanel::Mode::relaxed && simulation.state().yarns; }));
+    REQUIRE(QTest::qWaitFor([&] { return simulation.state().phase == RunPhase::at_rest; }, 240000));
+    wait_for_relaxed(she);
+}
+
+/// Task 2: relaxed to rest, then crossings at the graphic's edge flipped in the relaxed cloth itself.
+void relax_and_mend(Designer& she, const std::vector<CardPlace>& flaws) {
+    choose_entry(she.simulation().fidelity()->choice(), "Draft");
+    run_to_rest(she);
+    she.keep_screen("story-2-relaxed");
+    QTest::keyClick(she.viewer().viewport(), Qt::Key_1);
+    QTest::keyClick(she.viewer().viewport(), Qt::Key_F);
+    for (const CardPlace& flaw : flaws) {
+        const int before = she.window.document()->undo_stack().count();
+        click_crossing(she, flaw, "Flip pick");
+        REQUIRE(QTest::qWaitFor([&] { return she.window.document()->undo_stack().count() == before + 1; }, 120000));
+        REQUIRE(QTest::qWaitFor([&] { return she.simulation().state().phase == RunPhase::at_rest; }, 240000));
+        wait_for_relaxed(she);
+    }
+    she.keep_screen("story-2-mended");
+}
+
+/// Task 3: a twill of the same size below, and the weft turned round the long sides.
+void attach_and_wrap(Designer& she) {
+    with_dialog([&] { choose(she.window, {"Block", "Add a traditional weave …"}); },
+                [&](QDialog& dialog) {
+                    choose_entry(dialog.findChild<QComboBox*>(), "twill");
+                    type_number(dialog.findChild<QSpinBox*>("up"), 4);
+                    type_number(dialog.findChild<QSpinBox*>("down"), 1);
+                    press(dialog, QDialogButtonBox::Ok);
+                });
+    she.settle();
+    with_dialog([&] { choose(she.window, {"Block", "The chosen block", "Repeat (tile) …"}); },
+                [&](QDialog& dialog) {
+                    type_number(dialog.findChild<QSpinBox*>("along"), 7);
+                    type_number(dialog.findChild<QSpinBox*>("across"), 5);
+                    press(dialog, QDialogButtonBox::Ok);
+                });
+    she.settle();
+    click_item(she.find<DesignTree>(), "stencil");
+    she.settle();
+    // By the face in space: seen from below it is the back.
+    ViewerPanel& viewer = she.viewer();
+    choose_entry(viewer.findChild<QComboBox*>(), "Planned");
+    REQUIRE(until([&] { return viewer.mode() == ViewerPanel::Mode::planned && viewer.viewport()->model() != nullptr; }));
+    QTest::keyClick(viewer.viewport(), Qt::Key_2);
+    QTest::keyClick(viewer.viewport(), Qt::Key_F);
+    for (QAction* action : viewer.findChildren<QAction*>()) {
+        if (action->text().remove('&').startsWith("Attach")) click(button_of(viewer, action));
+    }
+    REQUIRE(viewer.viewport()->attach_mode());
+    with_menu([&] { QTest::mouseClick(viewer.viewport(), Qt::LeftButton, {}, viewer.viewport()->rect().center()); }, "twill-repeated");
+    she.settle();
+    CHECK(she.design().root == "stencil-with-twill-repeated");
+    choose_entry(she.simulation().scene()->weft_mode(), "Turns");
+    REQUIRE(until([&] { return she.design().scene.weft_mode == WeftMode::wraparound; }));
+    she.settle();
+    she.keep_screen("story-3-attached");
+}
+
+/// Task 4: one short side closed, pair by pair, by flips on the card that bind both layers in the first picks.
+std::vector<CardPlace> seal(Designer& she) {
+    she.show_editor("Card");
+    click_item(she.find<DesignTree>(), "stencil-with-twill-repeated");
+    she.settle();
+    std::vector<CardPlace> flipped;
+    for (std::size_t end = 1; end < 2 * ends; end += 4) {
+        const int before = she.window.document()->undo_stack().count();
+        for (std::size_t pick = 0; pick < 4 && she.window.document()->undo_stack().count() == before; ++pick) {
+            const CardPlace place{pick, end};
+            she.click_card(place);
+            she.settle();
+            if (she.window.document()->undo_stack().count() == before + 1) flipped.push_back(place);
+        }
+    }
+    she.keep_screen("story-4-sealed");
+    return flipped;
+}
+
+/// The whole pocket, by the library alone.
+Design pocket_of_the_library(const std::vector<CardPlace>& mended, const std::vector<CardPlace>& sealed) {
+    Design design = pattern_of_the_library();
+    const auto flip = [&](const std::string& block, const CardPlace& place) {
+        design.root = block;
+        const bool over = card_of(design).weft_over(place.pick, place.end);
+        REQUIRE(apply_edit(design, PutFlip{block, {place.pick, place.end, !over}}));
+    };
+    for (const CardPlace& place : mended) flip("stencil", place);
+    design.blocks["twill"] = std::make_shared<const Node>(Node{PresetLeaf{{"twill", {{"up", 4}, {"down", 1}}}}, {}});
+    design.blocks["twill-repeated"] = std::make_shared<const Node>(Node{TileOperation{"twill", 7, 5, 1}, {}});
+    design.blocks["pocket"] = std::make_shared<const Node>(Node{AttachOperation{"stencil", "twill-repeated", Face::minus_z}, {}});
+    design.root = "pocket";
+    for (const CardPlace& place : sealed) flip("pocket", place);
+    return design;
 }
 
 }  // namespace
@@ -171,8 +280,14 @@ void relax_and_mend(Designer& she) {
 TEST_CASE("the study: a pocket from two satins and a twill, drawn, relaxed, mended, attached and sealed", "[story]") {
     Designer she;
     make_pattern(she);
-    const CardImage pattern = card_of(pattern_of_the_library());
-    CHECK(she.whole_card() == pattern);
+    CHECK(she.whole_card() == card_of(pattern_of_the_library()));
     CHECK(she.design().root == "stencil");
     she.keep_screen("story-1-pattern");
+    const std::vector<CardPlace> flaws{{8, 7}, {20, 6}};
+    relax_and_mend(she, flaws);
+    attach_and_wrap(she);
+    CHECK(she.whole_card() == card_of(pocket_of_the_library(flaws, {})));
+    const std::vector<CardPlace> sealed = seal(she);
+    CHECK(sealed.size() >= 6);
+    CHECK(she.whole_card() == card_of(pocket_of_the_library(flaws, sealed)));
 }
