@@ -53,7 +53,7 @@ void ClothMaker::serve(const Wish& wish) {
     }
     tell(wish, wish.first, true);
     if (is_outdated()) return;
-    if (wish.design.root != wish.first) tell(wish, wish.design.root, m_colours_changed);
+    if (wish.design.root != wish.first) tell(wish, wish.design.root, true);
     for (const auto& [name, node] : wish.design.blocks) {
         if (is_outdated()) return;
         if (name != wish.first && name != wish.design.root) tell(wish, name, m_colours_changed);

@@ -31,7 +31,7 @@ class ClothMaker : public QObject {
     void make(const Design& design, std::uint64_t revision, const std::string& first);
 
   Q_SIGNALS:
-    /// A block was made, or cannot be; comes into the thread that this object lives in. `first` is always told, others only
+    /// A block was made, or cannot be; comes into the thread that this object lives in. `first` and the cloth are always told, others only
     /// where they changed.
     void made(const QString& block, const weave::studio::Cloth& cloth);
 

@@ -3,6 +3,7 @@
 #include <weave/block/flip.hpp>
 #include <weave/picture/layer_map.hpp>
 
+#include <QAbstractItemView>
 #include <QComboBox>
 #include <QHBoxLayout>
 #include <QLabel>
@@ -59,14 +60,17 @@ CardEditor::CardEditor(QWidget* parent) : QWidget(parent), m_canvas(new GridCanv
 void CardEditor::make_tools(QHBoxLayout& tools) {
     m_modes = new QComboBox;
     m_modes->setObjectName("card-mode");
+    m_modes->setSizeAdjustPolicy(QComboBox::AdjustToMinimumContentsLengthWithIcon);
+    m_modes->setMinimumContentsLength(14);
+    m_modes->view()->setMinimumWidth(fontMetrics().averageCharWidth() * 34);
     m_modes->setToolTip(tr("What is shown of the block"));
     m_modes->setAccessibleName(m_modes->toolTip());
     connect(m_modes, &QComboBox::currentIndexChanged, this, [this] {
         const int chosen = m_modes->currentData().toInt();
         show_mode(static_cast<CardMode>(chosen / 1000), static_cast<std::size_t>(chosen % 1000));
     });
-    m_times_columns = times_box(tr("Repeats shown side by side"), tr("across "));
-    m_times_rows = times_box(tr("Repeats shown above each other"), tr("along "));
+    m_times_columns = times_box(tr("Repeats shown side by side, across the cloth"), "↔ ");
+    m_times_rows = times_box(tr("Repeats shown above each other, along the cloth"), "↕ ");
     for (QSpinBox* box : {m_times_columns, m_times_rows}) connect(box, &QSpinBox::valueChanged, this, [this] { show_block(); });
     const auto button = [&](const QString& text, const QString& tip, auto action) {
         auto* made = new QToolButton;
@@ -84,7 +88,9 @@ void CardEditor::make_tools(QHBoxLayout& tools) {
     tools.addWidget(m_times_columns);
     tools.addWidget(m_times_rows);
     tools.addStretch();
-    tools.addWidget(m_state);
+    m_state->setSizePolicy(QSizePolicy::Ignored, QSizePolicy::Preferred);
+    m_state->setAlignment(Qt::AlignRight | Qt::AlignVCenter);
+    tools.addWidget(m_state, 1);
     button("−", tr("Smaller (−)"), [this] { m_canvas->zoom_by(1 / 1.4); });
     button("+", tr("Larger (+)"), [this] { m_canvas->zoom_by(1.4); });
     button(tr("Fit"), tr("Show all of it (F)"), [this] { m_canvas->fit(); });

@@ -2,6 +2,7 @@
 
 #include <QColorDialog>
 #include <QHeaderView>
+#include <QScrollBar>
 #include <QScopedValueRollback>
 
 #include <algorithm>
@@ -39,7 +40,7 @@ void YarnTable::show_yarns(const Json& yarns) {
     setRowCount(static_cast<int>(yarns.size()));
     for (int row = 0; row < rowCount(); ++row) fill_row(row, yarns[static_cast<std::size_t>(row)]);
     const int line = verticalHeader()->defaultSectionSize();
-    setMinimumHeight(horizontalHeader()->sizeHint().height() + line * std::clamp(rowCount(), 1, 4) + 6);
+    setFixedHeight(horizontalHeader()->sizeHint().height() + line * std::clamp(rowCount(), 1, 4) + horizontalScrollBar()->sizeHint().height() + 6);
 }
 
 void YarnTable::fill_row(int row, const Json& yarn) {

@@ -54,7 +54,7 @@ MainWindow::MainWindow(QWidget* parent)
       m_findings(new FindingsPanel), m_simulation(new SimulationPanel), m_simulation_desk(new SimulationDesk(*m_simulation, *m_viewer, this)), m_yarns(new YarnsPanel),
       m_tutorial(new Tutorial), m_messages(new MessageBar), m_status(new QLabel) {
     setObjectName("studio");
-    resize(1440, 920);
+    resize(1680, 1040);
     make_workspace();
     make_docks();
     make_menus();
@@ -98,7 +98,10 @@ void MainWindow::make_workspace() {
     m_pages->addWidget(m_work);
     m_work->addWidget(m_editors);
     m_work->addWidget(m_viewer);
-    m_work->setSizes({560, 560});
+    m_editors->setMinimumWidth(fontMetrics().averageCharWidth() * 50);  // their tool rows may be cut
+    m_work->setStretchFactor(0, 1);
+    m_work->setStretchFactor(1, 1);
+    m_work->setSizes({500, 500});
     m_work->setChildrenCollapsible(false);
     setCentralWidget(whole);
     connect(m_card, &CardEditor::told, this, &MainWindow::tell);
@@ -156,7 +159,6 @@ void MainWindow::make_docks() {
         return made;
     };
     auto* blocks = dock("blocks-dock", tr("Blocks"), m_tree, Qt::LeftDockWidgetArea);
-    resizeDocks({blocks}, {300}, Qt::Horizontal);
     auto* simulation = dock("simulation-dock", tr("Simulation"), m_simulation, Qt::RightDockWidgetArea);
     auto* yarns = dock("yarns-dock", tr("Yarns"), m_yarns, Qt::RightDockWidgetArea);
     m_tutorial_dock = dock("tutorial-dock", tr("Tutorial"), m_tutorial, Qt::LeftDockWidgetArea);
@@ -164,6 +166,8 @@ void MainWindow::make_docks() {
     simulation->raise();
     auto* findings = dock("findings-dock", tr("Findings"), m_findings, Qt::BottomDockWidgetArea);
     resizeDocks({findings}, {190}, Qt::Vertical);
+    resizeDocks({blocks, simulation}, {270, 400}, Qt::Horizontal);
+    m_simulation_dock = simulation;
     setCorner(Qt::BottomLeftCorner, Qt::LeftDockWidgetArea);
     setCorner(Qt::BottomRightCorner, Qt::RightDockWidgetArea);
     connect(m_findings, &FindingsPanel::place_wanted, this, &MainWindow::go_to);
@@ -243,6 +247,7 @@ void MainWindow::take(std::unique_ptr<Document> document) {
     show_in_parts(m_document.get());
     m_pages->setCurrentWidget(m_work);
     for (QDockWidget* dock : findChildren<QDockWidget*>()) dock->setVisible(dock != m_tutorial_dock || m_is_learning);
+    m_simulation_dock->raise();
     show_title();
     show_undo();
 }

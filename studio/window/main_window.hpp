@@ -105,6 +105,7 @@ class MainWindow : public QMainWindow {
     YarnsPanel* m_yarns;
     Tutorial* m_tutorial;
     QDockWidget* m_tutorial_dock = nullptr;
+    QDockWidget* m_simulation_dock = nullptr;
     bool m_is_learning = false;
     MessageBar* m_messages;
     QLabel* m_status;

@@ -104,8 +104,6 @@ TEST_CASE("a click that cannot be tells which yarns stand in the way and changes
 
 TEST_CASE("a line drawn over crossings is one step") {
     Desk desk("plain");
-    auto* across = desk.editor.findChildren<QSpinBox*>()[0];
-    REQUIRE(across->prefix().startsWith("across"));
     QWidget& canvas = desk.editor.canvas();
     QTest::mousePress(&canvas, Qt::LeftButton, {}, desk.at(0, 0));
     QTest::mouseMove(&canvas, desk.at(1, 1));

@@ -119,7 +119,7 @@ void make_pattern(Designer& she) {
                     press(dialog, QDialogButtonBox::Ok);
                 });
     she.settle();
-    with_menu([&] { click(stencil.palette_list().findChild<QAbstractButton*>("add")); }, "sateen");
+    with_menu([&] { click(stencil.palette_list().findChild<QAbstractButton*>("add_block")); }, "sateen");
     she.settle();
     QListWidget& palette = stencil.palette_list().list();
     QTest::mouseClick(palette.viewport(), Qt::LeftButton, {}, palette.visualItemRect(palette.item(1)).center());
