@@ -1,7 +1,7 @@
 #pragma once
 
-#include <studio/viewport/camera.hpp>
 #include <weave/block/operations.hpp>
+#include <studio/viewport/camera.hpp>
 
 #include <array>
 #include <optional>

@@ -8,7 +8,8 @@ namespace weave::studio {
 
 namespace {
 
-constexpr double eye_in_heights = 1.7;  ///< an angle of 33 degrees from top to bottom, as in pictures of relaxed cloth
+constexpr double eye_in_heights =
+    1.7;  ///< an angle of 33 degrees from top to bottom, as in pictures of relaxed cloth
 constexpr double least_height_mm = 1e-3, most_height_mm = 1e6, farthest_mm = 1e9;
 constexpr double rim_share = 0.06;
 
@@ -35,7 +36,8 @@ Reach reach_of(const Camera& camera, const Box& box) {
     Reach reach;
     for (const Vec3& corner : box.corners()) {
         const Vec3 at = camera.to_camera(corner);
-        const double shrink = camera.perspective ? camera.distance() / std::max(at.z(), 0.05 * camera.distance()) : 1;
+        const double shrink =
+            camera.perspective ? camera.distance() / std::max(at.z(), 0.05 * camera.distance()) : 1;
         reach.left = std::min(reach.left, at.x() * shrink);
         reach.right = std::max(reach.right, at.x() * shrink);
         reach.low = std::min(reach.low, at.y() * shrink);
@@ -55,7 +57,8 @@ Result<double> number_in(const Json& json, const char* name, double least, doubl
 
 Result<Vec3> place_in(const Json& json, const char* name) {
     const auto found = json.find(name);
-    if (found == json.end() || !found->is_array() || found->size() != 3) return bad_input("must be three numbers", name);
+    if (found == json.end() || !found->is_array() || found->size() != 3)
+        return bad_input("must be three numbers", name);
     Vec3 place;
     for (std::size_t k = 0; k < 3; ++k) {
         const Json& number = (*found)[k];
@@ -71,7 +74,8 @@ Result<Vec3> place_in(const Json& json, const char* name) {
 std::array<Vec3, 8> Box::corners() const {
     std::array<Vec3, 8> all;
     for (unsigned k = 0; k < 8; ++k)
-        all[k] = {(k & 1U) != 0 ? high.x() : low.x(), (k & 2U) != 0 ? high.y() : low.y(), (k & 4U) != 0 ? high.z() : low.z()};
+        all[k] = {(k & 1U) != 0 ? high.x() : low.x(), (k & 2U) != 0 ? high.y() : low.y(),
+                  (k & 4U) != 0 ? high.z() : low.z()};
     return all;
 }
 
@@ -108,7 +112,8 @@ Projected Camera::project(const Vec3& place, const PictureSize& size) const {
 }
 
 Vec3 Camera::in_plane(double x, double y, const PictureSize& size) const {
-    return centre + right() * ((x - size.width / 2) / scale(size)) + up() * ((size.height / 2 - y) / scale(size));
+    return centre + right() * ((x - size.width / 2) / scale(size)) +
+           up() * ((size.height / 2 - y) / scale(size));
 }
 
 Ray Camera::ray(double x, double y, const PictureSize& size, double reach_mm) const {
@@ -147,7 +152,8 @@ void Camera::fit(const Box& box, const PictureSize& size) {
     for (int round = 0; round < (perspective ? 8 : 1); ++round) {
         const Reach reach = reach_of(*this, box);
         centre += right() * ((reach.left + reach.right) / 2) + up() * ((reach.low + reach.high) / 2);
-        const double wide = (reach.right - reach.left) * size.height / size.width, high = reach.high - reach.low;
+        const double wide = (reach.right - reach.left) * size.height / size.width,
+                     high = reach.high - reach.low;
         height_mm = std::clamp(std::max(wide, high) * (1 + 2 * rim_share), least_height_mm, most_height_mm);
     }
 }

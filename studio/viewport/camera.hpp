@@ -31,9 +31,9 @@ struct PictureSize {
     double width = 1, height = 1;
 };
 
-/// Looks at cloth from any side, with z never upside down, so that nobody loses his way. The cloth's axes are left-handed (x up
-/// and y to the right on the face), and so are the camera's (right, up, away), which are those of TubeCamera: the cloth is never
-/// seen in a mirror.
+/// Looks at cloth from any side, with z never upside down, so that nobody loses his way. The cloth's axes are
+/// left-handed (x up and y to the right on the face), and so are the camera's (right, up, away), which are
+/// those of TubeCamera: the cloth is never seen in a mirror.
 class Camera {
   public:
     /// From above the first pick and end, as pictures of relaxed cloth are drawn.
@@ -56,8 +56,8 @@ class Camera {
     [[nodiscard]] Vec3 to_camera(const Vec3& place) const;
     /// With perspective, of places before the eye only.
     [[nodiscard]] Projected project(const Vec3& place, const PictureSize& size) const;
-    /// What is seen at a place in the picture, in the cloth's axes. Without perspective it begins before everything within
-    /// `reach_mm` of the centre.
+    /// What is seen at a place in the picture, in the cloth's axes. Without perspective it begins before
+    /// everything within `reach_mm` of the centre.
     [[nodiscard]] Ray ray(double x, double y, const PictureSize& size, double reach_mm = 1e4) const;
 
     /// The cloth follows the mouse, so many degrees; above and below is the end.

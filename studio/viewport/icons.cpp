@@ -86,7 +86,8 @@ class LineEngine : public QIconEngine {
         painter->translate(rect.center() + QPointF(0.5, 0.5));
         painter->scale(side / 24, side / 24);
         painter->translate(-12, -12);
-        painter->setPen(QPen(palette.color(group, QPalette::WindowText), 1.8, Qt::SolidLine, Qt::RoundCap, Qt::RoundJoin));
+        painter->setPen(QPen(palette.color(group, QPalette::WindowText), 1.8, Qt::SolidLine, Qt::RoundCap,
+                             Qt::RoundJoin));
         painter->setBrush(Qt::NoBrush);
         painter->drawPath(lines_of(m_icon));
         painter->restore();

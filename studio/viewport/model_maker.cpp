@@ -31,7 +31,8 @@ void ModelMaker::ask(Make make) {
         } catch (const std::bad_alloc&) {
             words = tr("there is not enough memory to show this cloth");
         }
-        QMetaObject::invokeMethod(this, [this, number, model, words] { take(number, model, words); }, Qt::QueuedConnection);
+        QMetaObject::invokeMethod(
+            this, [this, number, model, words] { take(number, model, words); }, Qt::QueuedConnection);
     });
 }
 

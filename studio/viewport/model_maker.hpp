@@ -11,8 +11,8 @@
 
 namespace weave::studio {
 
-/// Makes models in a thread of its own, so that the window's never waits for a large cloth. Of several that are asked for one after
-/// the other only the last comes.
+/// Makes models in a thread of its own, so that the window's never waits for a large cloth. Of several that
+/// are asked for one after the other only the last comes.
 class ModelMaker : public QObject {
     Q_OBJECT
   public:

@@ -25,13 +25,16 @@ QPointF on_screen(const Vec3& place, const Camera& camera, const QRectF& square)
     return {square.x() + at.x, square.y() + at.y};
 }
 
-/// From a square of side 1, seen straight on, to the side as it lies now; so that words stand upright and read rightly.
+/// From a square of side 1, seen straight on, to the side as it lies now; so that words stand upright and
+/// read rightly.
 QTransform side_transform(Face face, const Camera& camera, const QRectF& square) {
     const Camera straight = facing(face, camera);
     const Vec3 middle = normal_of(face), right = straight.right(), up = straight.up();
-    const QPointF corner = on_screen(middle - right + up, camera, square), end = on_screen(middle + right + up, camera, square),
+    const QPointF corner = on_screen(middle - right + up, camera, square),
+                  end = on_screen(middle + right + up, camera, square),
                   foot = on_screen(middle - right - up, camera, square);
-    return {end.x() - corner.x(), end.y() - corner.y(), foot.x() - corner.x(), foot.y() - corner.y(), corner.x(), corner.y()};
+    return {end.x() - corner.x(),  end.y() - corner.y(), foot.x() - corner.x(),
+            foot.y() - corner.y(), corner.x(),           corner.y()};
 }
 
 void paint_name(QPainter& painter, Face face, const Camera& camera, const QRectF& square, const QColor& ink) {
@@ -53,7 +56,8 @@ void paint_name(QPainter& painter, Face face, const Camera& camera, const QRectF
 
 QPolygonF OrientationCube::outline(Face face, const Camera& camera) const {
     QPolygonF polygon;
-    for (const Vec3& corner : corners_of(unit_box, face)) polygon << on_screen(corner, from_far(camera), m_place);
+    for (const Vec3& corner : corners_of(unit_box, face))
+        polygon << on_screen(corner, from_far(camera), m_place);
     return polygon;
 }
 
@@ -70,14 +74,14 @@ void OrientationCube::paint(QPainter& painter, const Camera& camera, const QPale
                            : QColor(206 + int(46 * front), 212 + int(41 * front), 220 + int(34 * front));
         if (under_mouse == face) fill = palette.color(QPalette::Highlight);
         fill.setAlpha(242);
-        painter.setPen(QPen(dark ? QColor(20, 23, 27) : QColor(120, 129, 140), m_place.width() / 90, Qt::SolidLine, Qt::RoundCap,
-                            Qt::RoundJoin));
+        painter.setPen(QPen(dark ? QColor(20, 23, 27) : QColor(120, 129, 140), m_place.width() / 90,
+                            Qt::SolidLine, Qt::RoundCap, Qt::RoundJoin));
         painter.setBrush(fill);
         painter.drawPolygon(outline(face, camera));
         if (front < 0.16) continue;  // too narrow to read
         const QColor ink = under_mouse == face ? palette.color(QPalette::HighlightedText)
-                           : dark             ? QColor(238, 241, 244)
-                                              : QColor(38, 45, 54);
+                           : dark              ? QColor(238, 241, 244)
+                                               : QColor(38, 45, 54);
         paint_name(painter, face, far, m_place, ink);
     }
     painter.restore();
@@ -86,7 +90,9 @@ void OrientationCube::paint(QPainter& painter, const Camera& camera, const QPale
 std::optional<Face> OrientationCube::at(const QPointF& place, const Camera& camera) const {
     if (!m_place.contains(place)) return std::nullopt;
     for (const Face face : all_faces) {
-        if (is_seen(unit_box, face, from_far(camera)) && outline(face, camera).containsPoint(place, Qt::OddEvenFill)) return face;
+        if (is_seen(unit_box, face, from_far(camera)) &&
+            outline(face, camera).containsPoint(place, Qt::OddEvenFill))
+            return face;
     }
     return std::nullopt;
 }

@@ -1,8 +1,8 @@
 #include <studio/viewport/overlay.hpp>
 
-#include <studio/viewport/words.hpp>
 #include <weave/picture/colour_map.hpp>
 #include <weave/picture/scale_marks.hpp>
+#include <studio/viewport/words.hpp>
 
 #include <QCoreApplication>
 #include <QFontMetricsF>
@@ -24,7 +24,8 @@ QColor colour_of(Colour colour) {
     return {colour.red, colour.green, colour.blue};
 }
 
-void paint_arrow(QPainter& painter, const QPointF& from, const QPointF& to, double width, const QColor& colour) {
+void paint_arrow(QPainter& painter, const QPointF& from, const QPointF& to, double width,
+                 const QColor& colour) {
     const QPointF way = to - from;
     const double length = std::hypot(way.x(), way.y());
     if (length < 1) return;
@@ -34,12 +35,14 @@ void paint_arrow(QPainter& painter, const QPointF& from, const QPointF& to, doub
     painter.drawLine(from, to - along * head * 0.8);
     painter.setPen(Qt::NoPen);
     painter.setBrush(colour);
-    painter.drawPolygon(QPolygonF{to, to - along * head + across * head * 0.42, to - along * head - across * head * 0.42});
+    painter.drawPolygon(
+        QPolygonF{to, to - along * head + across * head * 0.42, to - along * head - across * head * 0.42});
 }
 
 }  // namespace
 
-Overlay::Overlay(QPainter& painter, const QRectF& area, const QPalette& palette) : m_painter(painter), m_area(area) {
+Overlay::Overlay(QPainter& painter, const QRectF& area, const QPalette& palette)
+    : m_painter(painter), m_area(area) {
     const bool dark = palette.color(QPalette::Window).lightness() < 128;
     m_ink = dark ? QColor(236, 239, 242) : QColor(33, 40, 48);
     m_faint = dark ? QColor(168, 176, 185) : QColor(92, 101, 112);
@@ -56,7 +59,8 @@ double Overlay::em() const {
 QRectF Overlay::plate(const QPointF& corner, const QString& text, const QColor& ink) {
     const QFontMetricsF metrics(m_painter.font());
     const double room = 0.45 * em();
-    const QRectF place(corner, QSizeF(metrics.horizontalAdvance(text) + 2 * room, metrics.height() + 0.5 * room));
+    const QRectF place(corner,
+                       QSizeF(metrics.horizontalAdvance(text) + 2 * room, metrics.height() + 0.5 * room));
     m_painter.setPen(Qt::NoPen);
     m_painter.setBrush(m_ground);
     m_painter.drawRoundedRect(place, 0.3 * em(), 0.3 * em());
@@ -78,8 +82,10 @@ void Overlay::legend(const TubeModel& model, double top) {
     const double height = std::min(11 * em(), m_area.bottom() - top - 5.5 * em());
     if (height < 3 * em()) return;  // no room for numbers that can be read
     const double lines = note.isEmpty() ? 1.3 : 2.3;
-    const double wide = std::max({metrics.horizontalAdvance(title), metrics.horizontalAdvance(note), bar + gap + widest});
-    const QRectF frame(m_area.right() - wide - 2.6 * gap, top, wide + 1.8 * gap, height + (lines + 1.2) * em());
+    const double wide =
+        std::max({metrics.horizontalAdvance(title), metrics.horizontalAdvance(note), bar + gap + widest});
+    const QRectF frame(m_area.right() - wide - 2.6 * gap, top, wide + 1.8 * gap,
+                       height + (lines + 1.2) * em());
     m_painter.setPen(Qt::NoPen);
     m_painter.setBrush(m_ground);
     m_painter.drawRoundedRect(frame, 0.3 * em(), 0.3 * em());
@@ -96,10 +102,11 @@ void Overlay::legend(const TubeModel& model, double top) {
     m_painter.drawRect(scale);
     m_painter.setPen(m_ink);
     for (const double mark : marks) {
-        const double y = scale.bottom() - scale.height() * (mark - model.low()) / (model.high() - model.low());
+        const double y =
+            scale.bottom() - scale.height() * (mark - model.low()) / (model.high() - model.low());
         m_painter.drawLine(QPointF(scale.right(), y), QPointF(scale.right() + 0.5 * gap, y));
-        m_painter.drawText(QRectF(scale.right() + gap, y - em() / 2, widest + gap, em()), Qt::AlignLeft | Qt::AlignVCenter,
-                           QString::fromStdString(short_number(mark)));
+        m_painter.drawText(QRectF(scale.right() + gap, y - em() / 2, widest + gap, em()),
+                           Qt::AlignLeft | Qt::AlignVCenter, QString::fromStdString(short_number(mark)));
     }
 }
 
@@ -107,17 +114,19 @@ void Overlay::scale_bar(const Camera& camera) {
     if (camera.perspective) return;
     const double pixels_per_mm = camera.scale({m_area.width(), m_area.height()});
     const double length = round_step(9 * em() / pixels_per_mm), width = length * pixels_per_mm;
-    const QPointF end(m_area.right() - 1.2 * em(), m_area.bottom() - 0.9 * em()), start = end - QPointF(width, 0);
+    const QPointF end(m_area.right() - 1.2 * em(), m_area.bottom() - 0.9 * em()),
+        start = end - QPointF(width, 0);
     const double tick = 0.3 * em();
     m_painter.setPen(Qt::NoPen);
     m_painter.setBrush(m_ground);
-    m_painter.drawRoundedRect(QRectF(start.x() - 0.5 * em(), end.y() - 1.6 * em(), width + em(), 2.1 * em()), 0.3 * em(), 0.3 * em());
+    m_painter.drawRoundedRect(QRectF(start.x() - 0.5 * em(), end.y() - 1.6 * em(), width + em(), 2.1 * em()),
+                              0.3 * em(), 0.3 * em());
     m_painter.setPen(QPen(m_ink, std::max(1.5, em() / 10), Qt::SolidLine, Qt::FlatCap));
     m_painter.drawLine(start, end);
     m_painter.drawLine(start - QPointF(0, tick), start + QPointF(0, tick));
     m_painter.drawLine(end - QPointF(0, tick), end + QPointF(0, tick));
-    m_painter.drawText(QRectF(start.x() - 2 * em(), end.y() - 1.5 * em(), width + 4 * em(), 1.2 * em()), Qt::AlignCenter,
-                       tr("%1 mm").arg(QString::fromStdString(short_number(length))));
+    m_painter.drawText(QRectF(start.x() - 2 * em(), end.y() - 1.5 * em(), width + 4 * em(), 1.2 * em()),
+                       Qt::AlignCenter, tr("%1 mm").arg(QString::fromStdString(short_number(length))));
 }
 
 void Overlay::caption(const QString& text) {
@@ -134,10 +143,12 @@ void Overlay::padlock() {
     const QPointF foot(place.left() + 0.95 * size, place.center().y() + 0.36 * size);
     m_painter.setPen(QPen(m_accent, 0.13 * size));
     m_painter.setBrush(Qt::NoBrush);
-    m_painter.drawArc(QRectF(foot.x() - 0.22 * size, foot.y() - 0.86 * size, 0.44 * size, 0.6 * size), 0, 180 * 16);
+    m_painter.drawArc(QRectF(foot.x() - 0.22 * size, foot.y() - 0.86 * size, 0.44 * size, 0.6 * size), 0,
+                      180 * 16);
     m_painter.setPen(Qt::NoPen);
     m_painter.setBrush(m_accent);
-    m_painter.drawRoundedRect(QRectF(foot.x() - 0.34 * size, foot.y() - 0.5 * size, 0.68 * size, 0.5 * size), 0.08 * size, 0.08 * size);
+    m_painter.drawRoundedRect(QRectF(foot.x() - 0.34 * size, foot.y() - 0.5 * size, 0.68 * size, 0.5 * size),
+                              0.08 * size, 0.08 * size);
     m_left_top = place.bottom() + 0.4 * em();
 }
 
@@ -195,7 +206,8 @@ void Overlay::box(const Box& box, const Camera& camera, std::optional<Face> mark
     if (!marked || label.isEmpty()) return;
     const double wide = QFontMetricsF(m_painter.font()).horizontalAdvance(label) + 0.9 * em();
     const QPointF middle = outline(*marked).boundingRect().center();
-    const double left = std::clamp(middle.x() - wide / 2, m_area.left(), std::max(m_area.left(), m_area.right() - wide));
+    const double left =
+        std::clamp(middle.x() - wide / 2, m_area.left(), std::max(m_area.left(), m_area.right() - wide));
     plate({left, middle.y() - 0.6 * em()}, label, m_ink);
 }
 

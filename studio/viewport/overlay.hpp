@@ -13,7 +13,8 @@ class QPainter;
 
 namespace weave::studio {
 
-/// What is written over the yarns. Every function draws with the painter's font, whose size is the measure of everything.
+/// What is written over the yarns. Every function draws with the painter's font, whose size is the measure of
+/// everything.
 class Overlay {
   public:
     Overlay(QPainter& painter, const QRectF& area, const QPalette& palette);

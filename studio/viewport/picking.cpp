@@ -98,7 +98,8 @@ std::vector<Hit> hits(const TubeModel& model, const Shown& shown, const Ray& ray
     std::vector<Hit> all;
     for (std::size_t i = 0; i < shown.repeat[0]; ++i) {
         for (std::size_t j = 0; j < shown.repeat[1]; ++j) {
-            const Vec3 move(static_cast<double>(i) * model.size_mm()[0], static_cast<double>(j) * model.size_mm()[1], 0);
+            const Vec3 move(static_cast<double>(i) * model.size_mm()[0],
+                            static_cast<double>(j) * model.size_mm()[1], 0);
             const Ray moved{ray.origin - move, ray.way};
             std::optional<Plane> clip = shown.clip;
             if (clip) clip->height -= clip->normal.dot(move);
@@ -112,7 +113,8 @@ std::vector<Hit> hits(const TubeModel& model, const Shown& shown, const Ray& ray
     return all;
 }
 
-std::optional<ModelCrossing> crossing_at(const TubeModel& model, const std::vector<Hit>& hits, const Ray& ray) {
+std::optional<ModelCrossing> crossing_at(const TubeModel& model, const std::vector<Hit>& hits,
+                                         const Ray& ray) {
     if (hits.size() < 2) return std::nullopt;
     const auto crossing = model.crossing_of(hits[0].yarn, hits[1].yarn, (hits[0].place + hits[1].place) / 2);
     if (!crossing) return std::nullopt;
@@ -124,7 +126,8 @@ std::optional<ModelCrossing> crossing_at(const TubeModel& model, const std::vect
         if (period > 0) middle[axis] += period * std::round((hits[0].place[axis] - middle[axis]) / period);
     }
     const Vec3 way = middle - ray.origin, across = way - way.dot(ray.way) * ray.way;
-    const double thinner = std::min(model.yarns()[hits[0].yarn].radius_mm, model.yarns()[hits[1].yarn].radius_mm);
+    const double thinner =
+        std::min(model.yarns()[hits[0].yarn].radius_mm, model.yarns()[hits[1].yarn].radius_mm);
     if (across.norm() > crossing_reach * thinner) return std::nullopt;
     return crossing;
 }

@@ -23,15 +23,16 @@ Box box_of(const TubeModel& model, const std::array<std::size_t, 2>& repeat);
 /// Where a ray meets a yarn.
 struct Hit {
     std::uint32_t yarn = 0;
-    Vec3 place{0, 0, 0};  ///< mm
+    Vec3 place{0, 0, 0};                                        ///< mm
     double distance = std::numeric_limits<double>::infinity();  ///< from where the ray begins
-    bool is_cut = false;  ///< on the plane that cuts
+    bool is_cut = false;                                        ///< on the plane that cuts
 };
 
 /// Every yarn that a ray meets, each repeat of it once, the nearest first; not what is cut away.
 std::vector<Hit> hits(const TubeModel& model, const Shown& shown, const Ray& ray);
 
 /// The crossing that somebody points at: of the two topmost yarns under the cursor, near its middle.
-std::optional<ModelCrossing> crossing_at(const TubeModel& model, const std::vector<Hit>& hits, const Ray& ray);
+std::optional<ModelCrossing> crossing_at(const TubeModel& model, const std::vector<Hit>& hits,
+                                         const Ray& ray);
 
 }  // namespace weave::studio

@@ -16,7 +16,8 @@ constexpr std::size_t depth_steps = 2048;
 using Rod = SoftwareFinder::Rod;
 using Side = SoftwareFinder::Side;
 
-/// The camera as numbers; a pixel's ray goes through (u, v) at distance `eye`, or without perspective straight from there.
+/// The camera as numbers; a pixel's ray goes through (u, v) at distance `eye`, or without perspective
+/// straight from there.
 struct Sight {
     float right[3], up[3], away[3], centre[3];
     float eye = 0, half_wide = 1, half_high = 1;
@@ -55,16 +56,19 @@ inline float smaller(float a, float b) {
     return a < b ? a : b;
 }
 
-/// One row of a piece's rectangle: depths where the ray meets it, from 0 to 1, and 2 where it passes by. With perspective rays
-/// begin at the eye, which is 0; without it on the plane of the picture.
+/// One row of a piece's rectangle: depths where the ray meets it, from 0 to 1, and 2 where it passes by. With
+/// perspective rays begin at the eye, which is 0; without it on the plane of the picture.
 template <int side_count, bool with_eye>
-WEAVE_WIDE static void meet_row(const Rod& rod, const Sight& sight, const Side* sides, float v, float* __restrict depths) {
-    const float fx = rod.from[0], fy = rod.from[1], fz = rod.from[2], ax = rod.axis[0], ay = rod.axis[1], az = rod.axis[2];
+WEAVE_WIDE static void meet_row(const Rod& rod, const Sight& sight, const Side* sides, float v,
+                                float* __restrict depths) {
+    const float fx = rod.from[0], fy = rod.from[1], fz = rod.from[2], ax = rod.axis[0], ay = rod.axis[1],
+                az = rod.axis[2];
     const float radius = rod.radius, radius2 = radius * radius, length2 = rod.length2, eye = sight.eye;
     const float least_a = larger(1e-9F * length2, 1e-30F), per_length2 = 1 / larger(length2, 1e-20F);
     const float pixel_wide = sight.pixel_wide, near = sight.near, per_depth = sight.per_depth;
     const float first_u = (static_cast<float>(rod.left) + 0.5F) * pixel_wide - sight.half_wide;
-    const int wide = (rod.right - rod.left + lanes - 1) / lanes * lanes;  // whole vectors; what is too much nobody reads
+    const int wide =
+        (rod.right - rod.left + lanes - 1) / lanes * lanes;  // whole vectors; what is too much nobody reads
     for (int x = 0; x < wide; ++x) {
         const float u = first_u + static_cast<float>(x) * pixel_wide;
         const float slant = with_eye ? 1 / std::sqrt(u * u + v * v + eye * eye) : 0.0F;
@@ -97,7 +101,8 @@ WEAVE_WIDE static void meet_row(const Rod& rod, const Sight& sight, const Side* 
             for (int k = 0; k < side_count; ++k) {
                 const Side& side = sides[k];
                 const float slope = side.x * wx + side.y * wy + side.z * wz;
-                const float above = side.x * (px + fx) + side.y * (py + fy) + side.z * (pz + fz) - side.height;
+                const float above =
+                    side.x * (px + fx) + side.y * (py + fy) + side.z * (pz + fz) - side.height;
                 const bool level = std::abs(slope) < 1e-6F;
                 const float at = -above / (level ? 1.0F : slope);
                 t = !level && slope < 0 ? larger(t, at) : t;
@@ -128,8 +133,8 @@ using MeetRow = void (*)(const Rod&, const Sight&, const Side*, float, float*);
 
 /// By the number of sides: at most the yarn's two ends and the plane that cuts.
 template <bool with_eye>
-constexpr std::array<MeetRow, 4> meetings{&meet_row<0, with_eye>, &meet_row<1, with_eye>, &meet_row<2, with_eye>,
-                                          &meet_row<3, with_eye>};
+constexpr std::array<MeetRow, 4> meetings{&meet_row<0, with_eye>, &meet_row<1, with_eye>,
+                                          &meet_row<2, with_eye>, &meet_row<3, with_eye>};
 
 }  // namespace
 
@@ -140,10 +145,11 @@ void SoftwareFinder::add_rods(const TubeModel& model, const FindTask& task) {
     m_rods.clear();
     m_sides.clear();
     const auto to_side = [&](const Vec3& normal, double height) {
-        const Vec3 way(normal.dot(task.camera.right()), normal.dot(task.camera.up()), normal.dot(task.camera.away()));
+        const Vec3 way(normal.dot(task.camera.right()), normal.dot(task.camera.up()),
+                       normal.dot(task.camera.away()));
         const double at = way.dot(task.camera.to_camera(height * normal));
-        m_sides.push_back({static_cast<float>(way.x()), static_cast<float>(way.y()), static_cast<float>(way.z()),
-                           static_cast<float>(at)});
+        m_sides.push_back({static_cast<float>(way.x()), static_cast<float>(way.y()),
+                           static_cast<float>(way.z()), static_cast<float>(at)});
     };
     for (const PieceRange& range : task.ranges) {
         const auto move_x = static_cast<float>(static_cast<double>(range.i) * model.size_mm()[0]),
@@ -156,8 +162,8 @@ void SoftwareFinder::add_rods(const TubeModel& model, const FindTask& task) {
             const Knot* const ends[]{&model.knots()[link.from], &model.knots()[link.to]};
             float at[2][3];
             for (int end = 0; end < 2; ++end) {
-                const float x = ends[end]->x + move_x - sight.centre[0], y = ends[end]->y + move_y - sight.centre[1],
-                            z = ends[end]->z - sight.centre[2];
+                const float x = ends[end]->x + move_x - sight.centre[0],
+                            y = ends[end]->y + move_y - sight.centre[1], z = ends[end]->z - sight.centre[2];
                 at[end][0] = dot(sight.right, x, y, z);
                 at[end][1] = dot(sight.up, x, y, z);
                 at[end][2] = dot(sight.away, x, y, z) + sight.eye;
@@ -170,7 +176,9 @@ void SoftwareFinder::add_rods(const TubeModel& model, const FindTask& task) {
                 for (int end = 0; end < 2; ++end) {
                     const float z = at[end][2], grow = sight.eye > 0 ? sight.eye / z : 1;
                     const float aside = at[end][axis] / z;
-                    reach[end] = sight.eye > 0 ? rod.radius * grow * std::sqrt(1 + aside * aside) * z / (z - rod.radius) : rod.radius;
+                    reach[end] = sight.eye > 0
+                                     ? rod.radius * grow * std::sqrt(1 + aside * aside) * z / (z - rod.radius)
+                                     : rod.radius;
                     middle[end] = at[end][axis] * grow;
                 }
                 lows[axis] = std::min(middle[0] - reach[0], middle[1] - reach[1]);
@@ -180,9 +188,11 @@ void SoftwareFinder::add_rods(const TubeModel& model, const FindTask& task) {
                 return static_cast<int>(std::clamp((place + half) / wide, 0.0F, static_cast<float>(most)));
             };
             rod.left = pixel(lows[0], sight.half_wide, sight.pixel_wide, task.width);
-            rod.right = std::min(pixel(highs[0], sight.half_wide, sight.pixel_wide, task.width) + 1, task.width);
+            rod.right =
+                std::min(pixel(highs[0], sight.half_wide, sight.pixel_wide, task.width) + 1, task.width);
             rod.low = pixel(lows[1], sight.half_high, sight.pixel_high, task.height);
-            rod.high = std::min(pixel(highs[1], sight.half_high, sight.pixel_high, task.height) + 1, task.height);
+            rod.high =
+                std::min(pixel(highs[1], sight.half_high, sight.pixel_high, task.height) + 1, task.height);
             if (rod.left >= rod.right || rod.low >= rod.high) continue;
             rod.length2 = 0;
             for (int axis = 0; axis < 3; ++axis) {
@@ -209,10 +219,13 @@ void SoftwareFinder::add_rods(const TubeModel& model, const FindTask& task) {
     }
 }
 
-/// Tells every band of rows what it may show, the nearest first: most of the rest then lies behind what is there already.
+/// Tells every band of rows what it may show, the nearest first: most of the rest then lies behind what is
+/// there already.
 void SoftwareFinder::sort_into_bands(const FindTask& task) {
     std::vector<std::uint32_t> first(depth_steps + 1, 0);
-    const auto step = [](const Rod& rod) { return static_cast<std::size_t>(rod.nearest * (depth_steps - 1)); };
+    const auto step = [](const Rod& rod) {
+        return static_cast<std::size_t>(rod.nearest * (depth_steps - 1));
+    };
     for (const Rod& rod : m_rods) ++first[step(rod) + 1];
     for (std::size_t k = 0; k < depth_steps; ++k) first[k + 1] += first[k];
     m_order.resize(m_rods.size());
@@ -229,8 +242,10 @@ void SoftwareFinder::draw_band(const FindTask& task, std::size_t band) {
     const Sight sight = sight_of(task);
     const int first = static_cast<int>(band) * band_rows, last = std::min(first + band_rows, task.height);
     const auto width = static_cast<std::size_t>(task.width);
-    std::fill_n(&m_depth[static_cast<std::size_t>(first) * width], static_cast<std::size_t>(last - first) * width, 1.0F);
-    std::fill_n(&m_seen[2 * static_cast<std::size_t>(first) * width], 2 * static_cast<std::size_t>(last - first) * width, 0U);
+    std::fill_n(&m_depth[static_cast<std::size_t>(first) * width],
+                static_cast<std::size_t>(last - first) * width, 1.0F);
+    std::fill_n(&m_seen[2 * static_cast<std::size_t>(first) * width],
+                2 * static_cast<std::size_t>(last - first) * width, 0U);
     const std::array<MeetRow, 4>& meet = sight.eye > 0 ? meetings<true> : meetings<false>;
     std::vector<float> depths(width + lanes);
     for (const std::uint32_t k : m_bands[band]) {

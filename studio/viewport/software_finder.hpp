@@ -1,7 +1,7 @@
 #pragma once
 
-#include <studio/viewport/picking.hpp>
 #include <weave/sim/execute.hpp>
+#include <studio/viewport/picking.hpp>
 
 #include <cstdint>
 #include <vector>
@@ -24,8 +24,8 @@ struct FindTask {
     std::vector<PieceRange> ranges;
 };
 
-/// Finds which piece each pixel shows, on the processor, as the shaders vertex and find do: where there is no graphics card, OpenGL
-/// takes ten times as long for it. The result does not depend on the number of threads.
+/// Finds which piece each pixel shows, on the processor, as the shaders vertex and find do: where there is no
+/// graphics card, OpenGL takes ten times as long for it. The result does not depend on the number of threads.
 class SoftwareFinder {
   public:
     SoftwareFinder();
@@ -43,7 +43,7 @@ class SoftwareFinder {
     /// A piece as the camera sees it.
     struct Rod {
         float from[3], axis[3], radius, length2;
-        float nearest;  ///< depth, 0 to 1
+        float nearest;               ///< depth, 0 to 1
         int left, right, low, high;  ///< pixels, the last ones left out
         std::uint32_t seen[2];
         std::uint32_t sides, first_side;

@@ -46,7 +46,8 @@ Status check(const Yarns& yarns) {
         const std::size_t points = yarn.spline.control.size();
         if (points == 0 || !(yarn.radius_mm > 0)) return invalid("a yarn has no points, or no thickness");
         if (yarn.planned.size() != points || yarn.strain.size() != points || yarn.contact_N.size() != points)
-            return invalid("a yarn has not one planned place, strain and contact force for each control point");
+            return invalid(
+                "a yarn has not one planned place, strain and contact force for each control point");
     }
     return {};
 }
@@ -64,7 +65,9 @@ Result<Lines> parameters_of(const Yarns& yarns) {
             knots += lines.back().size();
             if (knots > (share == fine_shares[2] ? most_knots : cheap_knots)) break;
         }
-        if (lines.size() == yarns.yarns.size() && knots <= (share == fine_shares[2] ? most_knots : cheap_knots)) return lines;
+        if (lines.size() == yarns.yarns.size() &&
+            knots <= (share == fine_shares[2] ? most_knots : cheap_knots))
+            return lines;
     }
     return invalid("the piece has too many yarns to show: choose a smaller region");
 }
@@ -138,9 +141,11 @@ void TubeModel::add_level(double error_mm) {
     Level level{error_mm, static_cast<std::uint32_t>(m_pieces.size()), 0, 0, {}};
     for (std::uint32_t yarn = 0; yarn < m_yarns.size(); ++yarn) add_pieces(yarn, error_mm);
     const auto first = m_pieces.begin() + level.first;
-    const auto flat = std::stable_partition(first, m_pieces.end(), [](const PieceLink& piece) { return piece.flags == 0; });
+    const auto flat =
+        std::stable_partition(first, m_pieces.end(), [](const PieceLink& piece) { return piece.flags == 0; });
     const auto add_chunks = [&](std::uint32_t from, std::uint32_t to) {
-        for (; from < to; from += chunk_pieces) level.chunks.push_back(Chunk{.first = from, .count = std::min(chunk_pieces, to - from)});
+        for (; from < to; from += chunk_pieces)
+            level.chunks.push_back(Chunk{.first = from, .count = std::min(chunk_pieces, to - from)});
     };
     level.count = static_cast<std::uint32_t>(m_pieces.end() - first);
     level.first_flat = static_cast<std::uint32_t>(flat - m_pieces.begin());
@@ -154,7 +159,8 @@ void TubeModel::add_pieces(std::uint32_t yarn, double error_mm) {
     const std::uint32_t last = of.last_knot();
     const auto place = [&](std::uint32_t knot) { return m_knots[knot].place(); };
     const auto strays = [&](std::uint32_t from, std::uint32_t to) {
-        if (to - from > longest_merge || m_knots[from].tangent().dot(m_knots[to].tangent()) < 0.5) return true;
+        if (to - from > longest_merge || m_knots[from].tangent().dot(m_knots[to].tangent()) < 0.5)
+            return true;
         const Vec3 start = place(from), chord = place(to) - start;
         for (std::uint32_t k = from + 1; k < to; ++k) {
             const Vec3 way = place(k) - start;
@@ -185,7 +191,8 @@ void TubeModel::measure() {
             for (std::uint32_t k = chunk.first; k < chunk.first + chunk.count; ++k) {
                 for (const std::uint32_t end : {m_pieces[k].from, m_pieces[k].to}) {
                     const Knot& knot = m_knots[end];
-                    const Eigen::Vector3f at(knot.x, knot.y, knot.z), room = Eigen::Vector3f::Constant(knot.radius);
+                    const Eigen::Vector3f at(knot.x, knot.y, knot.z),
+                        room = Eigen::Vector3f::Constant(knot.radius);
                     box.extend(at - room).extend(at + room);
                 }
             }
@@ -205,7 +212,7 @@ void TubeModel::set_colour(ColourBy colour) {
     m_colour = colour;
     const std::vector<Colour> own = own_colours(*m_source);
     for (std::size_t y = 0; y < m_yarns.size(); ++y)
-        m_yarns[y].colour = colour != ColourBy::system                ? own[y]
+        m_yarns[y].colour = colour != ColourBy::system          ? own[y]
                             : m_yarns[y].system == System::warp ? system_warp
                                                                 : system_weft;
     set_values();
@@ -221,7 +228,8 @@ void TubeModel::set_values() {
         const bool live = m_is_live && m_colour == ColourBy::moved;
         Knot* knot = &m_knots[m_yarns[y].first_knot];
         for (const double t : m_parameters[y]) {
-            const double value = live ? (knot->place() - planned.place(t)).norm() : value_of(yarn, planned, colour, t);
+            const double value =
+                live ? (knot->place() - planned.place(t)).norm() : value_of(yarn, planned, colour, t);
             knot->value = static_cast<float>(value);
             least = std::min(least, value);
             most = std::max(most, value);
@@ -234,7 +242,8 @@ void TubeModel::set_values() {
 }
 
 Status TubeModel::update(const std::vector<std::vector<Vec3>>& control) {
-    if (control.size() != m_yarns.size()) return invalid("these are not the places of the yarns that are shown");
+    if (control.size() != m_yarns.size())
+        return invalid("these are not the places of the yarns that are shown");
     for (std::size_t y = 0; y < control.size(); ++y) {
         if (control[y].size() < (m_source->yarns[y].spline.is_periodic ? 1U : 2U))
             return invalid("a yarn has too few points to be shown");
@@ -269,7 +278,8 @@ TubePiece TubeModel::piece(std::size_t index) const {
 
 void TubeModel::find_crossings() {
     const auto places = sim::crossing_places(*m_source);
-    if (!places) return;  // a file that does not tell: yarns can be looked at, but none is found by its crossing
+    if (!places)
+        return;  // a file that does not tell: yarns can be looked at, but none is found by its crossing
     for (std::size_t k = 0; k < places->size(); ++k) {
         const Crossing& of = m_source->crossings[k];
         Vec3 weft = (*places)[k].weft, warp = (*places)[k].warp;
@@ -280,14 +290,16 @@ void TubeModel::find_crossings() {
         // The two may be of different repeats: the warp's nearest to the weft is the one that it passes.
         Vec3 way = warp - weft;
         for (int axis = 0; axis < 2; ++axis) {
-            const double period = is_periodic()[static_cast<std::size_t>(axis)] ? size_mm()[static_cast<std::size_t>(axis)] : 0;
+            const double period =
+                is_periodic()[static_cast<std::size_t>(axis)] ? size_mm()[static_cast<std::size_t>(axis)] : 0;
             if (period > 0) way[axis] = std::remainder(way[axis], period);
         }
         const Vec3 place = weft + way / 2;
-        m_crossings.push_back(
-            {static_cast<std::uint32_t>(of.weft), static_cast<std::uint32_t>(of.warp), of.pick, of.end, place});
+        m_crossings.push_back({static_cast<std::uint32_t>(of.weft), static_cast<std::uint32_t>(of.warp),
+                               of.pick, of.end, place});
     }
-    std::ranges::stable_sort(m_crossings, {}, [](const ModelCrossing& of) { return std::pair(of.weft, of.warp); });
+    std::ranges::stable_sort(m_crossings, {},
+                             [](const ModelCrossing& of) { return std::pair(of.weft, of.warp); });
 }
 
 double TubeModel::apart(const Vec3& a, const Vec3& b) const {
@@ -299,13 +311,15 @@ double TubeModel::apart(const Vec3& a, const Vec3& b) const {
     return way.norm();
 }
 
-std::optional<ModelCrossing> TubeModel::crossing_of(std::uint32_t yarn, std::uint32_t other, const Vec3& near) const {
+std::optional<ModelCrossing> TubeModel::crossing_of(std::uint32_t yarn, std::uint32_t other,
+                                                    const Vec3& near) const {
     if (m_yarns[yarn].system == m_yarns[other].system) return std::nullopt;
     const bool weft_first = m_yarns[yarn].system == System::weft;
     const std::pair wanted = weft_first ? std::pair(yarn, other) : std::pair(other, yarn);
-    const auto found =
-        std::ranges::equal_range(m_crossings, wanted, {}, [](const ModelCrossing& of) { return std::pair(of.weft, of.warp); });
-    const auto nearest = std::ranges::min_element(found, {}, [&](const ModelCrossing& of) { return apart(of.place, near); });
+    const auto found = std::ranges::equal_range(
+        m_crossings, wanted, {}, [](const ModelCrossing& of) { return std::pair(of.weft, of.warp); });
+    const auto nearest =
+        std::ranges::min_element(found, {}, [&](const ModelCrossing& of) { return apart(of.place, near); });
     if (nearest == found.end()) return std::nullopt;
     return *nearest;
 }
@@ -323,7 +337,8 @@ std::optional<std::uint32_t> TubeModel::find(System system, std::size_t number) 
 std::size_t TubeModel::number_at(std::uint32_t yarn, const Vec3& place) const {
     if (m_yarns[yarn].system == System::warp) return m_yarns[yarn].number;
     const auto own = std::ranges::equal_range(m_crossings, yarn, {}, &ModelCrossing::weft);
-    const auto nearest = std::ranges::min_element(own, {}, [&](const ModelCrossing& of) { return apart(of.place, place); });
+    const auto nearest =
+        std::ranges::min_element(own, {}, [&](const ModelCrossing& of) { return apart(of.place, place); });
     return nearest == own.end() ? m_yarns[yarn].number : nearest->pick;
 }
 

@@ -1,10 +1,10 @@
 #pragma once
 
-#include <studio/viewport/camera.hpp>
 #include <weave/block/stack.hpp>
 #include <weave/curve/cloth_curves.hpp>
 #include <weave/design/design.hpp>
 #include <weave/sim/yarns.hpp>
+#include <studio/viewport/camera.hpp>
 
 #include <array>
 #include <cstddef>
@@ -19,8 +19,8 @@ namespace weave::studio {
 enum class ColourBy : std::uint8_t { yarn, system, strain, contact, moved };
 inline constexpr std::size_t colourings = 5;
 
-/// Where two pieces of a yarn meet, as it lies in the memory of the GPU: the place and the yarn's radius, mm; its direction, of
-/// length 1, and what colours it.
+/// Where two pieces of a yarn meet, as it lies in the memory of the GPU: the place and the yarn's radius, mm;
+/// its direction, of length 1, and what colours it.
 struct Knot {
     float x = 0, y = 0, z = 0, radius = 1;
     float along_x = 1, along_y = 0, along_z = 0, value = 0;
@@ -30,7 +30,8 @@ struct Knot {
 
 /// A straight piece, from knot to knot, as it lies in the memory of the GPU.
 struct PieceLink {
-    /// Nearer than its radius to the yarn's start or end: it is cut flat there, as its round end would stand out.
+    /// Nearer than its radius to the yarn's start or end: it is cut flat there, as its round end would stand
+    /// out.
     static constexpr std::uint32_t near_start = 1, near_end = 2;
     std::uint32_t from = 0, to = 0, yarn = 0, flags = 0;
 };
@@ -67,20 +68,22 @@ struct Level {
     std::vector<Chunk> chunks;
 };
 
-/// What a viewer shows: yarns as straight round pieces, and what is known of them. Knows neither window nor OpenGL. A model is
-/// of one piece of cloth; how often it is repeated is the viewer's.
+/// What a viewer shows: yarns as straight round pieces, and what is known of them. Knows neither window nor
+/// OpenGL. A model is of one piece of cloth; how often it is repeated is the viewer's.
 class TubeModel {
   public:
     /// The planned curves of a block, smooth through their key points.
-    static Result<TubeModel> planned(const Design& design, const ClothCurves& curves, ColourBy colour = ColourBy::yarn);
+    static Result<TubeModel> planned(const Design& design, const ClothCurves& curves,
+                                     ColourBy colour = ColourBy::yarn);
     /// Relaxed yarns. Errors: no yarn; too many for a picture; values that are missing.
     static Result<TubeModel> relaxed(std::shared_ptr<const Yarns> yarns, ColourBy colour = ColourBy::yarn);
 
     /// Colours the yarns anew. Time grows with the knots.
     void set_colour(ColourBy colour);
-    /// Control points of the same yarns as they lie now, in their order, for each yarn any number of at least 2 (periodic: 1).
-    /// Pieces stay the same in number. Strain and contact are those of the yarns that the model was made of, which
-    /// values_are_old() tells. Refused, with nothing changed, where the yarns are not as many, or one has too few points.
+    /// Control points of the same yarns as they lie now, in their order, for each yarn any number of at least
+    /// 2 (periodic: 1). Pieces stay the same in number. Strain and contact are those of the yarns that the
+    /// model was made of, which values_are_old() tells. Refused, with nothing changed, where the yarns are
+    /// not as many, or one has too few points.
     Status update(const std::vector<std::vector<Vec3>>& control);
 
     [[nodiscard]] const std::vector<Knot>& knots() const { return m_knots; }
@@ -95,7 +98,9 @@ class TubeModel {
     [[nodiscard]] bool is_scalar() const { return m_colour >= ColourBy::strain; }
     [[nodiscard]] double low() const { return m_low; }
     [[nodiscard]] double high() const { return m_high; }
-    [[nodiscard]] bool values_are_old() const { return m_is_live && is_scalar() && m_colour != ColourBy::moved; }
+    [[nodiscard]] bool values_are_old() const {
+        return m_is_live && is_scalar() && m_colour != ColourBy::moved;
+    }
 
     /// Round all yarns of the piece.
     [[nodiscard]] const Box& box() const { return m_box; }
@@ -103,9 +108,10 @@ class TubeModel {
     [[nodiscard]] const std::array<bool, 2>& is_periodic() const { return m_source->is_periodic; }
     [[nodiscard]] double thinnest_mm() const { return m_thinnest; }
 
-    /// The crossing of two yarns (in any order) nearest to a place, repeats of the piece counted; nothing where they do not
-    /// cross.
-    [[nodiscard]] std::optional<ModelCrossing> crossing_of(std::uint32_t yarn, std::uint32_t other, const Vec3& near) const;
+    /// The crossing of two yarns (in any order) nearest to a place, repeats of the piece counted; nothing
+    /// where they do not cross.
+    [[nodiscard]] std::optional<ModelCrossing> crossing_of(std::uint32_t yarn, std::uint32_t other,
+                                                           const Vec3& near) const;
     /// A yarn's index. In wraparound a pick may be part of a yarn that is named by an earlier one.
     [[nodiscard]] std::optional<std::uint32_t> find(System system, std::size_t number) const;
     /// The pick or end that a yarn is at a place: in wraparound a yarn has several picks.

@@ -1,7 +1,7 @@
 #include <studio/viewport/tube_painter.hpp>
 
-#include <studio/viewport/shaders.hpp>
 #include <weave/picture/colour_map.hpp>
+#include <studio/viewport/shaders.hpp>
 
 #include <QCoreApplication>
 #include <QOpenGLContext>
@@ -50,13 +50,15 @@ const Level& level_for(const TubeModel& model, const TubeFrame& frame) {
     return *best;
 }
 
-/// Tells which chunks a picture may show, by half spaces: what lies wholly in front of one of them is left out.
+/// Tells which chunks a picture may show, by half spaces: what lies wholly in front of one of them is left
+/// out.
 class Sieve {
   public:
     Sieve(const TubeFrame& frame, const Vec3& move) {
         const Camera& camera = frame.camera;
         const double half = camera.height_mm / 2, wide = half * frame.size.width / frame.size.height;
-        const Vec3 right = camera.right(), up = camera.up(), away = camera.away(), centre = camera.centre - move;
+        const Vec3 right = camera.right(), up = camera.up(), away = camera.away(),
+                   centre = camera.centre - move;
         const auto add = [&](const Vec3& side, double reach) {
             if (camera.perspective) {  // through the eye
                 const Vec3 normal = side * camera.distance() - away * reach;
@@ -79,7 +81,8 @@ class Sieve {
         return std::ranges::none_of(m_planes, [&](const Plane& plane) {
             double least = 0;  // of the box along the normal
             for (int axis = 0; axis < 3; ++axis)
-                least += plane.normal[axis] * double{plane.normal[axis] > 0 ? chunk.low[axis] : chunk.high[axis]};
+                least +=
+                    plane.normal[axis] * double{plane.normal[axis] > 0 ? chunk.low[axis] : chunk.high[axis]};
             return least > plane.height;
         });
     }
@@ -89,17 +92,19 @@ class Sieve {
 };
 
 bool same_sight(const TubeFrame& a, const TubeFrame& b) {
-    return a.camera == b.camera && a.size.width == b.size.width && a.size.height == b.size.height && a.shown == b.shown &&
-           a.scale == b.scale && a.coarse == b.coarse;
+    return a.camera == b.camera && a.size.width == b.size.width && a.size.height == b.size.height &&
+           a.shown == b.shown && a.scale == b.scale && a.coarse == b.coarse;
 }
 
 }  // namespace
 
-TubePainter::Program TubePainter::program(const QByteArray& vertex, const QByteArray& fragment, QString& trouble) {
+TubePainter::Program TubePainter::program(const QByteArray& vertex, const QByteArray& fragment,
+                                          QString& trouble) {
     auto made = std::make_unique<QOpenGLShaderProgram>();
     if (!made->addShaderFromSourceCode(QOpenGLShader::Vertex, vertex) ||
         !made->addShaderFromSourceCode(QOpenGLShader::Fragment, fragment) || !made->link()) {
-        trouble = QCoreApplication::translate("TubePainter", "the graphics driver refuses the viewer's programs: %1")
+        trouble = QCoreApplication::translate("TubePainter",
+                                              "the graphics driver refuses the viewer's programs: %1")
                       .arg(made->log().left(300));
     }
     return made;
@@ -107,12 +112,15 @@ TubePainter::Program TubePainter::program(const QByteArray& vertex, const QByteA
 
 QString TubePainter::start() {
     auto* const context = QOpenGLContext::currentContext();
-    auto* const gl = context == nullptr ? nullptr : QOpenGLVersionFunctionsFactory::get<QOpenGLFunctions_3_3_Core>(context);
+    auto* const gl = context == nullptr
+                         ? nullptr
+                         : QOpenGLVersionFunctionsFactory::get<QOpenGLFunctions_3_3_Core>(context);
     if (gl == nullptr || !gl->initializeOpenGLFunctions())
         return QCoreApplication::translate("TubePainter", "the graphics driver has no OpenGL 3.3");
     const auto* const name = reinterpret_cast<const char*>(gl->glGetString(GL_RENDERER));
     m_renderer = QString::fromUtf8(name);
-    m_is_software = m_renderer.contains("llvmpipe") || m_renderer.contains("softpipe") || m_renderer.contains("SWR");
+    m_is_software =
+        m_renderer.contains("llvmpipe") || m_renderer.contains("softpipe") || m_renderer.contains("SWR");
     find_by_processor(m_is_software);
     QString trouble;
     m_find[0] = program(shaders::vertex({}), shaders::find({}), trouble);
@@ -169,7 +177,8 @@ void TubePainter::set_model(const TubeModel* model) {
 void TubePainter::set_states(std::vector<std::uint8_t> states) {
     if (states == m_states) return;
     m_states = std::move(states);
-    m_is_marked = std::ranges::any_of(m_states, [](std::uint8_t state) { return (state & (yarn_hovered | yarn_selected)) != 0; });
+    m_is_marked = std::ranges::any_of(
+        m_states, [](std::uint8_t state) { return (state & (yarn_hovered | yarn_selected)) != 0; });
     m_yarns_are_old = true;
 }
 
@@ -179,7 +188,8 @@ void TubePainter::fill(List& list, const void* data, std::size_t bytes, GLenum f
         m_gl->glGenTextures(1, &list.texture);
     }
     m_gl->glBindBuffer(GL_TEXTURE_BUFFER, list.buffer);
-    m_gl->glBufferData(GL_TEXTURE_BUFFER, static_cast<GLsizeiptr>(bytes), data, often ? GL_DYNAMIC_DRAW : GL_STATIC_DRAW);
+    m_gl->glBufferData(GL_TEXTURE_BUFFER, static_cast<GLsizeiptr>(bytes), data,
+                       often ? GL_DYNAMIC_DRAW : GL_STATIC_DRAW);
     if (list.bytes != bytes) {
         m_gl->glBindTexture(GL_TEXTURE_BUFFER, list.texture);
         m_gl->glTexBuffer(GL_TEXTURE_BUFFER, format, list.buffer);
@@ -210,8 +220,8 @@ void TubePainter::fill_indices(std::size_t pieces) {
         corners.insert(corners.end(), {first, first + 1, first + 2, first + 2, first + 1, first + 3});
     }
     m_gl->glBindBuffer(GL_ELEMENT_ARRAY_BUFFER, m_indices);
-    m_gl->glBufferData(GL_ELEMENT_ARRAY_BUFFER, static_cast<GLsizeiptr>(corners.size() * sizeof corners[0]), corners.data(),
-                       GL_STATIC_DRAW);
+    m_gl->glBufferData(GL_ELEMENT_ARRAY_BUFFER, static_cast<GLsizeiptr>(corners.size() * sizeof corners[0]),
+                       corners.data(), GL_STATIC_DRAW);
     m_indexed = pieces;
 }
 
@@ -233,7 +243,8 @@ void TubePainter::upload() {
 
 void TubePainter::drop_sheet() {
     m_gl->glDeleteFramebuffers(1, &m_sheet.frame);
-    for (const GLuint* texture : {&m_sheet.seen, &m_sheet.depth, &m_sheet.colour}) m_gl->glDeleteTextures(1, texture);
+    for (const GLuint* texture : {&m_sheet.seen, &m_sheet.depth, &m_sheet.colour})
+        m_gl->glDeleteTextures(1, texture);
     m_sheet = {};
     m_has_found = false;
 }
@@ -270,9 +281,11 @@ void TubePainter::use_camera(QOpenGLShaderProgram& program, const TubeFrame& fra
     program.setUniformValue("u_centre", vector_of(camera.centre - move));
     program.setUniformValue("u_distance", static_cast<float>(camera.distance()));
     const double half = camera.height_mm / 2;
-    program.setUniformValue("u_half", static_cast<float>(half * frame.size.width / frame.size.height), static_cast<float>(half));
+    program.setUniformValue("u_half", static_cast<float>(half * frame.size.width / frame.size.height),
+                            static_cast<float>(half));
     program.setUniformValue("u_range", static_cast<float>(m_near), static_cast<float>(1 / (m_far - m_near)));
-    program.setUniformValue("u_pixel", 2.0F / static_cast<float>(m_sheet.width), 2.0F / static_cast<float>(m_sheet.height));
+    program.setUniformValue("u_pixel", 2.0F / static_cast<float>(m_sheet.width),
+                            2.0F / static_cast<float>(m_sheet.height));
     QVector4D clip;
     if (frame.shown.clip) {  // the camera sees the same plane for every repeat
         const Vec3 normal = turned(camera, frame.shown.clip->normal);
@@ -355,18 +368,20 @@ void TubePainter::find(const TubeFrame& frame) {
 }
 
 void TubePainter::find_here(const TubeFrame& frame, const std::vector<PieceRange>& ranges) {
-    m_finder->run(*m_model, {frame.camera, frame.size, m_sheet.width, m_sheet.height, m_near, m_far, frame.shown.clip, ranges});
+    m_finder->run(*m_model, {frame.camera, frame.size, m_sheet.width, m_sheet.height, m_near, m_far,
+                             frame.shown.clip, ranges});
     m_gl->glActiveTexture(GL_TEXTURE0);
     m_gl->glPixelStorei(GL_UNPACK_ALIGNMENT, 4);
     m_gl->glBindTexture(GL_TEXTURE_2D, m_sheet.seen);
-    m_gl->glTexSubImage2D(GL_TEXTURE_2D, 0, 0, 0, m_sheet.width, m_sheet.height, GL_RG_INTEGER, GL_UNSIGNED_INT,
-                          m_finder->seen().data());
+    m_gl->glTexSubImage2D(GL_TEXTURE_2D, 0, 0, 0, m_sheet.width, m_sheet.height, GL_RG_INTEGER,
+                          GL_UNSIGNED_INT, m_finder->seen().data());
     m_gl->glBindTexture(GL_TEXTURE_2D, m_sheet.depth);
     m_gl->glTexSubImage2D(GL_TEXTURE_2D, 0, 0, 0, m_sheet.width, m_sheet.height, GL_DEPTH_COMPONENT, GL_FLOAT,
                           m_finder->depth().data());
 }
 
-void TubePainter::find_there(const TubeFrame& frame, const Level& level, const std::vector<PieceRange>& ranges) {
+void TubePainter::find_there(const TubeFrame& frame, const Level& level,
+                             const std::vector<PieceRange>& ranges) {
     m_gl->glBindFramebuffer(GL_FRAMEBUFFER, m_sheet.frame);
     m_gl->glDrawBuffer(GL_COLOR_ATTACHMENT0);
     m_gl->glViewport(0, 0, m_sheet.width, m_sheet.height);
@@ -391,18 +406,21 @@ void TubePainter::find_there(const TubeFrame& frame, const Level& level, const s
                (ranges[at].first >= level.first_flat) == flat;
              ++at) {
             counts.push_back(static_cast<GLsizei>(6 * ranges[at].count));
-            starts.push_back(reinterpret_cast<const void*>(std::uintptr_t{6} * ranges[at].first * sizeof(std::uint32_t)));
+            starts.push_back(
+                reinterpret_cast<const void*>(std::uintptr_t{6} * ranges[at].first * sizeof(std::uint32_t)));
         }
         QOpenGLShaderProgram& program = *m_find[flat || frame.shown.clip ? 1 : 0];
         bind(program);
         use_camera(program, frame, move_of(*m_model, first.i, first.j));
         m_gl->glUniform1ui(program.uniformLocation("u_copy"), static_cast<GLuint>(first.i | first.j << 4U));
-        m_gl->glMultiDrawElements(GL_TRIANGLES, counts.data(), GL_UNSIGNED_INT, starts.data(), static_cast<GLsizei>(counts.size()));
+        m_gl->glMultiDrawElements(GL_TRIANGLES, counts.data(), GL_UNSIGNED_INT, starts.data(),
+                                  static_cast<GLsizei>(counts.size()));
     }
 }
 
 void TubePainter::light(const TubeFrame& frame, GLuint target) {
-    const bool direct = m_sheet.width == static_cast<int>(frame.size.width) && m_sheet.height == static_cast<int>(frame.size.height);
+    const bool direct = m_sheet.width == static_cast<int>(frame.size.width) &&
+                        m_sheet.height == static_cast<int>(frame.size.height);
     QOpenGLShaderProgram& program = *m_light[(m_is_marked ? 1 : 0) | (frame.hollows ? 2 : 0)];
     m_gl->glBindFramebuffer(GL_FRAMEBUFFER, direct ? target : m_sheet.frame);
     if (!direct) m_gl->glDrawBuffer(GL_COLOR_ATTACHMENT1);
@@ -411,7 +429,8 @@ void TubePainter::light(const TubeFrame& frame, GLuint target) {
     m_gl->glDisable(GL_BLEND);
     bind(program);
     use_camera(program, frame, Vec3::Zero());
-    const std::pair<int, GLuint> pictures[]{{unit_seen, m_sheet.seen}, {unit_depth, m_sheet.depth}, {unit_map, m_map}};
+    const std::pair<int, GLuint> pictures[]{
+        {unit_seen, m_sheet.seen}, {unit_depth, m_sheet.depth}, {unit_map, m_map}};
     for (const auto& [unit, texture] : pictures) {
         m_gl->glActiveTexture(GL_TEXTURE0 + static_cast<GLenum>(unit));
         m_gl->glBindTexture(GL_TEXTURE_2D, texture);
@@ -428,9 +447,11 @@ void TubePainter::light(const TubeFrame& frame, GLuint target) {
     program.setUniformValue("u_period_x", vector_of(turned(frame.camera, {m_model->size_mm()[0], 0, 0})));
     program.setUniformValue("u_period_y", vector_of(turned(frame.camera, {0, m_model->size_mm()[1], 0})));
     program.setUniformValue("u_dim", static_cast<float>(frame.dim));
-    const double radius_px = m_model->thinnest_mm() * frame.camera.scale({double(m_sheet.width), double(m_sheet.height)});
+    const double radius_px =
+        m_model->thinnest_mm() * frame.camera.scale({double(m_sheet.width), double(m_sheet.height)});
     program.setUniformValue("u_reach", static_cast<float>(std::clamp(2.2 * radius_px, 2.0, 60.0)));
-    program.setUniformValue("u_mark_width", static_cast<float>(std::max(1.0, frame.mark_pixels * frame.scale)));
+    program.setUniformValue("u_mark_width",
+                            static_cast<float>(std::max(1.0, frame.mark_pixels * frame.scale)));
     m_gl->glDrawArrays(GL_TRIANGLES, 0, 3);
     if (!direct) {
         m_gl->glBindFramebuffer(GL_READ_FRAMEBUFFER, m_sheet.frame);

@@ -20,16 +20,17 @@ struct TubeFrame {
     Camera camera;
     PictureSize size;  ///< of the target, pixels of the device
     Shown shown;
-    double scale = 1;      ///< pixels that are computed for one of the target, across: below 1 to be quick, 2 to be smooth
+    double scale =
+        1;  ///< pixels that are computed for one of the target, across: below 1 to be quick, 2 to be smooth
     bool coarse = true;    ///< whether fewer pieces are drawn where nobody can tell
     bool hollows = false;  ///< whether yarns keep light from one another
     Colour ground_top{0xfb, 0xfc, 0xfd}, ground_bottom{0xe4, 0xe8, 0xec}, mark{0x00, 0x72, 0xb2};
-    double dim = 0.72;         ///< how much of the ground shows in dimmed yarns
-    double mark_pixels = 2;    ///< of the target
+    double dim = 0.72;       ///< how much of the ground shows in dimmed yarns
+    double mark_pixels = 2;  ///< of the target
 };
 
-/// Draws a model with OpenGL 3.3. It needs its context current in every call but the constructor. Of a picture it keeps what is seen
-/// where, so that yarns are emphasised without looking for them again.
+/// Draws a model with OpenGL 3.3. It needs its context current in every call but the constructor. Of a
+/// picture it keeps what is seen where, so that yarns are emphasised without looking for them again.
 class TubePainter {
   public:
     TubePainter() = default;
@@ -54,7 +55,8 @@ class TubePainter {
     [[nodiscard]] QString renderer() const { return m_renderer; }
     /// Whether the processor draws.
     [[nodiscard]] bool is_software() const { return m_is_software; }
-    /// Whether the processor finds what is seen, instead of OpenGL; so from the start where OpenGL is drawn by the processor itself.
+    /// Whether the processor finds what is seen, instead of OpenGL; so from the start where OpenGL is drawn
+    /// by the processor itself.
     void find_by_processor(bool processor);
     /// Of the last picture that was looked for.
     [[nodiscard]] std::size_t drawn_pieces() const { return m_drawn; }
@@ -102,7 +104,7 @@ class TubePainter {
     bool m_is_marked = false;
     std::size_t m_drawn = 0;
     std::unique_ptr<SoftwareFinder> m_finder;  ///< null: OpenGL finds
-    bool m_has_found = false;  ///< whether the sheet holds m_found
+    bool m_has_found = false;                  ///< whether the sheet holds m_found
     TubeFrame m_found;
     double m_near = 0, m_far = 1;
 };

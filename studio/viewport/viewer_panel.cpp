@@ -27,10 +27,12 @@ bool needs_relaxed(ColourBy colour) {
 }
 
 QLabel* trouble_page(const QString& trouble) {
-    auto* const label = new QLabel(
-        ViewerPanel::tr("<h3>The 3D view cannot be drawn</h3><p>%1.</p><p>Everything else works; the card and the slices show the "
-                        "cloth as well. A newer graphics driver, or software drawing (LIBGL_ALWAYS_SOFTWARE=1), may help.</p>")
-            .arg(trouble.toHtmlEscaped()));
+    auto* const label =
+        new QLabel(ViewerPanel::tr("<h3>The 3D view cannot be drawn</h3><p>%1.</p><p>Everything else works; "
+                                   "the card and the slices show the "
+                                   "cloth as well. A newer graphics driver, or software drawing "
+                                   "(LIBGL_ALWAYS_SOFTWARE=1), may help.</p>")
+                       .arg(trouble.toHtmlEscaped()));
     label->setAlignment(Qt::AlignCenter);
     label->setWordWrap(true);
     label->setMargin(label->fontMetrics().height());
@@ -50,7 +52,8 @@ QString find_gl_trouble() {
     QOffscreenSurface surface;
     surface.setFormat(context.format());
     surface.create();
-    if (!context.makeCurrent(&surface)) return QCoreApplication::translate("ViewerPanel", "OpenGL does not start on this display");
+    if (!context.makeCurrent(&surface))
+        return QCoreApplication::translate("ViewerPanel", "OpenGL does not start on this display");
     const auto version = context.format().version();
     if (version < std::pair(3, 3))
         return QCoreApplication::translate("ViewerPanel", "this display has OpenGL %1.%2, and 3.3 is needed")
@@ -93,7 +96,8 @@ ViewerPanel::ViewerPanel(QWidget* parent, const QString& trouble) : QWidget(pare
 
 // ---- What is shown ----
 
-void ViewerPanel::set_planned(std::shared_ptr<const Design> design, std::shared_ptr<const ClothCurves> curves) {
+void ViewerPanel::set_planned(std::shared_ptr<const Design> design,
+                              std::shared_ptr<const ClothCurves> curves) {
     m_design = std::move(design);
     m_curves = std::move(curves);
     if (m_mode == Mode::planned) make_model();
@@ -118,7 +122,9 @@ void ViewerPanel::make_model() {
     m_failure.clear();
     const ColourBy colour = m_mode == Mode::planned && needs_relaxed(m_colour) ? ColourBy::yarn : m_colour;
     if (m_mode == Mode::planned && m_design != nullptr && m_curves != nullptr) {
-        m_maker.ask([design = m_design, curves = m_curves, colour] { return TubeModel::planned(*design, *curves, colour); });
+        m_maker.ask([design = m_design, curves = m_curves, colour] {
+            return TubeModel::planned(*design, *curves, colour);
+        });
     } else if (m_mode == Mode::relaxed && m_yarns != nullptr) {
         m_maker.ask([yarns = m_yarns, colour] { return TubeModel::relaxed(yarns, colour); });
     } else {
@@ -144,7 +150,8 @@ void ViewerPanel::say_empty() {
     } else if (m_mode == Mode::planned) {
         m_viewport->set_empty_words(tr("As soon as the block has yarns, its plan is drawn here."));
     } else {
-        m_viewport->set_empty_words(tr("The cloth has not been relaxed. Run the simulation, or look at the plan."));
+        m_viewport->set_empty_words(
+            tr("The cloth has not been relaxed. Run the simulation, or look at the plan."));
     }
 }
 
@@ -154,7 +161,9 @@ void ViewerPanel::follow_model() {
     const auto limit = [&](QSpinBox* box, std::size_t axis, const QString& tip) {
         const bool repeats = model != nullptr && model->is_periodic()[axis];
         box->setEnabled(repeats);
-        box->setToolTip(repeats || model == nullptr ? tip : tr("This piece does not repeat here: its rim is free or held."));
+        box->setToolTip(repeats || model == nullptr
+                            ? tip
+                            : tr("This piece does not repeat here: its rim is free or held."));
     };
     limit(m_along_ends, 0, tr("Repeats along the ends"));
     limit(m_along_picks, 1, tr("Repeats along the picks"));
@@ -165,7 +174,8 @@ void ViewerPanel::follow_model() {
         items->item(k)->setToolTip(can ? QString() : tr("Only relaxed yarns have it: choose Relaxed first."));
     }
     const QSignalBlocker quiet(m_colours);
-    m_colours->setCurrentIndex(static_cast<int>(m_mode == Mode::planned && needs_relaxed(m_colour) ? ColourBy::yarn : m_colour));
+    m_colours->setCurrentIndex(
+        static_cast<int>(m_mode == Mode::planned && needs_relaxed(m_colour) ? ColourBy::yarn : m_colour));
     m_save->setEnabled(model != nullptr);
     apply_repeat();
     apply_clip();
@@ -235,14 +245,18 @@ Status ViewerPanel::set_state(const Json& json) {
         const auto found = json.find(name);
         return found != json.end() && found->is_string() ? found->get<std::string>() : std::string();
     };
-    if (const std::string mode = text("mode"); !mode.empty()) set_mode(mode == "relaxed" ? Mode::relaxed : Mode::planned);
+    if (const std::string mode = text("mode"); !mode.empty())
+        set_mode(mode == "relaxed" ? Mode::relaxed : Mode::planned);
     for (std::size_t k = 0; k < colourings; ++k) {
         if (text("colour") == colour_words[k]) set_colour(static_cast<ColourBy>(k));
     }
-    if (const auto found = json.find("repeat"); found != json.end() && found->is_array() && found->size() == 2) {
+    if (const auto found = json.find("repeat");
+        found != json.end() && found->is_array() && found->size() == 2) {
         const auto times = [&](std::size_t k) {
             const Json& number = (*found)[k];
-            return number.is_number_integer() ? static_cast<int>(std::clamp<std::int64_t>(number.get<std::int64_t>(), 1, most_repeats)) : 1;
+            return number.is_number_integer() ? static_cast<int>(std::clamp<std::int64_t>(
+                                                    number.get<std::int64_t>(), 1, most_repeats))
+                                              : 1;
         };
         m_along_ends->setValue(times(0));
         m_along_picks->setValue(times(1));
@@ -257,7 +271,8 @@ Status ViewerPanel::save_picture(const QString& path) {
     if (image.isNull()) return invalid("there is nothing to save yet");
     QSaveFile file(path);
     if (!file.open(QIODevice::WriteOnly) || !image.save(&file, "PNG") || !file.commit())
-        return system_fault("the picture cannot be written: " + file.errorString().toStdString(), path.toStdString());
+        return system_fault("the picture cannot be written: " + file.errorString().toStdString(),
+                            path.toStdString());
     return {};
 }
 

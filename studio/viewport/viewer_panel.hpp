@@ -19,7 +19,8 @@ namespace weave::studio {
 /// Why there is no OpenGL 3.3 on this display; empty where there is.
 QString find_gl_trouble();
 
-/// The 3D viewer with its tools: planned or relaxed yarns, their colours, repeats, the plane that cuts, views and the lock.
+/// The 3D viewer with its tools: planned or relaxed yarns, their colours, repeats, the plane that cuts, views
+/// and the lock.
 class ViewerPanel : public QWidget {
     Q_OBJECT
   public:
@@ -32,8 +33,8 @@ class ViewerPanel : public QWidget {
     void set_planned(std::shared_ptr<const Design> design, std::shared_ptr<const ClothCurves> curves);
     /// The relaxed yarns; null: none. The panel does not change its mode by itself.
     void set_relaxed(std::shared_ptr<const Yarns> yarns);
-    /// Control points of the relaxed yarns as they lie now, in the yarns' order; they wait while planned yarns are shown, the
-    /// newest only. Refused where they are not of these yarns.
+    /// Control points of the relaxed yarns as they lie now, in the yarns' order; they wait while planned
+    /// yarns are shown, the newest only. Refused where they are not of these yarns.
     Status set_points(const std::vector<std::vector<Vec3>>& control);
 
     [[nodiscard]] Mode mode() const { return m_mode; }
@@ -45,7 +46,8 @@ class ViewerPanel : public QWidget {
     /// View, mode, colours, repeats and lock, for a document; what it does not know of it leaves as it is.
     [[nodiscard]] Json state() const;
     Status set_state(const Json& json);
-    /// Writes what is seen as PNG, twice as fine as on a plain display. Errors: nothing shown, a file that cannot be written.
+    /// Writes what is seen as PNG, twice as fine as on a plain display. Errors: nothing shown, a file that
+    /// cannot be written.
     Status save_picture(const QString& path);
 
   Q_SIGNALS:
@@ -77,7 +79,8 @@ class ViewerPanel : public QWidget {
     QComboBox *m_modes = nullptr, *m_colours = nullptr, *m_clips = nullptr;
     QSpinBox *m_along_ends = nullptr, *m_along_picks = nullptr;
     QSlider* m_clip_at = nullptr;
-    QAction *m_flip = nullptr, *m_lock = nullptr, *m_perspective = nullptr, *m_attach = nullptr, *m_save = nullptr;
+    QAction *m_flip = nullptr, *m_lock = nullptr, *m_perspective = nullptr, *m_attach = nullptr,
+            *m_save = nullptr;
 
     std::shared_ptr<const Design> m_design;
     std::shared_ptr<const ClothCurves> m_curves;

@@ -56,11 +56,13 @@ void ViewerPanel::add_looks() {
     m_modes = named(new QComboBox, tr("What is shown"),
                     tr("Planned: the block as it is drawn. Relaxed: the cloth as the simulation leaves it."));
     m_modes->addItems({tr("Planned"), tr("Relaxed")});
-    connect(m_modes, &QComboBox::currentIndexChanged, this, [this](int k) { set_mode(static_cast<Mode>(k)); });
+    connect(m_modes, &QComboBox::currentIndexChanged, this,
+            [this](int k) { set_mode(static_cast<Mode>(k)); });
     m_tools->addWidget(m_modes);
     m_colours = named(new QComboBox, tr("Colour by"), tr("What colours the yarns"));
     for (std::size_t k = 0; k < colourings; ++k) m_colours->addItem(colour_name(static_cast<ColourBy>(k)));
-    connect(m_colours, &QComboBox::currentIndexChanged, this, [this](int k) { set_colour(static_cast<ColourBy>(k)); });
+    connect(m_colours, &QComboBox::currentIndexChanged, this,
+            [this](int k) { set_colour(static_cast<ColourBy>(k)); });
     m_tools->addWidget(m_colours);
 }
 
@@ -82,7 +84,8 @@ void ViewerPanel::add_repeats() {
 
 void ViewerPanel::add_clip() {
     m_clips = named(new QComboBox, tr("Cut"), tr("Cuts the cloth open, and shows which yarns are cut"));
-    m_clips->addItems({tr("No cut"), tr("Cut across the ends"), tr("Cut across the picks"), tr("Cut by height")});
+    m_clips->addItems(
+        {tr("No cut"), tr("Cut across the ends"), tr("Cut across the picks"), tr("Cut by height")});
     connect(m_clips, &QComboBox::currentIndexChanged, this, &ViewerPanel::choose_clip);
     m_tools->addWidget(m_clips);
     m_clip_at = named(new QSlider(Qt::Horizontal), tr("Place of the cut"), tr("Where the cloth is cut"));
@@ -93,7 +96,8 @@ void ViewerPanel::add_clip() {
     m_clip_at->setMaximumWidth(fontMetrics().height() * 9);
     connect(m_clip_at, &QSlider::valueChanged, this, &ViewerPanel::apply_clip);
     m_tools->addWidget(m_clip_at);
-    m_flip = add_action(static_cast<int>(ViewIcon::flip), tr("Other side"), tr("Keeps the other side of the cut"));
+    m_flip =
+        add_action(static_cast<int>(ViewIcon::flip), tr("Other side"), tr("Keeps the other side of the cut"));
     connect(m_flip, &QAction::triggered, this, [this] {
         m_clip_side = -m_clip_side;
         apply_clip();
@@ -101,12 +105,14 @@ void ViewerPanel::add_clip() {
 }
 
 void ViewerPanel::add_views() {
-    QAction* const back =
-        add_action(static_cast<int>(ViewIcon::back), tr("View before"), tr("The view before this one (Alt+Left)"));
+    QAction* const back = add_action(static_cast<int>(ViewIcon::back), tr("View before"),
+                                     tr("The view before this one (Alt+Left)"));
     connect(back, &QAction::triggered, m_viewport, &Viewport::view_back);
-    QAction* const on = add_action(static_cast<int>(ViewIcon::on), tr("View after"), tr("The view after this one (Alt+Right)"));
+    QAction* const on = add_action(static_cast<int>(ViewIcon::on), tr("View after"),
+                                   tr("The view after this one (Alt+Right)"));
     connect(on, &QAction::triggered, m_viewport, &Viewport::view_on);
-    QAction* const fit = add_action(static_cast<int>(ViewIcon::fit), tr("Fit"), tr("All of the cloth in view (F)"));
+    QAction* const fit =
+        add_action(static_cast<int>(ViewIcon::fit), tr("Fit"), tr("All of the cloth in view (F)"));
     connect(fit, &QAction::triggered, m_viewport, &Viewport::fit);
     auto* const menu = new QMenu(tr("Views"), this);
     for (std::size_t k = 0; k < standard_views; ++k) {
@@ -129,7 +135,8 @@ void ViewerPanel::add_rest() {
     connect(m_perspective, &QAction::triggered, m_viewport, &Viewport::set_perspective);
     connect(m_viewport, &Viewport::camera_changed, this,
             [this] { m_perspective->setChecked(m_viewport->camera().perspective); });
-    m_lock = add_action(static_cast<int>(ViewIcon::unlocked), tr("Lock the view"), tr("Freezes the view, so that no drag moves it (L)"));
+    m_lock = add_action(static_cast<int>(ViewIcon::unlocked), tr("Lock the view"),
+                        tr("Freezes the view, so that no drag moves it (L)"));
     m_lock->setCheckable(true);
     connect(m_lock, &QAction::triggered, m_viewport, &Viewport::set_locked);
     connect(m_viewport, &Viewport::locked_changed, this, [this](bool locked) {
@@ -144,12 +151,14 @@ void ViewerPanel::add_rest() {
     m_attach->setCheckable(true);
     connect(m_attach, &QAction::triggered, m_viewport, &Viewport::set_attach_mode);
     connect(m_viewport, &Viewport::attach_mode_changed, m_attach, &QAction::setChecked);
-    m_save = add_action(static_cast<int>(ViewIcon::picture), tr("Save picture"), tr("Saves what is seen as a PNG, twice as fine"));
+    m_save = add_action(static_cast<int>(ViewIcon::picture), tr("Save picture"),
+                        tr("Saves what is seen as a PNG, twice as fine"));
     connect(m_save, &QAction::triggered, this, &ViewerPanel::ask_for_picture);
 }
 
 void ViewerPanel::ask_for_picture() {
-    QString path = QFileDialog::getSaveFileName(this, tr("Save picture"), tr("cloth.png"), tr("Pictures (*.png)"));
+    QString path =
+        QFileDialog::getSaveFileName(this, tr("Save picture"), tr("cloth.png"), tr("Pictures (*.png)"));
     if (path.isEmpty()) return;
     if (!path.endsWith(QStringLiteral(".png"), Qt::CaseInsensitive)) path += QStringLiteral(".png");
     if (const Status saved = save_picture(path); !saved)

@@ -46,7 +46,8 @@ Viewport::Viewport(QWidget* parent) : QOpenGLWidget(parent), m_sheet(*this) {
     setMouseTracking(true);
     setMinimumSize(fontMetrics().height() * 8, fontMetrics().height() * 6);
     setAccessibleName(tr("3D view"));
-    setAccessibleDescription(tr("The yarns of the block or the relaxed cloth. F fits, 1 to 6 choose views, arrows turn."));
+    setAccessibleDescription(
+        tr("The yarns of the block or the relaxed cloth. F fits, 1 to 6 choose views, arrows turn."));
     m_empty_words = tr("As soon as a block has yarns, they are drawn here.");
     m_glide.setDuration(glide_ms);
     m_glide.setEasingCurve(QEasingCurve::InOutQuad);
@@ -202,8 +203,9 @@ void Viewport::glide_to(const Camera& camera) {
         return;
     }
     const Camera from = m_camera;
-    connect(&m_glide, &QVariantAnimation::valueChanged, this,
-            [this, from, camera](const QVariant& share) { move_camera(between(from, camera, share.toDouble())); });
+    connect(&m_glide, &QVariantAnimation::valueChanged, this, [this, from, camera](const QVariant& share) {
+        move_camera(between(from, camera, share.toDouble()));
+    });
     m_glide.setStartValue(0.0);
     m_glide.setEndValue(1.0);
     m_glide.start();
@@ -297,7 +299,8 @@ void Viewport::look_again() {
 }
 
 void Viewport::place_cube() {
-    const double side = std::min({fontMetrics().height() * 6.5, width() * 0.3, height() * 0.32}), rim = fontMetrics().height() * 0.5;
+    const double side = std::min({fontMetrics().height() * 6.5, width() * 0.3, height() * 0.32}),
+                 rim = fontMetrics().height() * 0.5;
     m_cube.set_place({width() - side - rim, rim, side, side});
 }
 
@@ -334,7 +337,8 @@ void Viewport::draw_yarns(const TubeFrame& frame) {
     if (!m_painter.is_software() || !m_moving) return;
     context()->functions()->glFinish();
     const double ms = static_cast<double>(timer.nsecsElapsed()) / 1e6;
-    if (ms > slow_ms) m_moving_scale = std::max(least_scale, m_moving_scale * std::max(0.6, std::sqrt(slow_ms / ms)));
+    if (ms > slow_ms)
+        m_moving_scale = std::max(least_scale, m_moving_scale * std::max(0.6, std::sqrt(slow_ms / ms)));
     if (ms < quick_ms) m_moving_scale = std::min(1.0, m_moving_scale * 1.2);
 }
 
@@ -359,8 +363,9 @@ void Viewport::paintGL() {
 void Viewport::paint_over(QPainter& painter, const QRectF& area, bool for_screen) {
     Overlay overlay(painter, area, palette());
     if (!m_trouble.isEmpty()) {
-        overlay.message(tr("The 3D view cannot be drawn"),
-                        tr("%1. Everything else works; the card and the slices show the cloth as well.").arg(m_trouble));
+        overlay.message(
+            tr("The 3D view cannot be drawn"),
+            tr("%1. Everything else works; the card and the slices show the cloth as well.").arg(m_trouble));
         return;
     }
     if (m_model == nullptr) {
@@ -368,7 +373,8 @@ void Viewport::paint_over(QPainter& painter, const QRectF& area, bool for_screen
         return;
     }
     if (m_attach && for_screen)
-        overlay.box(shown_box(), m_camera, m_block_face, m_block_face ? attach_words(*m_block_face) : QString());
+        overlay.box(shown_box(), m_camera, m_block_face,
+                    m_block_face ? attach_words(*m_block_face) : QString());
     overlay.axes(m_camera);
     overlay.scale_bar(m_camera);
     overlay.caption(m_caption);
@@ -396,7 +402,8 @@ QImage Viewport::picture(int times) {
     makeCurrent();
     QImage image;
     {
-        QOpenGLFramebufferObject target(static_cast<int>(frame.size.width), static_cast<int>(frame.size.height));
+        QOpenGLFramebufferObject target(static_cast<int>(frame.size.width),
+                                        static_cast<int>(frame.size.height));
         m_painter.draw(frame, target.handle());
         image = target.toImage().convertToFormat(QImage::Format_RGB32);
     }

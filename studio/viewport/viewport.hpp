@@ -17,8 +17,8 @@ namespace weave::studio {
 
 class Viewport;
 
-/// What is written over the yarns, as a widget of its own: drawn by the processor, which makes smooth lines where OpenGL has none,
-/// and without drawing the yarns again.
+/// What is written over the yarns, as a widget of its own: drawn by the processor, which makes smooth lines
+/// where OpenGL has none, and without drawing the yarns again.
 class OverlaySheet : public QWidget {
     Q_OBJECT
   public:
@@ -40,16 +40,17 @@ struct YarnName {
 
 /// Shows a TubeModel, to look at from all sides, and tells what is pointed at.
 ///
-/// Mouse: drag left to turn, middle or Shift and left to move, wheel to zoom at the cursor; a press and release that is no drag
-/// is a click. Keys: F all in view, 1 to 6 the standard views, + and − zoom, arrows turn (with Shift: move), Alt+Left and
-/// Alt+Right the views before and after, L locks the view, Esc lets go.
+/// Mouse: drag left to turn, middle or Shift and left to move, wheel to zoom at the cursor; a press and
+/// release that is no drag is a click. Keys: F all in view, 1 to 6 the standard views, + and − zoom, arrows
+/// turn (with Shift: move), Alt+Left and Alt+Right the views before and after, L locks the view, Esc lets go.
 class Viewport : public QOpenGLWidget {
     Q_OBJECT
   public:
     explicit Viewport(QWidget* parent = nullptr);
     ~Viewport() override;
 
-    /// What is shown from now on; null: nothing. The view stays where it is, unless there was nothing before: then all is fitted.
+    /// What is shown from now on; null: nothing. The view stays where it is, unless there was nothing before:
+    /// then all is fitted.
     void set_model(std::shared_ptr<TubeModel> model);
     [[nodiscard]] const TubeModel* model() const { return m_model.get(); }
     /// New places of the yarns that are shown, as from a simulation that runs: see TubeModel::update().
@@ -84,10 +85,12 @@ class Viewport : public QOpenGLWidget {
     void view_on();
     void set_locked(bool locked);
     [[nodiscard]] bool is_locked() const { return m_locked; }
-    /// Whether views glide to one another, in 150 ms, and pictures in motion may be coarser where the processor draws them.
+    /// Whether views glide to one another, in 150 ms, and pictures in motion may be coarser where the
+    /// processor draws them.
     void set_animated(bool animated) { m_animated = animated; }
 
-    /// What is to be seen, with legend, scale and caption, `times` as many pixels across as the widget has on a plain display.
+    /// What is to be seen, with legend, scale and caption, `times` as many pixels across as the widget has on
+    /// a plain display.
     QImage picture(int times);
     /// Why nothing can be drawn; empty where all is well.
     [[nodiscard]] const QString& trouble() const { return m_trouble; }

@@ -19,7 +19,8 @@ constexpr double degrees_of_pixel = 0.4, degrees_of_key = 7.5, wheel_step = 1.2,
 }  // namespace
 
 Ray Viewport::ray_at(const QPointF& place) const {
-    return m_camera.ray(place.x(), place.y(), picture_size(), 2 * shown_box().size().norm() + 2 * m_camera.height_mm);
+    return m_camera.ray(place.x(), place.y(), picture_size(),
+                        2 * shown_box().size().norm() + 2 * m_camera.height_mm);
 }
 
 // ---- What is under the mouse ----
@@ -115,7 +116,8 @@ void Viewport::click_yarn(const QPointF& place) {
 // ---- Mouse ----
 
 void Viewport::mousePressEvent(QMouseEvent* event) {
-    if (m_drag != Drag::none || (event->button() != Qt::LeftButton && event->button() != Qt::MiddleButton)) return;
+    if (m_drag != Drag::none || (event->button() != Qt::LeftButton && event->button() != Qt::MiddleButton))
+        return;
     m_drag = Drag::pressed;
     m_button = event->button();
     m_pressed = m_last = event->position();
@@ -190,8 +192,9 @@ bool Viewport::event(QEvent* event) {
         auto* const key = static_cast<QKeyEvent*>(event);
         const bool plain = (key->modifiers() & ~(Qt::ShiftModifier | Qt::KeypadModifier)) == Qt::NoModifier;
         const bool one_to_six = key->key() >= Qt::Key_1 && key->key() <= Qt::Key_6;
-        if ((plain && (one_to_six || key->key() == Qt::Key_F || key->key() == Qt::Key_L || key->key() == Qt::Key_Plus ||
-                       key->key() == Qt::Key_Minus || key->key() == Qt::Key_Equal)) ||
+        if ((plain &&
+             (one_to_six || key->key() == Qt::Key_F || key->key() == Qt::Key_L ||
+              key->key() == Qt::Key_Plus || key->key() == Qt::Key_Minus || key->key() == Qt::Key_Equal)) ||
             (plain && key->key() == Qt::Key_Escape && (m_held || m_attach)))
             event->accept();
     }

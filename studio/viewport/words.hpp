@@ -1,7 +1,7 @@
 #pragma once
 
-#include <studio/viewport/tube_model.hpp>
 #include <weave/block/operations.hpp>
+#include <studio/viewport/tube_model.hpp>
 
 #include <QString>
 

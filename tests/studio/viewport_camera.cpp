@@ -55,18 +55,22 @@ TEST_CASE("what the mouse drags follows it: the near side of the cloth goes with
     CHECK(camera.project(near, size).y > camera.project(camera.centre, size).y + 10);
 }
 
-TEST_CASE("no view mirrors the cloth: end 1 is left and pick 1 at the bottom of the face, end 1 right of the back") {
+TEST_CASE(
+    "no view mirrors the cloth: end 1 is left and pick 1 at the bottom of the face, end 1 right of the "
+    "back") {
     const Vec3 first(0, 3, 0), last_end(0, 20, 0), last_pick(10, 3, 0), higher(0, 3, 3);
     for (const bool perspective : {false, true}) {
-        const auto at = [&](StandardView view, const Vec3& place) { return fitted(view, perspective).project(place, size); };
+        const auto at = [&](StandardView view, const Vec3& place) {
+            return fitted(view, perspective).project(place, size);
+        };
         CHECK(at(StandardView::face, last_end).x > at(StandardView::face, first).x + 100);
         CHECK(at(StandardView::face, last_pick).y < at(StandardView::face, first).y - 100);
         CHECK(at(StandardView::back, last_end).x < at(StandardView::back, first).x - 100);
         CHECK(at(StandardView::back, last_pick).y < at(StandardView::back, first).y - 100);
         CHECK(at(StandardView::warp_side, last_pick).x > at(StandardView::warp_side, first).x + 100);
         CHECK(at(StandardView::weft_side, last_end).x > at(StandardView::weft_side, first).x + 100);
-        for (const StandardView view : {StandardView::warp_side, StandardView::weft_side, StandardView::corner,
-                                        StandardView::opposite_corner})
+        for (const StandardView view : {StandardView::warp_side, StandardView::weft_side,
+                                        StandardView::corner, StandardView::opposite_corner})
             CHECK(at(view, higher).y < at(view, first).y - 10);
         for (std::size_t k = 0; k < standard_views; ++k) {
             const auto view = static_cast<StandardView>(k);
@@ -82,7 +86,8 @@ TEST_CASE("the camera sees places where pictures of relaxed cloth have them") {
     const TubeCamera pictures(32, 38);
     Camera camera;
     const Vec3 place(3, -2, 5);
-    const Vec3 seen = pictures.turned(place), own = {place.dot(camera.right()), place.dot(camera.up()), place.dot(camera.away())};
+    const Vec3 seen = pictures.turned(place),
+               own = {place.dot(camera.right()), place.dot(camera.up()), place.dot(camera.away())};
     CHECK((seen - own).norm() < 1e-12);
 }
 
@@ -136,11 +141,13 @@ TEST_CASE("a view comes back from JSON as it was, and nonsense changes nothing")
     Camera read;
     REQUIRE(read.from_json(parse_json(camera.to_json().dump()).value()));
     CHECK(read == camera);
-    for (const char* text : {"[]", "{}", R"({"azimuth_deg":0,"elevation_deg":91,"centre_mm":[0,0,0],"height_mm":1,"perspective":true})",
-                             R"({"azimuth_deg":0,"elevation_deg":9,"centre_mm":[0,0],"height_mm":1,"perspective":true})",
-                             R"({"azimuth_deg":0,"elevation_deg":9,"centre_mm":[0,0,1e99],"height_mm":1,"perspective":true})",
-                             R"({"azimuth_deg":0,"elevation_deg":9,"centre_mm":[0,0,0],"height_mm":0,"perspective":true})",
-                             R"({"azimuth_deg":0,"elevation_deg":9,"centre_mm":[0,0,0],"height_mm":1,"perspective":1})"}) {
+    for (const char* text :
+         {"[]", "{}",
+          R"({"azimuth_deg":0,"elevation_deg":91,"centre_mm":[0,0,0],"height_mm":1,"perspective":true})",
+          R"({"azimuth_deg":0,"elevation_deg":9,"centre_mm":[0,0],"height_mm":1,"perspective":true})",
+          R"({"azimuth_deg":0,"elevation_deg":9,"centre_mm":[0,0,1e99],"height_mm":1,"perspective":true})",
+          R"({"azimuth_deg":0,"elevation_deg":9,"centre_mm":[0,0,0],"height_mm":0,"perspective":true})",
+          R"({"azimuth_deg":0,"elevation_deg":9,"centre_mm":[0,0,0],"height_mm":1,"perspective":1})"}) {
         INFO(text);
         CHECK_FALSE(read.from_json(parse_json(text).value()));
         CHECK(read == camera);

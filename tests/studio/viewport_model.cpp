@@ -34,7 +34,8 @@ TEST_CASE("a model of planned curves has every yarn, and its pieces stay near th
             for (std::uint32_t k = 0; k < model->levels().front().count; ++k) {
                 const TubePiece piece = model->piece(k);
                 if (piece.yarn != y) continue;
-                nearest = std::min(nearest, (spline.place(t) - nearest_on_axis(piece, spline.place(t))).norm());
+                nearest =
+                    std::min(nearest, (spline.place(t) - nearest_on_axis(piece, spline.place(t))).norm());
             }
             CHECK(nearest < 0.06 * model->yarns()[y].radius_mm);
         }
@@ -51,7 +52,8 @@ TEST_CASE("coarser levels have fewer pieces that lead through the same yarns") {
         std::size_t in_chunks = 0;
         for (const Chunk& chunk : level.chunks) in_chunks += chunk.count;
         CHECK(in_chunks == level.count);
-        for (std::uint32_t k = level.first; k < level.first + level.count; ++k) yarns.insert(model->pieces()[k].yarn);
+        for (std::uint32_t k = level.first; k < level.first + level.count; ++k)
+            yarns.insert(model->pieces()[k].yarn);
         CHECK(yarns.size() == model->yarns().size());
     }
 }
@@ -76,7 +78,8 @@ TEST_CASE("relaxed yarns are coloured in every way, with a scale where numbers c
     }
     const auto by_system = model_of(yarns, ColourBy::system);
     std::set<Colour> warp, weft;
-    for (const ModelYarn& yarn : by_system->yarns()) (yarn.system == System::warp ? warp : weft).insert(yarn.colour);
+    for (const ModelYarn& yarn : by_system->yarns())
+        (yarn.system == System::warp ? warp : weft).insert(yarn.colour);
     CHECK(warp.size() == 1);
     CHECK(weft.size() == 1);
     CHECK(warp != weft);
@@ -94,7 +97,9 @@ TEST_CASE("yarns that say too little are refused") {
     CHECK_FALSE(TubeModel::relaxed(broken));
 }
 
-TEST_CASE("a live frame moves the yarns and leaves their pieces; other numbers of points are welcome, other yarns are not") {
+TEST_CASE(
+    "a live frame moves the yarns and leaves their pieces; other numbers of points are welcome, other yarns "
+    "are not") {
     const auto yarns = sample_yarns();
     const auto model = model_of(yarns, ColourBy::moved);
     const std::size_t pieces = model->pieces().size();
@@ -130,7 +135,8 @@ TEST_CASE("what a live frame costs", "[.bench]") {
     for (std::size_t k = 0; k < 100; ++k) {
         SimulatedYarn yarn = straight_yarn(System::warp, k, {0, 0, 0}, {1, 0, 0}, {});
         yarn.spline.control.clear();
-        for (int i = 0; i < 100; ++i) yarn.spline.control.emplace_back(i * 0.25, double(k), 0.2 * std::sin(i * 0.8));
+        for (int i = 0; i < 100; ++i)
+            yarn.spline.control.emplace_back(i * 0.25, double(k), 0.2 * std::sin(i * 0.8));
         yarn.planned = yarn.spline.control;
         yarn.strain.assign(100, 0);
         yarn.contact_N.assign(100, 0);
@@ -141,7 +147,8 @@ TEST_CASE("what a live frame costs", "[.bench]") {
     for (const SimulatedYarn& yarn : yarns->yarns) control.push_back(yarn.spline.control);
     const auto start = std::chrono::steady_clock::now();
     for (int k = 0; k < 20; ++k) REQUIRE(model->update(control));
-    const double ms = std::chrono::duration<double, std::milli>(std::chrono::steady_clock::now() - start).count() / 20;
+    const double ms =
+        std::chrono::duration<double, std::milli>(std::chrono::steady_clock::now() - start).count() / 20;
     WARN("10,000 control points, " << model->knots().size() << " knots: " << ms << " ms a frame");
 }
 
@@ -185,7 +192,8 @@ TEST_CASE("repeats can be picked, and belong to the same yarns") {
     const Vec3 at = box.centre();
     const Shown shown{{2, 3}, {}};
     const auto once = hits(*model, shown, down_at(at.x(), at.y()));
-    const auto moved = hits(*model, shown, down_at(at.x() + model->size_mm()[0], at.y() + 2 * model->size_mm()[1]));
+    const auto moved =
+        hits(*model, shown, down_at(at.x() + model->size_mm()[0], at.y() + 2 * model->size_mm()[1]));
     REQUIRE_FALSE(once.empty());
     std::set<std::uint32_t> a, b;
     for (const Hit& hit : once) a.insert(hit.yarn);

@@ -1,8 +1,10 @@
-#include <studio/viewport/viewport.hpp>
+
 
 #include <weave/design/evaluate.hpp>
 #include <weave/samples/samples.hpp>
 #include <weave/sim/simulate.hpp>
+#include <studio/support/viewport_samples.hpp>
+#include <studio/viewport/viewer_panel.hpp>
 
 #include <QtTest>
 
@@ -54,4 +56,19 @@ TEST_CASE("pictures of the viewer to look at", "[.screens]") {
     viewport.set_locked(true);
     viewport.set_model(nullptr);
     save("empty");
+}
+
+TEST_CASE("a picture of the panel to look at", "[.screens]") {
+    ViewerPanel panel;
+    panel.resize(1150, 700);
+    panel.show();
+    REQUIRE(QTest::qWaitForWindowExposed(&panel));
+    panel.viewport()->set_animated(false);
+    panel.set_relaxed(test::sample_yarns());
+    panel.set_mode(ViewerPanel::Mode::relaxed);
+    panel.set_colour(ColourBy::strain);
+    REQUIRE(QTest::qWaitFor([&] { return panel.viewport()->model() != nullptr; }));
+    panel.viewport()->set_locked(true);
+    panel.viewport()->set_caption("angle-interlock-b: whole cloth");
+    panel.grab().save("/tmp/vp_panel.png");
 }

@@ -33,7 +33,8 @@ class Shot {
         viewport.turn_to(StandardView::face);
     }
     [[nodiscard]] QPoint at(const Vec3& place) const {
-        const Projected seen = viewport.camera().project(place, {double(viewport.width()), double(viewport.height())});
+        const Projected seen =
+            viewport.camera().project(place, {double(viewport.width()), double(viewport.height())});
         return {static_cast<int>(std::lround(seen.x)), static_cast<int>(std::lround(seen.y))};
     }
     void click(const Vec3& place) { QTest::mouseClick(&viewport, Qt::LeftButton, {}, at(place)); }
@@ -42,14 +43,15 @@ class Shot {
         QTest::mousePress(&viewport, button, modifiers, from);
         for (const double share : {0.5, 1.0}) {
             const QPointF place = QPointF(from) + QPointF(by) * share;
-            QMouseEvent move(QEvent::MouseMove, place, viewport.mapToGlobal(place), Qt::NoButton, button, modifiers);
+            QMouseEvent move(QEvent::MouseMove, place, viewport.mapToGlobal(place), Qt::NoButton, button,
+                             modifiers);
             QApplication::sendEvent(&viewport, &move);
         }
         QTest::mouseRelease(&viewport, button, modifiers, from + by);
     }
     void wheel(const QPoint& place, int steps) {
-        QWheelEvent event(place, viewport.mapToGlobal(place), {}, QPoint(0, 120 * steps), Qt::NoButton, Qt::NoModifier,
-                          Qt::NoScrollPhase, false);
+        QWheelEvent event(place, viewport.mapToGlobal(place), {}, QPoint(0, 120 * steps), Qt::NoButton,
+                          Qt::NoModifier, Qt::NoScrollPhase, false);
         QApplication::sendEvent(&viewport, &event);
     }
     Viewport viewport;
@@ -106,7 +108,8 @@ TEST_CASE("a locked view stays, whatever the mouse and the keys do, and still ta
     shot.drag({300, 250}, {80, 50});
     shot.drag({300, 250}, {80, 50}, Qt::MiddleButton);
     shot.wheel({200, 200}, 3);
-    for (const int key : {Qt::Key_1, Qt::Key_5, Qt::Key_F, Qt::Key_Plus, Qt::Key_Minus, Qt::Key_Left, Qt::Key_Up})
+    for (const int key :
+         {Qt::Key_1, Qt::Key_5, Qt::Key_F, Qt::Key_Plus, Qt::Key_Minus, Qt::Key_Left, Qt::Key_Up})
         QTest::keyClick(&shot.viewport, static_cast<Qt::Key>(key));
     QTest::keyClick(&shot.viewport, Qt::Key_Left, Qt::AltModifier);
     QTest::mouseClick(&shot.viewport, Qt::LeftButton, {}, shot.viewport.cube().place().center().toPoint());
@@ -215,7 +218,8 @@ TEST_CASE("in attach mode a click tells the face of the block") {
     CHECK_FALSE(shot.viewport.attach_mode());
 }
 
-TEST_CASE("yarns are drawn where they are, what is cut away is gone, and what is cut is filled with a dark rim") {
+TEST_CASE(
+    "yarns are drawn where they are, what is cut away is gone, and what is cut is filled with a dark rim") {
     Shot shot(model_of(crossed_yarns()));
     Viewport& viewport = shot.viewport;
     const auto reddish = [](const QColor& colour) { return colour.red() > colour.blue() + 40; };
@@ -259,7 +263,9 @@ TEST_CASE("OpenGL draws what the processor draws") {
         REQUIRE(scene);
         constexpr int wide = 500, high = 400;
         // With perspective as our own camera does it: the eye as far away as 1.7 heights of the picture.
-        camera.fit(perspective ? Rectangle{-0.5 * wide / (1.7 * high), -0.5 / 1.7, wide / (1.7 * high), 1 / 1.7} : box_of(*scene, camera),
+        camera.fit(perspective
+                       ? Rectangle{-0.5 * wide / (1.7 * high), -0.5 / 1.7, wide / (1.7 * high), 1 / 1.7}
+                       : box_of(*scene, camera),
                    perspective ? Rectangle{0, 0, wide, high} : Rectangle{20, 20, wide - 40, high - 40});
         const auto expected = render(*scene, camera, wide, high);
 
@@ -294,7 +300,8 @@ TEST_CASE("OpenGL draws what the processor draws") {
                     colour_differs += std::abs(here.hsvHue() - other.hsvHue()) > 40 ? 1U : 0U;
             }
         }
-        INFO(yarn << " pixels of yarn, " << differ << " differ in outline, " << colour_differs << " in colour");
+        INFO(yarn << " pixels of yarn, " << differ << " differ in outline, " << colour_differs
+                  << " in colour");
         REQUIRE(yarn > 20'000);
         CHECK(double(differ) < 0.03 * double(yarn));
         CHECK(double(colour_differs) < 0.02 * double(yarn));
@@ -337,13 +344,15 @@ TEST_CASE("the panel makes models aside, keeps its state as JSON and saves pictu
     REQUIRE(QTest::qWaitForWindowExposed(&panel));
     QSignalSpy shown(&panel, &ViewerPanel::model_shown);
     CHECK_FALSE(panel.save_picture("/nowhere/picture.png"));
-    panel.set_planned(std::make_shared<const Design>(sample_design()), std::make_shared<const ClothCurves>(sample_curves()));
+    panel.set_planned(std::make_shared<const Design>(sample_design()),
+                      std::make_shared<const ClothCurves>(sample_curves()));
     REQUIRE(QTest::qWaitFor([&] { return panel.viewport()->model() != nullptr; }));
     panel.set_relaxed(sample_yarns());
     panel.set_mode(ViewerPanel::Mode::relaxed);
     panel.set_colour(ColourBy::contact);
     REQUIRE(QTest::qWaitFor([&] {
-        return panel.viewport()->model() != nullptr && panel.viewport()->model()->colour() == ColourBy::contact;
+        return panel.viewport()->model() != nullptr &&
+               panel.viewport()->model()->colour() == ColourBy::contact;
     }));
     REQUIRE(panel.set_state(parse_json(R"({"repeat":[2,3],"locked":true})").value()));
     CHECK(panel.viewport()->shown().repeat == std::array<std::size_t, 2>{2, 3});
@@ -388,7 +397,8 @@ TEST_CASE("without OpenGL the panel says so in words and goes on") {
     panel.show();
     REQUIRE(QTest::qWaitForWindowExposed(&panel));
     bool says = false;
-    for (const QLabel* label : panel.findChildren<QLabel*>()) says = says || (label->isVisible() && label->text().contains("2.1"));
+    for (const QLabel* label : panel.findChildren<QLabel*>())
+        says = says || (label->isVisible() && label->text().contains("2.1"));
     CHECK(says);
     CHECK_FALSE(panel.viewport()->isVisible());
     panel.set_relaxed(sample_yarns());
@@ -432,10 +442,15 @@ TEST_CASE("the shaders see what the processor's own finder sees, cut or whole, i
                 for (int x = 0; x < 400; ++x) {
                     const QColor a = images[0].pixelColor(x, y), b = images[1].pixelColor(x, y);
                     yarn += a.lightness() < 215 ? 1 : 0;
-                    differ += std::abs(a.red() - b.red()) + std::abs(a.green() - b.green()) + std::abs(a.blue() - b.blue()) > 24 ? 1 : 0;
+                    differ += std::abs(a.red() - b.red()) + std::abs(a.green() - b.green()) +
+                                          std::abs(a.blue() - b.blue()) >
+                                      24
+                                  ? 1
+                                  : 0;
                 }
             }
-            INFO((perspective ? "perspective" : "parallel") << (cut ? ", cut: " : ": ") << differ << " of " << yarn << " pixels differ");
+            INFO((perspective ? "perspective" : "parallel")
+                 << (cut ? ", cut: " : ": ") << differ << " of " << yarn << " pixels differ");
             CHECK(yarn > 10'000);
             CHECK(differ < 0.005 * yarn);
         }

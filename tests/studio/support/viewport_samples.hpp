@@ -1,10 +1,10 @@
 #pragma once
 
-#include <studio/viewport/tube_model.hpp>
 #include <weave/curve/cloth_curves.hpp>
 #include <weave/design/evaluate.hpp>
 #include <weave/samples/samples.hpp>
 #include <weave/sim/simulate.hpp>
+#include <studio/viewport/tube_model.hpp>
 
 #include <catch2/catch.hpp>
 
@@ -32,7 +32,8 @@ inline std::shared_ptr<const Yarns> sample_yarns() {
     return yarns;
 }
 
-inline SimulatedYarn straight_yarn(System system, std::size_t number, const Vec3& from, const Vec3& to, Colour colour) {
+inline SimulatedYarn straight_yarn(System system, std::size_t number, const Vec3& from, const Vec3& to,
+                                   Colour colour) {
     SimulatedYarn yarn;
     yarn.system = system;
     yarn.number = number;
@@ -45,8 +46,8 @@ inline SimulatedYarn straight_yarn(System system, std::size_t number, const Vec3
     return yarn;
 }
 
-/// A red end along x over a blue pick along y, both 10 mm long, crossing in the middle; and a second end, on the right, that
-/// crosses the pick as well.
+/// A red end along x over a blue pick along y, both 10 mm long, crossing in the middle; and a second end, on
+/// the right, that crosses the pick as well.
 inline std::shared_ptr<const Yarns> crossed_yarns() {
     auto yarns = std::make_shared<Yarns>();
     yarns->size_mm = {10, 10};
@@ -66,7 +67,8 @@ inline std::shared_ptr<const Yarns> crossed_yarns() {
     return yarns;
 }
 
-inline std::shared_ptr<TubeModel> model_of(std::shared_ptr<const Yarns> yarns, ColourBy colour = ColourBy::yarn) {
+inline std::shared_ptr<TubeModel> model_of(std::shared_ptr<const Yarns> yarns,
+                                           ColourBy colour = ColourBy::yarn) {
     auto model = TubeModel::relaxed(std::move(yarns), colour);
     if (!model) FAIL(model.error().text());
     return std::make_shared<TubeModel>(std::move(model).value());
