@@ -36,7 +36,7 @@ QSpinBox* times_box(const QString& tip, const QString& prefix) {
 
 }  // namespace
 
-CardEditor::CardEditor(QWidget* parent) : QWidget(parent), m_canvas(new GridCanvas), m_state(new QLabel) {
+CardEditor::CardEditor(QWidget* parent) : QWidget(parent), m_canvas(new GridCanvas) {
     auto* layout = new QVBoxLayout(this);
     layout->setContentsMargins(0, 0, 0, 0);
     layout->setSpacing(2);
@@ -88,9 +88,6 @@ void CardEditor::make_tools(QHBoxLayout& tools) {
     tools.addWidget(m_times_columns);
     tools.addWidget(m_times_rows);
     tools.addStretch();
-    m_state->setSizePolicy(QSizePolicy::Ignored, QSizePolicy::Preferred);
-    m_state->setAlignment(Qt::AlignRight | Qt::AlignVCenter);
-    tools.addWidget(m_state, 1);
     button("−", tr("Smaller (−)"), [this] { m_canvas->zoom_by(1 / 1.4); });
     button("+", tr("Larger (+)"), [this] { m_canvas->zoom_by(1.4); });
     button(tr("Fit"), tr("Show all of it (F)"), [this] { m_canvas->fit(); });
@@ -153,7 +150,7 @@ void CardEditor::show_block() {
         m_layers = layer_count(*m_block);
         list_modes();
     }
-    m_state->setText(tr("%1 picks × %2 ends").arg(m_block->picks()).arg(m_block->ends()));
+    m_modes->setToolTip(tr("What is shown of the block: %1 picks × %2 ends").arg(m_block->picks()).arg(m_block->ends()));
     const std::uint64_t wanted = ++m_wanted;
     if (m_mode == CardMode::card) return show_picture(CellPicture(shown.card));
     in_background(

@@ -15,7 +15,6 @@
 
 class QComboBox;
 class QHBoxLayout;
-class QLabel;
 class QSpinBox;
 
 namespace weave::studio {
@@ -56,7 +55,6 @@ class CardEditor : public QWidget {
     QComboBox* m_modes;
     QSpinBox* m_times_rows;
     QSpinBox* m_times_columns;
-    QLabel* m_state;
     BlockPtr m_block;  ///< that the picture is of
     CardMode m_mode = CardMode::card;
     std::size_t m_layer = 0, m_layers = 0;

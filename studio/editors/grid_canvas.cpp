@@ -42,7 +42,10 @@ GridCanvas::GridCanvas(QWidget* parent) : QWidget(parent) {
 void GridCanvas::show_picture(CellPicture picture, int times_rows, int times_columns) {
     m_picture = std::move(picture);
     const std::size_t rows = m_picture.rows() * static_cast<std::size_t>(times_rows), columns = m_picture.columns() * static_cast<std::size_t>(times_columns);
-    if (rows != m_mapping.rows() || columns != m_mapping.columns()) m_mapping.set_grid(rows, columns);
+    if (rows != m_mapping.rows() || columns != m_mapping.columns()) {
+        m_mapping.set_grid(rows, columns);
+        m_mapping.fit();
+    }
     if (m_cursor && (m_cursor->row >= rows || m_cursor->column >= columns)) m_cursor.reset();
     m_refused.reset();
     update();

@@ -56,6 +56,7 @@ void GridMapping::move(const QPointF& by) {
 }
 
 void GridMapping::show(const GridCell& cell) {
+    if (m_is_fitted) return;  // all is seen
     const QRectF place = box(cell).adjusted(-m_cell, -m_cell, m_cell, m_cell);
     QPointF by;
     if (place.left() < m_room.left()) by.setX(m_room.left() - place.left());

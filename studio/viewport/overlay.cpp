@@ -179,8 +179,8 @@ void Overlay::axes(const Camera& camera) {
         m_painter.strokePath(letters, QPen(halo, 0.22 * em(), Qt::SolidLine, Qt::RoundCap, Qt::RoundJoin));
         m_painter.fillPath(letters, colour);
     };
-    arrow(Vec3::UnitX(), tr("ends"), ends);
-    arrow(Vec3::UnitY(), tr("picks"), picks);
+    arrow(Vec3::UnitX(), tr("picks"), picks);  // as the rulers of the card: the way in which they are counted
+    arrow(Vec3::UnitY(), tr("ends"), ends);
     arrow(Vec3::UnitZ(), tr("face"), m_faint);
 }
 

@@ -19,6 +19,7 @@
 #include <QStackedWidget>
 #include <QStatusBar>
 #include <QTabWidget>
+#include <QToolBar>
 #include <QTimer>
 #include <QVBoxLayout>
 
@@ -114,7 +115,9 @@ void MainWindow::make_workspace() {
     connect(m_slice_desk, &SliceDesk::flip_wanted, this, &MainWindow::flip_at_once);
     connect(m_viewer_desk, &ViewerDesk::told, this, &MainWindow::tell);
     connect(m_viewer_desk, &ViewerDesk::attach_wanted, this, [this](Face face) {
-        if (m_blocks != nullptr) m_blocks->ask_what_to_attach(m_document->shown_block(), face, QCursor::pos());
+        if (m_blocks == nullptr) return;
+        m_viewer->viewport()->set_attach_mode(false);
+        m_blocks->ask_what_to_attach(m_document->shown_block(), face, QCursor::pos());
     });
     connect(m_viewer_desk, &ViewerDesk::flip_wanted, this, &MainWindow::flip);
     connect(m_stencil, &StencilEditor::status, this, &MainWindow::tell);
@@ -225,6 +228,7 @@ void MainWindow::show_start_page() {
     m_start->list_recent(DesignFiles::recent());
     m_pages->setCurrentWidget(m_start);
     for (QDockWidget* dock : findChildren<QDockWidget*>()) dock->hide();
+    m_tool_bar->hide();
     show_title();
     show_undo();
 }
@@ -248,6 +252,7 @@ void MainWindow::take(std::unique_ptr<Document> document) {
     m_pages->setCurrentWidget(m_work);
     for (QDockWidget* dock : findChildren<QDockWidget*>()) dock->setVisible(dock != m_tutorial_dock || m_is_learning);
     m_simulation_dock->raise();
+    m_tool_bar->show();
     show_title();
     show_undo();
 }

@@ -12,6 +12,7 @@ class QMenu;
 class QSplitter;
 class QStackedWidget;
 class QTabWidget;
+class QToolBar;
 
 namespace weave::studio {
 
@@ -66,6 +67,7 @@ class MainWindow : public QMainWindow {
     void make_view_menu();
     void make_simulation_menu();
     void make_help_menu();
+    void make_tool_bar();
     void take(std::unique_ptr<Document> document);
     void close_document();
     void show_in_parts(Document* document);
@@ -112,6 +114,8 @@ class MainWindow : public QMainWindow {
     QAction* m_undo = nullptr;
     QAction* m_redo = nullptr;
     QList<QAction*> m_design_actions;  ///< that need a design
+    QList<QAction*> m_tools;           ///< of these the ones in the tool bar
+    QToolBar* m_tool_bar = nullptr;
 };
 
 }  // namespace weave::studio

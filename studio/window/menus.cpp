@@ -7,6 +7,7 @@
 #include <QDockWidget>
 #include <QMenuBar>
 #include <QMessageBox>
+#include <QToolBar>
 
 #include <functional>
 #include <studio/editors/card_editor.hpp>
@@ -30,6 +31,7 @@ void MainWindow::make_menus() {
     make_view_menu();
     make_simulation_menu();
     make_help_menu();
+    make_tool_bar();
 }
 
 void MainWindow::make_file_menu() {
@@ -68,9 +70,21 @@ void MainWindow::make_edit_menu() {
     add(menu, tr("Duplicate block"), QKeySequence(tr("Ctrl+D")), [this] { m_blocks->duplicate(chosen_block()); });
     menu.addSeparator();
     QMenu& block = *menuBar()->addMenu(tr("&Block"));
-    add(block, tr("Add a traditional &weave …"), {}, [this] { m_blocks->add_weave(); });
-    add(block, tr("Add a &drawing (slice)"), {}, [this] { m_blocks->add_drawing(); });
-    add(block, tr("&Stencil from the block shown"), {}, [this] { m_blocks->add_stencil(); });
+    m_tools.push_back(add(block, tr("Add a traditional &weave …"), {}, [this] { m_blocks->add_weave(); }));
+    m_tools.push_back(add(block, tr("Add a &drawing (slice)"), {}, [this] { m_blocks->add_drawing(); }));
+    m_tools.push_back(add(block, tr("&Stencil from the block shown"), {}, [this] { m_blocks->add_stencil(); }));
+    m_tools.push_back(add(block, tr("&Repeat the block shown …"), {}, [this] { m_blocks->repeat(m_document->shown_block()); }));
+    QAction* attach = add(block, tr("&Attach to the block shown"), {}, [] {});
+    attach->setCheckable(true);
+    attach->setToolTip(tr("Choose in the 3D view the side of the block to which another is attached"));
+    m_tools.push_back(attach);
+    if (Viewport* viewport = m_viewer->viewport()) {
+        connect(attach, &QAction::toggled, this, [this, viewport](bool on) {
+            if (on) m_viewer->set_mode(ViewerPanel::Mode::planned);
+            viewport->set_attach_mode(on);
+        });
+        connect(viewport, &Viewport::attach_mode_changed, attach, &QAction::setChecked);
+    }
     block.addSeparator();
     QMenu* chosen = block.addMenu(tr("The &chosen block"));
     m_design_actions.push_back(chosen->menuAction());
@@ -121,6 +135,26 @@ void MainWindow::make_simulation_menu() {
     for (QAction* action : {m_simulation->run_action(), m_simulation->step_action(), m_simulation->stop_action(), m_simulation->again_action()}) menu.addAction(action);
     menu.addSeparator();
     for (QAction* action : {m_simulation->save_action(), m_simulation->open_action()}) menu.addAction(action);
+}
+
+/// What a designer reaches for most, in words: nobody has to guess pictures.
+void MainWindow::make_tool_bar() {
+    QToolBar* bar = addToolBar(tr("Tools"));
+    bar->setObjectName("tools");
+    bar->setMovable(false);
+    bar->setToolButtonStyle(Qt::ToolButtonTextBesideIcon);
+    const QStringList names{tr("+ Weave"), tr("+ Drawing"), tr("Stencil"), tr("Repeat"), tr("Attach")};
+    for (int k = 0; k < names.size(); ++k) {
+        m_tools[k]->setIconText(names[k]);
+        bar->addAction(m_tools[k]);
+    }
+    bar->addSeparator();
+    m_undo->setIconText(tr("Undo"));
+    m_redo->setIconText(tr("Redo"));
+    bar->addActions({m_undo, m_redo});
+    bar->addSeparator();
+    bar->addAction(m_simulation->run_action());
+    m_tool_bar = bar;
 }
 
 void MainWindow::make_help_menu() {

@@ -69,7 +69,7 @@ void ViewerDesk::show_document(Document* document) {
 }
 
 std::optional<Region> ViewerDesk::region_to_show(const Block& block) const {
-    if (block.rows() <= most_rows && block.columns() <= most_columns) return std::nullopt;
+    if (block.rows() * block.columns() <= most_cells) return std::nullopt;
     const CardPlace place = m_document->focus().place().value_or(CardPlace{});
     const auto [first_row, last_row] = lines_round(block.row_of_pick(std::min(place.pick, block.picks() - 1)), block.rows(), most_rows);
     const auto [first_column, last_column] = lines_round(block.column_of_end(std::min(place.end, block.ends() - 1)), block.columns(), most_columns);
@@ -93,7 +93,7 @@ void ViewerDesk::plan() {
     const std::optional<Region> region = region_to_show(*block);
     QString caption;
     if (region)
-        caption = tr("Picks %1–%2 and ends %3–%4 of a larger block: click on the card to go elsewhere")
+        caption = tr("Picks %1–%2, ends %3–%4 of a larger block")
                       .arg(block->first_pick(region->first_row) + 1)
                       .arg(block->first_pick(region->last_row + 1))
                       .arg(block->first_end(region->first_column) + 1)
@@ -119,8 +119,10 @@ void ViewerDesk::plan() {
 }
 
 void ViewerDesk::show_planned(std::shared_ptr<const Design> design, std::shared_ptr<const ClothCurves> curves) {
-    const bool is_other = m_shown_block != m_document->shown_block();
+    // What is another block, or has another size, is shown whole; an edit leaves the view where it is.
+    const bool is_other = m_shown_block != m_document->shown_block() || m_shown_size != curves->size_mm;
     m_shown_block = m_document->shown_block();
+    m_shown_size = curves->size_mm;
     m_panel.set_planned(std::move(design), std::move(curves));
     show_caption();
     if (!is_other || m_panel.mode() != ViewerPanel::Mode::planned || m_panel.viewport() == nullptr) return;

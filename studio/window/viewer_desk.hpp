@@ -4,6 +4,7 @@
 
 #include <QObject>
 
+#include <array>
 #include <cstdint>
 #include <memory>
 #include <optional>
@@ -16,9 +17,9 @@ namespace weave::studio {
 class ViewerDesk : public QObject {
     Q_OBJECT
   public:
-    /// Of a larger block only so many rows and columns are shown, round the place where the person is: more would not follow an edit
-    /// within a blink.
-    static constexpr std::size_t most_rows = 24, most_columns = 24;
+    /// A block of more stacks is shown in part, so many rows and columns round the place where the person is: more would not follow an
+    /// edit within a blink.
+    static constexpr std::size_t most_cells = 2500, most_rows = 24, most_columns = 24;
 
     ViewerDesk(ViewerPanel& panel, QObject* parent);
 
@@ -44,6 +45,7 @@ class ViewerDesk : public QObject {
     std::optional<Region> m_region;  ///< that is planned
     bool m_is_planning = false, m_plan_again = false;
     std::string m_shown_block;
+    std::array<double, 2> m_shown_size{};  ///< mm, of what is planned
     std::uint64_t m_wanted = 0;
 };
 

@@ -226,8 +226,8 @@ void attach_and_wrap(Designer& she) {
     REQUIRE(until([&] { return viewer.mode() == ViewerPanel::Mode::planned && viewer.viewport()->model() != nullptr; }));
     QTest::keyClick(viewer.viewport(), Qt::Key_2);
     QTest::keyClick(viewer.viewport(), Qt::Key_F);
-    for (QAction* action : viewer.findChildren<QAction*>()) {
-        if (action->text().remove('&').startsWith("Attach")) click(button_of(viewer, action));
+    for (QToolButton* button : she.window.findChild<QToolBar*>("tools")->findChildren<QToolButton*>()) {
+        if (button->text() == "Attach") click(button);
     }
     REQUIRE(viewer.viewport()->attach_mode());
     with_menu([&] { QTest::mouseClick(viewer.viewport(), Qt::LeftButton, {}, viewer.viewport()->rect().center()); }, "twill-repeated");
