@@ -100,3 +100,16 @@ TEST_CASE("slice: keys go from crossing to crossing, and Enter asks for the flip
     QTest::keyClick(&open.canvas(), Qt::Key_Return);
     REQUIRE(open.flips == std::vector<std::pair<std::size_t, std::size_t>>{{1, 0}});
 }
+
+TEST_CASE("slice: a flip that cannot be made is not asked for; it says which yarns stand in the way") {
+    OpenReader open("angle-interlock-b", System::weft, 0);
+    open.canvas().setFocus();
+    QTest::keyClick(&open.canvas(), Qt::Key_Right);  // pick 1 and end 1
+    QTest::keyClick(&open.canvas(), Qt::Key_Up);     // pick 1 and end 2
+    QTest::keyClick(&open.canvas(), Qt::Key_Return);
+    REQUIRE(open.flips.empty());
+    const auto* bubble = open.canvas().findChild<QLabel*>("bubble");
+    REQUIRE(bubble->isVisible());
+    REQUIRE(bubble->text().contains("pick 2"));
+    REQUIRE(open.status == bubble->text());
+}
