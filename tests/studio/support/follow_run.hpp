@@ -16,7 +16,7 @@
 namespace weave::studio::test {
 
 /// How long a test waits for what must come.
-constexpr int patience_ms = is_instrumented ? 600'000 : 60'000;
+constexpr int patience_ms = is_instrumented ? 1'200'000 : 180'000;
 
 inline sim::RunRequest request_at(sim::Fidelity fidelity) {
     sim::RunRequest request;
