@@ -1,0 +1,110 @@
+// How long a person waits, and what the studio takes. Run by hand: test_studio "[.edit-bench]" (docs/benchmarks.md).
+
+#include <weave/block/flip.hpp>
+
+#include <studio/editors/card_editor.hpp>
+#include <studio/viewport/viewer_panel.hpp>
+#include <studio/window/main_window.hpp>
+
+#include <QtTest>
+#include <QtWidgets>
+
+#include <algorithm>
+#include <catch2/catch.hpp>
+#include <chrono>
+#include <cstdio>
+#include <fstream>
+#include <string>
+#include <vector>
+
+using namespace weave;
+using namespace weave::studio;
+
+namespace {
+
+using Clock = std::chrono::steady_clock;
+
+double ms_since(Clock::time_point begin) {
+    return std::chrono::duration<double, std::milli>(Clock::now() - begin).count();
+}
+
+void print(const char* what, std::vector<double> times) {
+    std::sort(times.begin(), times.end());
+    std::printf("%-44s median %6.1f ms, worst %6.1f ms of %zu\n", what, times[times.size() / 2], times.back(), times.size());
+}
+
+double resident_mb() {
+    std::ifstream status("/proc/self/status");
+    for (std::string line; std::getline(status, line);) {
+        if (line.rfind("VmRSS:", 0) == 0) return std::stod(line.substr(6)) / 1024;
+    }
+    return 0;
+}
+
+/// The longest that the window's thread was busy at a stretch, painting included, as an idle timer sees it.
+class BusyWatch {
+  public:
+    BusyWatch() {
+        m_timer.setInterval(0);
+        QObject::connect(&m_timer, &QTimer::timeout, [this] {
+            m_longest = std::max(m_longest, ms_since(m_last));
+            m_last = Clock::now();
+        });
+        m_timer.start();
+    }
+    double take() {
+        m_last = Clock::now();
+        return std::exchange(m_longest, 0);
+    }
+
+  private:
+    QTimer m_timer;
+    Clock::time_point m_last = Clock::now();
+    double m_longest = 0;
+};
+
+}  // namespace
+
+TEST_CASE("from a click on a pixel of the full-size shoe to card, section and space", "[.edit-bench]") {
+    const auto begun = Clock::now();
+    MainWindow window;
+    window.show();
+    REQUIRE(QTest::qWaitForWindowExposed(&window));
+    std::printf("%-44s %6.1f ms (this process: without loading libraries)\n", "a window with the start page", ms_since(begun));
+    std::printf("%-44s %6.1f MB\n", "memory with the start page", resident_mb());
+    window.show_sample("shoe-adult");
+    Document& document = *window.document();
+    REQUIRE(QTest::qWaitFor([&] { return document.shown_is_current(); }, 30000));
+    auto* viewer = window.findChild<ViewerPanel*>();
+    document.focus().go_to({3000, 1200});
+    QSignalSpy shown(viewer, &ViewerPanel::model_shown);
+    REQUIRE(QTest::qWaitFor([&] { return !shown.isEmpty(); }, 30000));
+    GridCanvas& canvas = window.findChild<CardEditor*>()->canvas();
+    canvas.zoom_by(60);
+    QTest::qWait(1500);
+    std::vector<double> card, space, busy;
+    BusyWatch watch;
+    for (std::size_t k = 0; card.size() < 30 && k < 400; ++k) {
+        const CardPlace place{2990 + k % 20, 1190 + k / 20};
+        if (!flip(*document.shown().block, place.pick, place.end)) continue;
+        canvas.set_cursor_cell(GridCell{place.pick, place.end});
+        QTest::qWait(60);
+        shown.clear();
+        watch.take();
+        const auto clicked = Clock::now();
+        QTest::mouseClick(&canvas, Qt::LeftButton, {}, canvas.mapping().box({place.pick, place.end}).center().toPoint());
+        REQUIRE(QTest::qWaitFor([&] { return document.shown_is_current(); }, 30000));
+        canvas.repaint();
+        card.push_back(ms_since(clicked));
+        REQUIRE(QTest::qWaitFor([&] { return !shown.isEmpty(); }, 30000));
+        viewer->viewport()->repaint();
+        space.push_back(ms_since(clicked));
+        QTest::qWait(60);
+        busy.push_back(watch.take());
+    }
+    REQUIRE(card.size() == 30);
+    print("click to block, card painted", card);
+    print("click to planned yarns in space painted", space);
+    print("window's thread busy at a stretch, painting in", busy);
+    std::printf("%-44s %6.1f MB\n", "memory with the shoe", resident_mb());
+}
