@@ -53,6 +53,7 @@ struct OpenSliceEditor {
     }
     SliceEditCanvas& canvas() { return editor.canvas(); }
     [[nodiscard]] const Slice& slice() { return editor.canvas().slice(); }
+    [[nodiscard]] QString last_name() const { return names.empty() ? QString() : names.back(); }
     [[nodiscard]] QString bubble() {
         const auto* label = editor.canvas().findChild<QLabel*>("bubble");
         return label != nullptr && label->isVisible() ? label->text() : QString();

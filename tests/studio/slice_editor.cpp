@@ -35,7 +35,7 @@ TEST_CASE("slice: a 5-end satin is drawn by mouse, from nothing") {
     REQUIRE(open.edits.size() == 6);
     REQUIRE(card_of(open.slice()) == Rows{"#....", "...#.", ".#...", "....#", "..#.."});
     REQUIRE(card_of(open.edits.back()) == card_of(open.slice()));
-    REQUIRE(open.names.back() == "Add a warp");
+    REQUIRE(open.last_name() == "Add a warp");
 }
 
 TEST_CASE("slice: a path is routed through the gaps that the pointer passes, and previewed meanwhile") {
@@ -87,7 +87,7 @@ TEST_CASE("slice: wefts are chosen, disabled, renumbered, duplicated, moved and 
     REQUIRE(open.canvas().marks().selected == std::set{SliceYarnId::dot(1, 1)});
     REQUIRE(open.status == "weft 2 of position 2: pick 4 on the loom");
     open.key(Qt::Key_E);
-    REQUIRE(open.names.back() == "Disable weft 2 of position 2");
+    REQUIRE(open.last_name() == "Disable weft 2 of position 2");
     REQUIRE(card_of(open.slice()) == Rows{"#", ".", "."});
     REQUIRE(open.status == "weft 2 of position 2: disabled, not woven");
     open.key(Qt::Key_E);
@@ -172,7 +172,7 @@ TEST_CASE("slice: in a weft slice the wefts run along, and one is disabled as a 
     open.click(1, 2);
     REQUIRE(open.status.startsWith("weft 2: pick 2 on the loom"));
     open.key(Qt::Key_E);
-    REQUIRE(open.names.back() == "Disable weft 2");
+    REQUIRE(open.last_name() == "Disable weft 2");
     REQUIRE(card_of(open.slice()) == Rows{"#."});
     REQUIRE(open.canvas().action("add_path")->text() == "Add weft");
 }

@@ -125,7 +125,7 @@ TEST_CASE("stencil: lines, rectangles, fills and picking") {
     open.drag({{5, 1}, {4, 0}});
     REQUIRE(open.rows() == Rows{"000010", "000100", "001000", "010011", "100011"});
     open.tool("flood");
-    open.drag({{0, 4}});
+    open.drag({{2, 4}});
     REQUIRE(open.rows() == Rows{"111110", "111100", "111000", "110011", "100011"});
     REQUIRE(open.names.back() == "Fill with twill");
     open.tool("pick");
