@@ -57,6 +57,8 @@ StencilEditor::StencilEditor(QWidget* parent)
     split->addWidget(m_palette);
     split->setStretchFactor(0, 1);
     split->setChildrenCollapsible(false);
+    m_palette->setMinimumWidth(fontMetrics().averageCharWidth() * 20);
+    split->setSizes({600, 200});
     m_trouble->setObjectName("stencil_trouble");
     m_trouble->setWordWrap(true);
     m_trouble->setMargin(4);
@@ -84,16 +86,28 @@ StencilEditor::StencilEditor(QWidget* parent)
 }
 
 QWidget* StencilEditor::make_tool_row() {
-    auto* row = new QWidget(this);
-    auto* layout = new QHBoxLayout(row);
-    layout->setContentsMargins(4, 2, 4, 2);
-    layout->setSpacing(2);
-    make_tool(row, StencilTool::pencil, "pencil", tr("Pencil"), Qt::Key_P);
-    make_tool(row, StencilTool::line, "line", tr("Line"), Qt::Key_L);
-    make_tool(row, StencilTool::rectangle, "rectangle", tr("Rectangle"), Qt::Key_R);
-    make_tool(row, StencilTool::flood, "flood", tr("Fill"), Qt::Key_G);
-    make_tool(row, StencilTool::pick, "pick", tr("Pick block"), Qt::Key_I);
-    layout->addSpacing(fontMetrics().averageCharWidth() * 2);
+    // Two rows, so that all fits where the editor is narrow.
+    auto* rows = new QWidget(this);
+    auto* column = new QVBoxLayout(rows);
+    column->setContentsMargins(4, 2, 4, 2);
+    column->setSpacing(0);
+    const auto add_row = [&] {
+        auto* made = new QWidget(rows);
+        auto* line = new QHBoxLayout(made);
+        line->setContentsMargins(0, 0, 0, 0);
+        line->setSpacing(2);
+        column->addWidget(made);
+        return made;
+    };
+    QWidget* const brushes = add_row();
+    QWidget* const row = add_row();
+    auto* layout = static_cast<QHBoxLayout*>(row->layout());
+    make_tool(brushes, StencilTool::pencil, "pencil", tr("Pencil"), Qt::Key_P);
+    make_tool(brushes, StencilTool::line, "line", tr("Line"), Qt::Key_L);
+    make_tool(brushes, StencilTool::rectangle, "rectangle", tr("Rectangle"), Qt::Key_R);
+    make_tool(brushes, StencilTool::flood, "flood", tr("Fill"), Qt::Key_G);
+    make_tool(brushes, StencilTool::pick, "pick", tr("Pick block"), Qt::Key_I);
+    static_cast<QHBoxLayout*>(brushes->layout())->addStretch(1);
     make_button(row, "size", tr("Size …"), tr("Change the size of the picture, in stacks"),
                 [this] { ask_size(); });
     make_button(row, "load", tr("Load picture …"), tr("Take a PNG, TIFF or BMP as the picture"),
@@ -106,7 +120,7 @@ QWidget* StencilEditor::make_tool_row() {
     connect(findChild<QAction*>("zoom_out"), &QAction::triggered, m_canvas, &StencilCanvas::zoom_out);
     connect(findChild<QAction*>("zoom_in"), &QAction::triggered, m_canvas, &StencilCanvas::zoom_in);
     connect(findChild<QAction*>("fit"), &QAction::triggered, m_canvas, &StencilCanvas::fit);
-    return row;
+    return rows;
 }
 
 QAction* StencilEditor::make_action(QWidget* row, const QString& name, const QString& text,

@@ -76,7 +76,7 @@ void DesignTree::show_document(Document* document) {
     }
     m_document = document;
     if (document != nullptr) {
-        connect(document, &Document::edited, this, &DesignTree::rebuild);
+        connect(document, &Document::edited, this, &DesignTree::follow_edit);
         connect(document, &Document::block_made, this, &DesignTree::refresh);
         connect(&document->focus(), &Focus::block_changed, this, [this] { choose(m_document->shown_block()); });
     }
@@ -95,12 +95,32 @@ void DesignTree::choose(const std::string& block) {
     setCurrentItem(found->second);
 }
 
+/// Most edits leave the tree as it is: then only the lines of the blocks that changed are written anew.
+void DesignTree::follow_edit() {
+    const Design& design = m_document->design();
+    bool is_same = design.root == m_root && design.blocks.size() == m_nodes.size();
+    std::vector<std::string> changed;
+    for (auto block = design.blocks.begin(); is_same && block != design.blocks.end(); ++block) {
+        const auto before = m_nodes.find(block->first);
+        is_same = before != m_nodes.end();
+        if (!is_same || before->second == block->second) continue;
+        is_same = children_of(*before->second) == children_of(*block->second);
+        changed.push_back(block->first);
+    }
+    if (!is_same) return rebuild();
+    for (const std::string& block : changed) refresh(words(block));
+    m_nodes = design.blocks;
+}
+
 void DesignTree::rebuild() {
     const QScopedValueRollback quiet(m_is_building, true);
     clear();
     m_items.clear();
+    m_nodes.clear();
     if (m_document == nullptr) return;
     const Design& design = m_document->design();
+    m_root = design.root;
+    m_nodes = design.blocks;
     add(design.root, nullptr, 0);
     std::set<std::string> in_cloth;
     for (const auto& [name, item] : m_items) in_cloth.insert(name);

@@ -1,6 +1,6 @@
 #pragma once
 
-#include <weave/block/operations.hpp>
+#include <weave/design/design.hpp>
 
 #include <QTreeWidget>
 
@@ -34,6 +34,7 @@ class DesignTree : public QTreeWidget {
     void contextMenuEvent(QContextMenuEvent* event) override;
 
   private:
+    void follow_edit();
     void rebuild();
     void add(const std::string& block, QTreeWidgetItem* above, int depth);
     void dress(QTreeWidgetItem& item, const std::string& block);
@@ -41,6 +42,8 @@ class DesignTree : public QTreeWidget {
 
     Document* m_document = nullptr;
     std::multimap<std::string, QTreeWidgetItem*> m_items;
+    std::string m_root;
+    std::map<std::string, NodePtr> m_nodes;  ///< as they are shown
     bool m_is_building = false;
 };
 

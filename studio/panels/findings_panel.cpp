@@ -89,7 +89,7 @@ FindingsPanel::FindingsPanel(QWidget* parent)
     all->addLayout(top);
     all->addWidget(m_list);
     m_soon->setSingleShot(true);
-    m_soon->setInterval(150);
+    m_soon->setInterval(300);
     connect(m_soon, &QTimer::timeout, this, &FindingsPanel::check);
     connect(m_list, &QTreeWidget::itemClicked, this, [this](const QTreeWidgetItem* item) {
         const QVariant pick = item->data(0, pick_role), end = item->data(0, end_role);
@@ -158,7 +158,7 @@ void FindingsPanel::set_relaxed(std::optional<RelaxedCloth> relaxed) {
 }
 
 void FindingsPanel::check_soon() {
-    if (!m_soon->isActive()) m_soon->start();
+    m_soon->start();  // anew with each edit, so that a fast hand is not slowed by checks of what is past
 }
 
 void FindingsPanel::check() {

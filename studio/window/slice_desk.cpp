@@ -1,11 +1,14 @@
 #include <studio/window/slice_desk.hpp>
 
+#include <QEvent>
+
 #include <algorithm>
 #include <studio/commands/put_block.hpp>
 
 namespace weave::studio {
 
 SliceDesk::SliceDesk(SliceEditor& editor, QObject* parent) : QObject(parent), m_editor(editor) {
+    editor.installEventFilter(this);
     connect(&editor, &SliceEditor::edited, this, [this](const Slice& slice, const QString& what) {
         if (m_document == nullptr) return;
         const std::string block = m_document->shown_block();
@@ -36,7 +39,13 @@ void SliceDesk::show_section(System dots, const CardPlace& place) {
     if (m_document != nullptr) m_document->focus().go_to(place);
 }
 
+bool SliceDesk::eventFilter(QObject* watched, QEvent* event) {
+    if (watched == &m_editor && event->type() == QEvent::Show && m_document != nullptr) show_block();
+    return QObject::eventFilter(watched, event);
+}
+
 void SliceDesk::show_block() {
+    if (!m_editor.isVisible()) return;
     const Design& design = m_document->design();
     const auto found = design.blocks.find(m_document->shown_block());
     if (found == design.blocks.end()) return;

@@ -11,7 +11,7 @@
 namespace weave::studio {
 
 /// Brings the block that is shown into the slice editor, to draw where it is a drawn slice and to read where it is not, and what is done
-/// there to the document.
+/// there to the document. While the editor is not seen nothing is brought.
 class SliceDesk : public QObject {
     Q_OBJECT
   public:
@@ -24,6 +24,9 @@ class SliceDesk : public QObject {
   Q_SIGNALS:
     void failed(const QString& reason);
     void flip_wanted(const weave::CardPlace& place);
+
+  protected:
+    bool eventFilter(QObject* watched, QEvent* event) override;
 
   private:
     void show_block();

@@ -21,9 +21,10 @@ void StencilDesk::show_document(Document* document) {
         m_document->focus().disconnect(this);
     }
     m_document = document;
+    m_shown_block.clear();
     if (document == nullptr) return;
     connect(document, &Document::edited, this, &StencilDesk::show_block);
-    connect(document, &Document::block_made, this, &StencilDesk::list_blocks);
+    connect(document, &Document::block_made, this, &StencilDesk::note_made);
     connect(&document->focus(), &Focus::block_changed, this, &StencilDesk::show_block);
     show_block();
 }
@@ -32,11 +33,19 @@ void StencilDesk::show_block() {
     const Design& design = m_document->design();
     const auto found = design.blocks.find(m_document->shown_block());
     const auto* stencil = found == design.blocks.end() ? nullptr : std::get_if<StencilOperation>(&found->second->source);
-    if (stencil != nullptr) {
-        list_blocks();
-        m_editor.show_operation(*stencil);
-    }
     Q_EMIT is_stencil(stencil != nullptr);
+    if (stencil == nullptr) return m_shown_block.clear();
+    // Most edits, such as flips, leave the stencil as it is.
+    if (m_shown_block == found->first && m_shown.map == stencil->map && m_shown.of == stencil->of) return;
+    m_shown_block = found->first;
+    m_shown = *stencil;
+    list_blocks();
+    m_editor.show_operation(*stencil);
+}
+
+/// A block came that may stand in the palette: not the stencil itself, nor what is made from it.
+void StencilDesk::note_made(const QString& block) {
+    if (!m_shown_block.empty() && block.toStdString() != m_shown_block) list_blocks();
 }
 
 void StencilDesk::list_blocks() {

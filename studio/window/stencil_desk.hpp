@@ -23,9 +23,12 @@ class StencilDesk : public QObject {
   private:
     void show_block();
     void list_blocks();
+    void note_made(const QString& block);
 
     StencilEditor& m_editor;
     Document* m_document = nullptr;
+    std::string m_shown_block;
+    StencilOperation m_shown;  ///< its map is compared by where it is
 };
 
 }  // namespace weave::studio
