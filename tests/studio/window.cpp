@@ -1,13 +1,245 @@
+// The main window, by mouse and keys.
+
+#include <weave/core/file.hpp>
+#include <weave/design/document.hpp>
+#include <weave/samples/samples.hpp>
+
+#include <studio/editors/card_editor.hpp>
+#include <studio/editors/slice_editor.hpp>
+#include <studio/panels/design_tree.hpp>
+#include <studio/panels/findings_panel.hpp>
+#include <studio/panels/message_bar.hpp>
+#include <studio/panels/order_text.hpp>
+#include <studio/panels/rule_fixes.hpp>
+#include <studio/panels/simulation_panel.hpp>
+#include <studio/panels/yarns_panel.hpp>
+#include <studio/viewport/viewer_panel.hpp>
 #include <studio/window/main_window.hpp>
+#include <studio/window/tutorial.hpp>
 
 #include <QtTest>
 
 #include <catch2/catch.hpp>
 
-using namespace weave::studio;
+#include "support/folder.hpp"
+#include "support/hands.hpp"
 
-TEST_CASE("a window comes up") {
+using namespace weave;
+using namespace weave::studio;
+using namespace weave::studio::test;
+
+namespace {
+
+struct Desk {
+    explicit Desk(const char* sample = nullptr) {
+        window.show();
+        REQUIRE(QTest::qWaitForWindowExposed(&window));
+        QApplication::setActiveWindow(&window);
+        if (sample == nullptr) return;
+        window.show_sample(sample);
+        settle();
+    }
+    void settle() {
+        REQUIRE(until([&] { return document().shown_is_current() && document().whole().revision == document().revision(); }));
+        QCoreApplication::processEvents();
+    }
+    Document& document() { return *window.document(); }
+    template <class Widget>
+    Widget& find(const QString& name = {}) {
+        auto* found = window.findChild<Widget*>(name);
+        REQUIRE(found != nullptr);
+        return *found;
+    }
+    QString said() { return window.centralWidget()->findChild<MessageBar*>()->words(); }
+
     MainWindow window;
-    window.show();
-    REQUIRE(QTest::qWaitForWindowExposed(&window));
+};
+
+std::string file_of(const Folder& folder, const char* name, const std::string& bytes) {
+    const std::filesystem::path path = folder.path() / name;
+    REQUIRE(write_file(path, bytes));
+    return path.string();
+}
+
+}  // namespace
+
+TEST_CASE("a window comes up with a start page: ways to begin, and samples with pictures") {
+    Desk shown;
+    auto& list = shown.find<QListWidget>("samples");
+    CHECK(list.count() == static_cast<int>(samples().size()));
+    CHECK(until([&] { return shown.find<QAbstractButton>("begin-open").isVisible(); }));
+    CHECK(shown.window.document() == nullptr);
+    QTest::mouseClick(list.viewport(), Qt::LeftButton, {}, list.visualItemRect(list.item(1)).center());
+    REQUIRE(until([&] { return shown.window.document() != nullptr; }));
+    CHECK(shown.document().design() == samples()[1].make());
+    CHECK_FALSE(shown.document().is_modified());
+}
+
+TEST_CASE("a broken or foreign file opens with a message and changes nothing") {
+    const Folder folder;
+    Desk shown("twill-2-2");
+    const auto refuse = [&](const std::string& path, const char* words) {
+        shown.find<MessageBar>().clear();
+        shown.window.open_file(QString::fromStdString(path));
+        REQUIRE(until([&] { return !shown.said().isEmpty(); }));
+        CHECK(shown.said().toStdString().find(words) != std::string::npos);
+        CHECK(shown.document().design() == find_sample("twill-2-2")->make());
+    };
+    refuse(file_of(folder, "a.weave", "{\"format\": 7"), "a.weave");
+    refuse(file_of(folder, "b.weave", "not a design"), "b.weave");
+    refuse(file_of(folder, "c.wif", "[WIF]\nVersion=9\n"), "c.wif");
+    refuse(file_of(folder, "d.png", std::string("\x89PNG\r\n\x1a\n", 8)), "d.png");
+    refuse("/nowhere/e.weave", "e.weave");
+}
+
+TEST_CASE("a design is saved under its name, and comes back as it was") {
+    const Folder folder;
+    Desk shown("pocket");
+    const QString path = QString::fromStdString((folder.path() / "mine.weave").string());
+    auto& canvas = shown.find<CardEditor>().canvas();
+    for (std::size_t end = 0; shown.document().undo_stack().count() == 0 && end < 50; ++end)
+        QTest::mouseClick(&canvas, Qt::LeftButton, {}, canvas.mapping().box({3, end}).center().toPoint());
+    REQUIRE(shown.document().is_modified());
+    CHECK(shown.window.isWindowModified());
+    shown.document().save(path);
+    REQUIRE(until([&] { return shown.document().path() == path; }));
+    CHECK_FALSE(shown.window.isWindowModified());
+    const auto read = load_design(path.toStdString());
+    REQUIRE(read);
+    CHECK(*read == shown.document().design());
+}
+
+TEST_CASE("closing with unsaved changes asks, and to stay is to stay") {
+    Desk shown("twill-2-2");
+    REQUIRE(shown.document().perform({"title", {SetTitle{"changed", ""}}}));
+    const auto answer = [&](const QString& text, bool closes) {
+        bool went = false;
+        with_dialog([&] { went = shown.window.may_close(); },
+                    [&](QDialog& dialog) {
+                        for (QAbstractButton* button : dialog.findChildren<QAbstractButton*>()) {
+                            if (button->text().remove('&') == text) return QTest::mouseClick(button, Qt::LeftButton);
+                        }
+                        FAIL("no button " << text.toStdString());
+                    });
+        CHECK(went == closes);
+    };
+    answer("Stay", false);
+    answer("Close without saving", true);
+}
+
+TEST_CASE("undo and redo are in the menu, by name, and on their keys") {
+    Desk shown("twill-2-2");
+    REQUIRE(shown.document().perform({"the title", {SetTitle{"changed", ""}}}));
+    QTest::keyClick(&shown.window, Qt::Key_Z, Qt::ControlModifier);
+    CHECK(shown.document().design().title != "changed");
+    QTest::keyClick(&shown.window, Qt::Key_Z, Qt::ControlModifier | Qt::ShiftModifier);
+    CHECK(shown.document().design().title == "changed");
+    choose(shown.window, {"Edit", "Undo: the title"});
+    CHECK(shown.document().design().title != "changed");
+}
+
+TEST_CASE("blocks are copied, pasted, duplicated, renamed and removed") {
+    Desk shown("pocket");
+    auto& tree = shown.find<DesignTree>();
+    click_item(tree, "layers");
+    shown.settle();
+    CHECK(shown.document().shown_block() == "layers");
+    QTest::keyClick(&shown.window, Qt::Key_D, Qt::ControlModifier);
+    CHECK(shown.document().design().blocks.contains("layers-2"));
+    shown.settle();
+    click_item(tree, "layers-2");
+    QTest::keyClick(&shown.window, Qt::Key_C, Qt::ControlModifier);
+    choose(shown.window, {"Block", "The chosen block", "Remove"});
+    CHECK_FALSE(shown.document().design().blocks.contains("layers-2"));
+    QTest::keyClick(&shown.window, Qt::Key_V, Qt::ControlModifier);
+    CHECK(shown.document().design().blocks.contains("layers-2"));
+    click_item(tree, "body");
+    choose(shown.window, {"Block", "The chosen block", "Remove"});
+    CHECK(shown.document().design().blocks.contains("body"));
+    CHECK(shown.said().contains("still used"));
+}
+
+TEST_CASE("the finding that is clicked is shown, and each rule knows what would mend it") {
+    for (const Rule& rule : rules()) CHECK_FALSE(fix_for(rule.id).isEmpty());
+    Design design;
+    design.root = "loose";
+    Slice slice;
+    slice.dots = System::weft;
+    for (int position = 0; position < 6; ++position) slice.positions.push_back({{Slot::weft(0)}, {Slot::warp(0)}});
+    design.blocks["loose"] = std::make_shared<const Node>(Node{SliceLeaf{slice}, {}});
+    Desk shown;
+    shown.window.show_design(design, {}, true);
+    auto& list = shown.find<QTreeWidget>("findings");
+    REQUIRE(until([&] { return list.topLevelItemCount() > 0 && list.topLevelItem(0)->childCount() > 0; }));
+    QTreeWidgetItem* group = list.topLevelItem(0);
+    CHECK(group->text(0).startsWith("bind."));
+    CHECK_FALSE(group->text(1).isEmpty());
+    group->setExpanded(true);
+    QTest::mouseClick(list.viewport(), Qt::LeftButton, {}, list.visualItemRect(group->child(0)).center());
+    CHECK(shown.document().focus().place().has_value());
+}
+
+TEST_CASE("yarns are set up in words that count from 1, and what is wrong is told and not taken") {
+    CHECK(with_numbers_moved("0*12 1 0+1 -", 1) == "1*12 2 1+2 -");
+    CHECK(with_numbers_moved("1*12 2 1+2 - x", -1) == "0*12 1 0+1 - x");
+    Desk shown("pocket");
+    auto& panel = shown.find<YarnsPanel>();
+    panel.parentWidget()->raise();
+    auto& order = shown.find<QLineEdit>("warp-order");
+    const WarpPlan before = shown.document().design().warp;
+    const auto type = [&](const QString& text) {
+        order.selectAll();
+        QTest::keyClicks(&order, text);
+        QTest::keyClick(&order, Qt::Key_Return);
+    };
+    type("1*3 2");
+    CHECK(shown.document().design().warp.order.once == std::vector<std::uint32_t>{0, 0, 0, 1});
+    type("1 7");
+    CHECK(shown.document().design().warp.order.once == std::vector<std::uint32_t>{0, 0, 0, 1});
+    CHECK(shown.find<QLabel>("yarns-trouble").text().contains("Not taken"));
+    QTest::keyClick(&shown.window, Qt::Key_Z, Qt::ControlModifier);
+    shown.document().undo();
+    CHECK(shown.document().design().warp == before);
+}
+
+TEST_CASE("the tutorial goes on by what is done, and ends with a pocket") {
+    Desk shown;
+    click(&shown.find<QAbstractButton>("begin-tutorial"));
+    shown.settle();
+    auto& tutorial = shown.find<Tutorial>();
+    REQUIRE(tutorial.isVisible());
+    CHECK(tutorial.step() == 0);
+    with_dialog([&] { choose(shown.window, {"Block", "Repeat the block shown …"}); },
+                [&](QDialog& dialog) {
+                    type_number(dialog.findChild<QSpinBox*>("along"), 4);
+                    type_number(dialog.findChild<QSpinBox*>("across"), 4);
+                    press(dialog, QDialogButtonBox::Ok);
+                });
+    shown.settle();
+    CHECK(tutorial.step() == 1);
+    tutorial.note_relaxed();
+    CHECK(tutorial.step() == 2);
+    auto& canvas = shown.find<CardEditor>().canvas();
+    QTest::mouseClick(&canvas, Qt::LeftButton, {}, canvas.mapping().box({2, 1}).center().toPoint());
+    shown.settle();
+    CHECK(tutorial.step() == 3);
+    const std::string layer = shown.document().shown_block();
+    choose(shown.window, {"Block", "The chosen block", "Attach a block", "below, on the back", QString::fromStdString(layer)});
+    shown.settle();
+    CHECK(tutorial.step() == 4);
+    Scene scene = shown.document().design().scene;
+    scene.weft_mode = WeftMode::wraparound;
+    REQUIRE(shown.document().perform({"wrap", {SetScene{scene}}}));
+    CHECK(tutorial.step() == Tutorial::steps);
+}
+
+TEST_CASE("a yarn clicked in space is shown on the card, and a section follows") {
+    Desk shown("twill-2-2");
+    auto& viewer = shown.find<ViewerPanel>();
+    REQUIRE(until([&] { return viewer.viewport()->model() != nullptr; }));
+    Q_EMIT viewer.viewport()->yarn_clicked(System::weft, 2, Vec3{0, 0, 0});
+    REQUIRE(shown.document().focus().place());
+    CHECK(shown.document().focus().place()->pick == 2);
+    REQUIRE(shown.find<CardEditor>().canvas().cursor_cell());
+    CHECK(shown.find<CardEditor>().canvas().cursor_cell()->row == 2);
 }

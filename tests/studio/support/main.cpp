@@ -4,16 +4,26 @@
 #include <catch2/catch.hpp>
 
 #include <QApplication>
-#include <QStandardPaths>
+#include <QDir>
+#include <QFile>
+#include <QTemporaryDir>
 
 #include <clocale>
 
 /// Tests of the studio run in real windows: on the display that there is, or on one of their own that nobody sees.
 int main(int argc, char* argv[]) {
-    weave::studio::test::Display display;
-    QStandardPaths::setTestModeEnabled(true);
+    const weave::studio::test::Display display;
+    // Settings, unsaved work and what else belongs to a person: of this run alone.
+    const QTemporaryDir home;
+    for (const char* kind : {"XDG_DATA_HOME", "XDG_CONFIG_HOME", "XDG_CACHE_HOME", "XDG_RUNTIME_DIR"}) {
+        QDir(home.path()).mkdir(kind);
+        QFile::setPermissions(home.filePath(kind), QFile::ReadOwner | QFile::WriteOwner | QFile::ExeOwner);
+        qputenv(kind, home.filePath(kind).toUtf8());
+    }
     int qt_arguments = 1;  // Catch's words are none of Qt's
     QApplication application(qt_arguments, argv);
+    QCoreApplication::setOrganizationName("weave");
+    QCoreApplication::setApplicationName("studio-test");
     std::setlocale(LC_NUMERIC, "C");
     return Catch::Session().run(argc, argv);
 }
