@@ -22,6 +22,12 @@ QString words(const std::string& text) {
     return QString::fromStdString(text);
 }
 
+/// What a mill refuses names the path of its API, which says nothing to a person; a file or a machine does.
+QString in_words(const Error& error) {
+    const bool is_place = error.code != ErrorCode::refused || error.where.starts_with('/');
+    return words(is_place ? error.text() : error.message);
+}
+
 QStringList word_list(const std::vector<std::string>& texts) {
     QStringList list;
     for (const std::string& text : texts) list << words(text);
@@ -65,7 +71,8 @@ QString headline_of(const DesignDiff& diff) {
     return diff.card ? words(in_words(*diff.card)) : QString();
 }
 
-Result<MillComparison> comparison_of(const WovenDesign& before, const Design& design, std::uint64_t edition, std::int64_t number) {
+Result<MillComparison> comparison_of(const WovenDesign& before, const Design& design, std::uint64_t edition,
+                                     std::int64_t number) {
     WEAVE_TRY(const WovenDesign after, weave_design(design));
     const DesignDiff diff = diff_designs(before, after);
     MillComparison made;
@@ -76,14 +83,17 @@ Result<MillComparison> comparison_of(const WovenDesign& before, const Design& de
     made.words = words(in_words(diff, "revision " + std::to_string(number), "the open design"));
     if (diff.card && !diff.card->is_same())
         if (const auto picture = draw_diff(before, after, diff, PictureFormat::png))
-            made.picture = QImage::fromData(reinterpret_cast<const uchar*>(picture->data()), static_cast<int>(picture->size()), "PNG");
+            made.picture = QImage::fromData(reinterpret_cast<const uchar*>(picture->data()),
+                                            static_cast<int>(picture->size()), "PNG");
     return made;
 }
 
 }  // namespace
 
 MillDesk::MillDesk(std::filesystem::path session_file, QObject* parent)
-    : QObject(parent), m_last_deed(std::chrono::steady_clock::now()), m_line(std::make_unique<MillLine>(session_file_or_usual(std::move(session_file)))) {
+    : QObject(parent),
+      m_last_deed(std::chrono::steady_clock::now()),
+      m_line(std::make_unique<MillLine>(session_file_or_usual(std::move(session_file)))) {
     m_timer.setInterval(usual_interval);
     connect(&m_timer, &QTimer::timeout, this, &MillDesk::poll);
 }
@@ -94,17 +104,20 @@ MillDesk::~MillDesk() = default;
 
 void MillDesk::send(MillTask task, Errand errand) {
     m_line->add(std::move(errand), [this, task](const Status& status, MillLine& line) {
-        here([this, task, status, session = line.session(), signed_out = line.is_signed_out(), given_up = line.is_given_up()] { end(task, status, session, signed_out, given_up); });
+        here([this, task, status, session = line.session(), signed_out = line.is_signed_out(),
+              given_up = line.is_given_up()] { end(task, status, session, signed_out, given_up); });
     });
 }
 
-void MillDesk::end(MillTask task, const Status& status, const wire::MillSession& session, bool signed_out, bool given_up) {
+void MillDesk::end(MillTask task, const Status& status, const wire::MillSession& session, bool signed_out,
+                   bool given_up) {
     if (task == MillTask::hand_in) take_busy(false);
     if (task == MillTask::history || task == MillTask::review) m_polls = std::max(0, m_polls - 1);
     const bool lost = !status && status.error().code == ErrorCode::system;
     if (status || !lost) take_reached(true);
     if (status) {
-        if (m_access.signed_in && words(session.name) != m_access.name) look_in();  // somebody else signed in beside the studio
+        if (m_access.signed_in && words(session.name) != m_access.name)
+            look_in();  // somebody else signed in beside the studio
         return;
     }
     if (lost) take_reached(false);
@@ -113,7 +126,7 @@ void MillDesk::end(MillTask task, const Status& status, const wire::MillSession&
         access.signed_in = false;
         take_access(access);
     }
-    Q_EMIT failed({task, words(status.error().text()), lost, given_up});
+    Q_EMIT failed({task, in_words(status.error()), lost, given_up});
 }
 
 void MillDesk::take_access(MillAccess access) {
@@ -150,24 +163,28 @@ void MillDesk::look_in() {
     });
 }
 
-void MillDesk::sign_in(const QString& origin, const QString& fingerprint, const QString& name, QString password) {
+void MillDesk::sign_in(const QString& origin, const QString& fingerprint, const QString& name,
+                       QString password) {
     m_last_deed = std::chrono::steady_clock::now();
-    send(MillTask::sign_in, [this, origin = origin.trimmed().toStdString(), fingerprint = fingerprint.trimmed().toStdString(), name = name.trimmed().toStdString(),
-                             secret = password.toStdString()](MillLine& line) mutable -> Status {
-        WEAVE_CHECK_OK(line.read_session());
-        wire::MillSession before = line.session();
-        WEAVE_TRY(wire::MillSession server, wire::server_wished(origin, fingerprint, before, tr("fingerprint").toStdString()));
-        if (fingerprint.empty()) server.fingerprint.clear();  // the form shows what counts
-        WEAVE_TRY(wire::MillClient client, wire::MillClient::of(std::move(server)));
-        line.tend(client);
-        const auto answer = wire::sign_in(client, name, secret);
-        wipe(secret);
-        if (!answer) return answer.error();
-        WEAVE_TRY(const wire::MillPerson person, wire::who_am_i(client));
-        const Status kept = line.adopt(std::move(client));
-        here([this, access = access_of(line.session(), person)] { take_access(access); });
-        return kept;
-    });
+    send(MillTask::sign_in,
+         [this, origin = origin.trimmed().toStdString(), fingerprint = fingerprint.trimmed().toStdString(),
+          name = name.trimmed().toStdString(),
+          secret = password.toStdString()](MillLine& line) mutable -> Status {
+             WEAVE_CHECK_OK(line.read_session());
+             wire::MillSession before = line.session();
+             WEAVE_TRY(wire::MillSession server,
+                       wire::server_wished(origin, fingerprint, before, tr("fingerprint").toStdString()));
+             if (fingerprint.empty()) server.fingerprint.clear();  // the form shows what counts
+             WEAVE_TRY(wire::MillClient client, wire::MillClient::of(std::move(server)));
+             line.tend(client);
+             const auto answer = wire::sign_in(client, name, secret);
+             wipe(secret);
+             if (!answer) return answer.error();
+             WEAVE_TRY(const wire::MillPerson person, wire::who_am_i(client));
+             const Status kept = line.adopt(std::move(client));
+             here([this, access = access_of(line.session(), person)] { take_access(access); });
+             return kept;
+         });
     password.fill(QChar(0));
 }
 
@@ -222,12 +239,13 @@ void MillDesk::ask_history() {
 
 void MillDesk::ask_review() {
     ++m_polls;
-    send(MillTask::review, [this, name = m_design.toStdString(), number = *m_number](MillLine& line) -> Status {
-        WEAVE_TRY(wire::MillClient * client, line.client());
-        WEAVE_TRY(auto review, wire::review_of(*client, name, number));
-        here([this, review = std::move(review)] { take(review); });
-        return {};
-    });
+    send(MillTask::review,
+         [this, name = m_design.toStdString(), number = *m_number](MillLine& line) -> Status {
+             WEAVE_TRY(wire::MillClient * client, line.client());
+             WEAVE_TRY(auto review, wire::review_of(*client, name, number));
+             here([this, review = std::move(review)] { take(review); });
+             return {};
+         });
 }
 
 void MillDesk::take(wire::MillHistory history) {
@@ -245,7 +263,8 @@ void MillDesk::take(wire::MillReview review) {
 void MillDesk::refresh() {
     m_last_deed = std::chrono::steady_clock::now();
     if (!m_access.signed_in) return look_in();
-    if (m_design.isEmpty()) return list_designs();
+    list_designs();
+    if (m_design.isEmpty()) return;
     ask_history();
     if (m_number) ask_review();
 }
@@ -290,7 +309,8 @@ void MillDesk::download_before(const QString& name, std::int64_t number, std::fu
             in_background(
                 this, [document] { return woven_document(document); },
                 [this, name, number, then](Result<WovenPtr> woven) {
-                    if (!woven) return Q_EMIT failed({MillTask::compare, words(woven.error().text()), false, false});
+                    if (!woven)
+                        return Q_EMIT failed({MillTask::compare, in_words(woven.error()), false, false});
                     m_before = {name, number, *std::move(woven)};
                     then();
                 });
@@ -302,10 +322,13 @@ void MillDesk::download_before(const QString& name, std::int64_t number, std::fu
 void MillDesk::compare_now(const Design& design, std::uint64_t edition) {
     const std::uint64_t wanted = m_wanted_comparison;
     in_background(
-        this, [before = m_before.woven, number = m_before.number, design, edition] { return comparison_of(*before, design, edition, number); },
+        this,
+        [before = m_before.woven, number = m_before.number, design, edition] {
+            return comparison_of(*before, design, edition, number);
+        },
         [this, wanted](Result<MillComparison> made) {
             if (wanted != m_wanted_comparison) return;
-            if (!made) return Q_EMIT failed({MillTask::compare, words(made.error().text()), false, false});
+            if (!made) return Q_EMIT failed({MillTask::compare, in_words(made.error()), false, false});
             Q_EMIT compared(*made);
         });
 }
@@ -337,10 +360,25 @@ Status MillDesk::save(wire::MillClient& client, MillHandIn& wish) {
         here([this, design = wish.design] { Q_EMIT design_made(design); });
     }
     if (!wish.document) return {};
-    WEAVE_TRY(const Json answer, wire::save_revision(client, name, {write_document(*wish.document), wish.branch.toStdString(), wish.expected, wish.note.toStdString()}));
+    WEAVE_TRY(const Json answer,
+              wire::save_revision(client, name,
+                                  {write_document(*wish.document), wish.branch.toStdString(), wish.expected,
+                                   wish.note.toStdString()}));
     WEAVE_TRY(wish.revision, wire::number_member(answer, "number"));
     wish.document.reset();
     here([this, design = wish.design, number = *wish.revision] { Q_EMIT saved(design, number); });
+    return {};
+}
+
+/// Evidence that the mill does not want keeps nobody from submitting: the mill says what is missing then.
+Status MillDesk::file(wire::MillClient& client, const MillHandIn& wish, std::int64_t number) {
+    const auto filed = wire::file_evidence(client, wish.design.toStdString(), number, wish.evidence.back());
+    if (filed) {
+        here([this, number] { Q_EMIT evidence_filed(number); });
+        return {};
+    }
+    if (filed.error().code == ErrorCode::system || client.is_signed_out()) return filed.error();
+    here([this, told = in_words(filed.error())] { Q_EMIT failed({MillTask::evidence, told, false, false}); });
     return {};
 }
 
@@ -349,12 +387,10 @@ Status MillDesk::do_hand_in(MillLine& line, MillHandIn& wish) {
     WEAVE_CHECK_OK(save(*client, wish));
     if (!wish.revision) return bad_input("there is no revision to hand in");
     const std::int64_t number = *wish.revision;
-    for (; !wish.evidence.empty(); wish.evidence.pop_back()) {
-        WEAVE_CHECK_OK(wire::file_evidence(*client, wish.design.toStdString(), number, wish.evidence.back()));
-        here([this, number] { Q_EMIT evidence_filed(number); });
-    }
+    for (; !wish.evidence.empty(); wish.evidence.pop_back()) WEAVE_CHECK_OK(file(*client, wish, number));
     if (wish.submits) {
-        const auto answer = wire::submit_revision(*client, wish.design.toStdString(), number, wish.note.toStdString(), {}, wish.password.toStdString());
+        const auto answer = wire::submit_revision(*client, wish.design.toStdString(), number,
+                                                  wish.note.toStdString(), {}, wish.password.toStdString());
         if (!answer) return answer.error();
         WEAVE_TRY(const std::string state, wire::text_member(*answer, "state"));
         here([this, number, state] { Q_EMIT submitted(number, words(state)); });
@@ -366,12 +402,13 @@ Status MillDesk::do_hand_in(MillLine& line, MillHandIn& wish) {
 
 void MillDesk::comment(std::int64_t number, const QString& text) {
     m_last_deed = std::chrono::steady_clock::now();
-    send(MillTask::comment, [this, name = m_design.toStdString(), number, text = text.toStdString()](MillLine& line) -> Status {
-        WEAVE_TRY(wire::MillClient * client, line.client());
-        WEAVE_CHECK_OK(wire::comment_on(*client, name, number, text));
-        here([this, number] { Q_EMIT commented(number); });
-        return {};
-    });
+    send(MillTask::comment,
+         [this, name = m_design.toStdString(), number, text = text.toStdString()](MillLine& line) -> Status {
+             WEAVE_TRY(wire::MillClient * client, line.client());
+             WEAVE_CHECK_OK(wire::comment_on(*client, name, number, text));
+             here([this, number] { Q_EMIT commented(number); });
+             return {};
+         });
 }
 
 }  // namespace weave::studio

@@ -14,8 +14,9 @@
 
 namespace weave::studio {
 
-/// All that the studio does with a mill's loomlink: it signs in, saves, submits, compares and watches, in a thread of its own. Every
-/// call returns at once; what it comes to is told by a signal, in the thread that this object lives in.
+/// All that the studio does with a mill's loomlink: it signs in, saves, submits, compares and watches, in a
+/// thread of its own. Every call returns at once; what it comes to is told by a signal, in the thread that
+/// this object lives in.
 class MillDesk : public QObject {
     Q_OBJECT
   public:
@@ -32,14 +33,16 @@ class MillDesk : public QObject {
 
     /// Goes on as the person of the kept session, if it still counts.
     void look_in();
-    /// Signs in and keeps the session, never the password. `fingerprint`: SHA-256 of the server's certificate; empty: the system's
-    /// authorities decide.
+    /// Signs in and keeps the session, never the password. `fingerprint`: SHA-256 of the server's
+    /// certificate; empty: the system's authorities decide.
     void sign_in(const QString& origin, const QString& fingerprint, const QString& name, QString password);
     void sign_out();
     void list_designs();
-    /// From now on this design is meant; its history is told, and told again whenever it changes while the desk watches.
+    /// From now on this design is meant; its history is told, and told again whenever it changes while the
+    /// desk watches.
     void open(const QString& design);
-    /// All of this revision of the open design, told again whenever it changes while the desk watches; nothing: of none.
+    /// All of this revision of the open design, told again whenever it changes while the desk watches;
+    /// nothing: of none.
     void review(std::optional<std::int64_t> number);
     /// Compares a design, the window's `edition` of it, with a revision of the open design.
     void compare(const Design& design, std::uint64_t edition, std::int64_t number);
@@ -49,7 +52,8 @@ class MillDesk : public QObject {
     void comment(std::int64_t number, const QString& text);
     /// Asks at once for what a watching desk asks for again and again.
     void refresh();
-    /// Whether changes that others make are looked for; not for ever where nobody does anything, so that a session can end.
+    /// Whether changes that others make are looked for; not for ever where nobody does anything, so that a
+    /// session can end.
     void watch(bool on);
     void set_interval(std::chrono::milliseconds interval);
 
@@ -79,7 +83,8 @@ class MillDesk : public QObject {
     void here(Work work) {
         QMetaObject::invokeMethod(this, std::move(work), Qt::QueuedConnection);
     }
-    void end(MillTask task, const Status& status, const wire::MillSession& session, bool signed_out, bool given_up);
+    void end(MillTask task, const Status& status, const wire::MillSession& session, bool signed_out,
+             bool given_up);
     void take_access(MillAccess access);
     void take_reached(bool reached);
     void take_busy(bool busy);
@@ -91,6 +96,7 @@ class MillDesk : public QObject {
     void download_before(const QString& name, std::int64_t number, std::function<void()> then);
     void compare_now(const Design& design, std::uint64_t edition);
     Status save(wire::MillClient& client, MillHandIn& wish);
+    Status file(wire::MillClient& client, const MillHandIn& wish, std::int64_t number);
     Status do_hand_in(MillLine& line, MillHandIn& wish);
 
     MillAccess m_access;

@@ -4,7 +4,8 @@
 
 namespace weave::studio {
 
-MillLine::MillLine(std::filesystem::path session_file) : m_file(std::move(session_file)), m_thread([this] { work(); }) {}
+MillLine::MillLine(std::filesystem::path session_file)
+    : m_file(std::move(session_file)), m_thread([this] { work(); }) {}
 
 MillLine::~MillLine() {
     m_closes = true;

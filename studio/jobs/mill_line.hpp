@@ -1,7 +1,7 @@
 #pragma once
 
-#include <weave/wire/mill_session.hpp>
 #include <weave/wire/mill_client.hpp>
+#include <weave/wire/mill_session.hpp>
 
 #include <atomic>
 #include <condition_variable>
@@ -14,11 +14,12 @@
 
 namespace weave::studio {
 
-/// The studio's line to a mill: a thread in which one call after another is made, as the person of the kept session.
+/// The studio's line to a mill: a thread in which one call after another is made, as the person of the kept
+/// session.
 class MillLine {
   public:
-    /// Runs in the thread. An error ends it; one that says that nobody is signed in makes the line look for a newer kept session
-    /// and try once more.
+    /// Runs in the thread. An error ends it; one that says that nobody is signed in makes the line look for a
+    /// newer kept session and try once more.
     using Errand = std::function<Status(MillLine&)>;
 
     explicit MillLine(std::filesystem::path session_file);
@@ -47,7 +48,9 @@ class MillLine {
     /// Forgets the person; server and name are kept.
     Status forget();
     /// Is told of the bodies that go up while an errand runs.
-    void tell_progress(std::function<void(std::size_t sent, std::size_t of)> told) { m_told = std::move(told); }
+    void tell_progress(std::function<void(std::size_t sent, std::size_t of)> told) {
+        m_told = std::move(told);
+    }
     /// Makes a client end when the line is given up, and tells its progress.
     void tend(wire::MillClient& client);
 

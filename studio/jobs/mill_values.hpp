@@ -26,7 +26,7 @@ struct MillAccess {
 };
 
 /// What was being done when something went wrong.
-enum class MillTask { look_in, sign_in, sign_out, designs, history, review, compare, hand_in, comment };
+enum class MillTask { look_in, sign_in, sign_out, designs, history, review, compare, hand_in, evidence, comment };
 
 struct MillTrouble {
     MillTask task = MillTask::look_in;
@@ -42,21 +42,22 @@ struct MillComparison {
     bool same = false;          ///< the same design; the view may differ
     QString headline;           ///< the card in one line
     QString words;              ///< all that differs
-    QImage picture;             ///< both cards laid on each other; null where one of them has no cloth or nothing differs
+    QImage
+        picture;  ///< both cards laid on each other; null where one of them has no cloth or nothing differs
 };
 
 /// What a person hands in: a revision to save, evidence to file for it, a submission, or several of these.
 struct MillHandIn {
     QString design;
-    bool is_new = false;                     ///< the design is made first
-    std::optional<Design> document;          ///< what is saved; nothing: `revision` stands already
+    bool is_new = false;             ///< the design is made first
+    std::optional<Design> document;  ///< what is saved; nothing: `revision` stands already
     QString branch = wire::main_branch;
-    std::optional<std::int64_t> expected;    ///< the head that it was made from
+    std::optional<std::int64_t> expected;  ///< the head that it was made from
     std::optional<std::int64_t> revision;
-    QString note;                            ///< what changed, and why it is submitted
+    QString note;  ///< what changed, and why it is submitted
     std::vector<wire::SignedEvidence> evidence;
     bool submits = false;
-    QString password;                        ///< to sign the submission; kept nowhere
+    QString password;  ///< to sign the submission; kept nowhere
 };
 
 }  // namespace weave::studio

@@ -58,11 +58,14 @@ QSize ApprovalFlow::minimumSizeHint() const {
 }
 
 QList<ApprovalFlow::Station> ApprovalFlow::stations() const {
-    const bool refused = m_state == "changes_requested", gone = m_state == "withdrawn" || m_state == "superseded";
-    QList<Station> list{{tr("Saved")}, {tr("Submitted")}, {refused ? tr("Rejected") : tr("Approved")}, {tr("Released")}};
+    const bool refused = m_state == "changes_requested",
+               gone = m_state == "withdrawn" || m_state == "superseded";
+    QList<Station> list{
+        {tr("Saved")}, {tr("Submitted")}, {refused ? tr("Rejected") : tr("Approved")}, {tr("Released")}};
     if (gone) list[3].title = m_state == "withdrawn" ? tr("Withdrawn") : tr("Superseded");
     const int done = reached(m_state);
-    for (int k = 0; k < list.size(); ++k) list[k].mark = k < done ? Mark::done : k == done ? Mark::waits : Mark::later;
+    for (int k = 0; k < list.size(); ++k)
+        list[k].mark = k < done ? Mark::done : k == done ? Mark::waits : Mark::later;
     if (refused) list[2].mark = Mark::refused;
     if (m_state == "withdrawn") list[3].mark = Mark::refused;
     return list;
@@ -80,7 +83,9 @@ void ApprovalFlow::paint_disc(QPainter& painter, const QRectF& place, Mark mark)
     }
     painter.drawEllipse(place.adjusted(width / 2, width / 2, -width / 2, -width / 2));
     painter.setPen(QPen(Qt::white, width, Qt::SolidLine, Qt::RoundCap, Qt::RoundJoin));
-    const auto at = [&](qreal x, qreal y) { return QPointF(place.left() + x * place.width(), place.top() + y * place.height()); };
+    const auto at = [&](qreal x, qreal y) {
+        return QPointF(place.left() + x * place.width(), place.top() + y * place.height());
+    };
     if (mark == Mark::done) painter.drawPolyline(QPolygonF{at(0.3, 0.52), at(0.45, 0.67), at(0.72, 0.36)});
     if (mark == Mark::refused) {
         painter.drawLine(at(0.35, 0.35), at(0.65, 0.65));
@@ -97,20 +102,24 @@ void ApprovalFlow::paintEvent(QPaintEvent*) {
     QPainter painter(this);
     painter.setRenderHint(QPainter::Antialiasing);
     const QList<Station> list = stations();
-    const qreal line = fontMetrics().height(), side = line * 1.6, step = width() / static_cast<qreal>(list.size()), middle = line * 0.4 + side / 2;
+    const qreal line = fontMetrics().height(), side = line * 1.6,
+                step = width() / static_cast<qreal>(list.size()), middle = line * 0.4 + side / 2;
     for (int k = 0; k + 1 < list.size(); ++k) {
         const bool behind = list[k + 1].mark == Mark::done || list[k + 1].mark == Mark::refused;
         painter.setPen(QPen(behind ? green : palette().color(QPalette::Mid), behind ? 3 : 1.5));
-        painter.drawLine(QPointF(step * (k + 0.5) + side / 2, middle), QPointF(step * (k + 1.5) - side / 2, middle));
+        painter.drawLine(QPointF(step * (k + 0.5) + side / 2, middle),
+                         QPointF(step * (k + 1.5) - side / 2, middle));
     }
     for (int k = 0; k < list.size(); ++k) {
         paint_disc(painter, {step * (k + 0.5) - side / 2, middle - side / 2, side, side}, list[k].mark);
         QFont told = font();
         told.setBold(list[k].mark == Mark::waits || list[k].mark == Mark::refused);
         painter.setFont(told);
-        painter.setPen(palette().color(list[k].mark == Mark::later ? QPalette::PlaceholderText : QPalette::WindowText));
+        painter.setPen(
+            palette().color(list[k].mark == Mark::later ? QPalette::PlaceholderText : QPalette::WindowText));
         const QRectF place(step * k, middle + side / 2, step, line * 1.4);
-        painter.drawText(place, Qt::AlignCenter, QFontMetricsF(told).elidedText(list[k].title, Qt::ElideRight, step));
+        painter.drawText(place, Qt::AlignCenter,
+                         QFontMetricsF(told).elidedText(list[k].title, Qt::ElideRight, step));
     }
 }
 

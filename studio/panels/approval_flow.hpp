@@ -4,8 +4,9 @@
 
 namespace weave::studio {
 
-/// The way of a revision as stations side by side: saved, submitted, approved, released; where changes were asked for, it ends
-/// there. Done stations have a tick, the one that is waited for a ring, so that colour alone tells nothing.
+/// The way of a revision as stations side by side: saved, submitted, approved, released; where changes were
+/// asked for, it ends there. Done stations have a tick, the one that is waited for a ring, so that colour
+/// alone tells nothing.
 class ApprovalFlow : public QWidget {
     Q_OBJECT
   public:

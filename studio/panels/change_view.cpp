@@ -65,13 +65,15 @@ ChangeView::ChangeView(QWidget* parent)
     say({});
 }
 
-void ChangeView::show_revisions(const std::vector<wire::MillRevision>& revisions, std::optional<std::int64_t> head) {
+void ChangeView::show_revisions(const std::vector<wire::MillRevision>& revisions,
+                                std::optional<std::int64_t> head) {
     const auto was = m_chosen ? compared_with() : std::nullopt;
     const QSignalBlocker quiet(m_revisions);
     m_revisions->clear();
     for (const wire::MillRevision& one : revisions) {
         const QString message = QString::fromStdString(one.message).section('\n', 0, 0);
-        m_revisions->addItem(tr("Revision %1 — %2").arg(one.number).arg(message), QVariant::fromValue<qlonglong>(one.number));
+        m_revisions->addItem(tr("Revision %1 — %2").arg(one.number).arg(message),
+                             QVariant::fromValue<qlonglong>(one.number));
     }
     const auto wanted = was ? was : head;
     const int found = wanted ? m_revisions->findData(QVariant::fromValue<qlonglong>(*wanted)) : -1;
@@ -88,8 +90,10 @@ std::optional<std::int64_t> ChangeView::compared_with() const {
 
 void ChangeView::show(const MillComparison& comparison) {
     QString words = comparison.headline;
-    if (comparison.same) words = tr("The open design is what revision %1 holds.").arg(comparison.number);
-    else if (words.isEmpty()) words = tr("The cards are the same; other parts of the design differ.");
+    if (comparison.same)
+        words = tr("The open design is what revision %1 holds.").arg(comparison.number);
+    else if (words.isEmpty())
+        words = tr("The cards are the same; other parts of the design differ.");
     m_headline->setText(words);
     m_picture->set_image(comparison.picture);
     m_words->setPlainText(comparison.words);
@@ -123,7 +127,8 @@ void ChangeView::open_large() {
     all->setContentsMargins(0, 0, 0, 0);
     all->addWidget(area);
     const int line = fontMetrics().height();
-    window->resize(m_picture->image().size().boundedTo(QSize(line * 60, line * 45)) + QSize(line * 2, line * 2));
+    window->resize(m_picture->image().size().boundedTo(QSize(line * 60, line * 45)) +
+                   QSize(line * 2, line * 2));
     window->show();
 }
 

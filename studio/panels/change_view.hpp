@@ -14,13 +14,15 @@ namespace weave::studio {
 
 class ScaledPicture;
 
-/// In what the open design differs from a revision: in words, and as a picture of both cards laid on each other.
+/// In what the open design differs from a revision: in words, and as a picture of both cards laid on each
+/// other.
 class ChangeView : public QWidget {
     Q_OBJECT
   public:
     explicit ChangeView(QWidget* parent = nullptr);
 
-    /// The revisions that can be compared with, newest first; `head` is compared with unless the person chose another.
+    /// The revisions that can be compared with, newest first; `head` is compared with unless the person chose
+    /// another.
     void show_revisions(const std::vector<wire::MillRevision>& revisions, std::optional<std::int64_t> head);
     [[nodiscard]] std::optional<std::int64_t> compared_with() const;
     void show(const MillComparison& comparison);

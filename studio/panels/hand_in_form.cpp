@@ -39,7 +39,8 @@ HandInForm::HandInForm(QWidget* parent)
     m_password->setEchoMode(QLineEdit::Password);
     m_password->setInputMethodHints(Qt::ImhHiddenText | Qt::ImhNoPredictiveText);
     m_password->setObjectName("signing_password");
-    m_password->setToolTip(tr("A submission is signed: your password is typed anew for it. It is kept nowhere"));
+    m_password->setToolTip(
+        tr("A submission is signed: your password is typed anew for it. It is kept nowhere"));
     m_save->setObjectName("save_revision");
     m_save->setToolTip(tr("The revision is kept at the mill as a draft; nobody is asked to approve it"));
     m_submit->setObjectName("submit");
@@ -49,7 +50,8 @@ HandInForm::HandInForm(QWidget* parent)
     m_told->setObjectName("told");
     m_warning->setObjectName("submit_warning");
     m_way->setObjectName("way");
-    for (QLabel* label : {m_hint, m_told, m_way}) label->setWordWrap(true), label->setTextFormat(Qt::PlainText);
+    for (QLabel* label : {m_hint, m_told, m_way})
+        label->setWordWrap(true), label->setTextFormat(Qt::PlainText);
     m_hint->setForegroundRole(QPalette::PlaceholderText);
     auto* form = new QFormLayout;
     form->setRowWrapPolicy(QFormLayout::WrapLongRows);
@@ -95,11 +97,14 @@ void HandInForm::set_hindrances(const QString& saving, const QString& submitting
 
 void HandInForm::judge() {
     QString note_lacks;
-    if (note().isEmpty()) note_lacks = tr("Write a note first: what changed?");
-    else if (note().size() > longest_note) note_lacks = tr("The note is too long: at most %1 letters.").arg(QLocale().toString(longest_note));
+    if (note().isEmpty())
+        note_lacks = tr("Write a note first: what changed?");
+    else if (note().size() > longest_note)
+        note_lacks = tr("The note is too long: at most %1 letters.").arg(QLocale().toString(longest_note));
     const QString no_saving = m_no_saving.isEmpty() ? note_lacks : m_no_saving;
     QString no_submitting = m_no_submitting.isEmpty() ? note_lacks : m_no_submitting;
-    if (no_submitting.isEmpty() && m_password->text().isEmpty()) no_submitting = tr("Type your password to sign the submission.");
+    if (no_submitting.isEmpty() && m_password->text().isEmpty())
+        no_submitting = tr("Type your password to sign the submission.");
     m_save->setEnabled(!m_busy && no_saving.isEmpty());
     m_submit->setEnabled(!m_busy && no_submitting.isEmpty());
     m_hint->setText(m_busy ? QString() : no_submitting);

@@ -10,8 +10,8 @@ class QPushButton;
 
 namespace weave::studio {
 
-/// The note to a revision, the password that signs a submission, and the buttons that save and submit; while something is on its way
-/// to the mill, how far it is, and a way to give it up.
+/// The note to a revision, the password that signs a submission, and the buttons that save and submit; while
+/// something is on its way to the mill, how far it is, and a way to give it up.
 class HandInForm : public QWidget {
     Q_OBJECT
   public:

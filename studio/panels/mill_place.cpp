@@ -33,9 +33,12 @@ QString name_from(const QString& title) {
     QString name;
     for (const QChar letter : title.normalized(QString::NormalizationForm_KD)) {
         if (letter.category() == QChar::Mark_NonSpacing) continue;
-        const bool fits = (letter.unicode() < 128 && letter.isLetterOrNumber()) || letter == '_' || letter == '.' || letter == '-';
-        if (fits) name += letter;
-        else if (!name.isEmpty() && !name.endsWith('-')) name += '-';
+        const bool fits = (letter.unicode() < 128 && letter.isLetterOrNumber()) || letter == '_' ||
+                          letter == '.' || letter == '-';
+        if (fits)
+            name += letter;
+        else if (!name.isEmpty() && !name.endsWith('-'))
+            name += '-';
     }
     while (name.startsWith('.') || name.startsWith('-')) name.remove(0, 1);
     name.truncate(64);
@@ -96,6 +99,7 @@ MillPlace::MillPlace(QWidget* parent)
         m_chosen = true;
         if (is_new()) m_name->setFocus();
     });
+    connect(m_name, &QLineEdit::textEdited, this, [this] { m_chosen = true; });
     connect(m_name, &QLineEdit::textChanged, this, &MillPlace::design_changed);
     connect(m_branches, &QComboBox::activated, this, &MillPlace::branch_changed);
     show_branches({});
@@ -127,12 +131,17 @@ void MillPlace::fill(const QString& chosen) {
         const QSignalBlocker quiet(m_designs), quiet_name(m_name);
         m_designs->clear();
         for (const wire::MillDesign& design : m_known) {
-            const QString state = design.newest ? tr("revision %1, %2").arg(*design.newest).arg(state_in_words(words(design.state))) : tr("no revision yet");
+            const QString state =
+                design.newest
+                    ? tr("revision %1, %2").arg(*design.newest).arg(state_in_words(words(design.state)))
+                    : tr("no revision yet");
             m_designs->addItem(tr("%1 — %2").arg(words(design.name), state), words(design.name));
         }
         m_designs->addItem(tr("A new design …"));
-        if (m_chosen && was_new) m_designs->setCurrentIndex(m_designs->count() - 1), m_name->setText(typed);
-        else choose(chosen.isEmpty() ? m_suggested : chosen);
+        if (m_chosen && was_new)
+            m_designs->setCurrentIndex(m_designs->count() - 1), m_name->setText(typed);
+        else
+            choose(chosen.isEmpty() ? m_suggested : chosen);
     }
     m_name->setVisible(is_new());
     m_name_title->setVisible(is_new());
@@ -172,7 +181,8 @@ QString MillPlace::design() const {
 void MillPlace::show_branches(const std::vector<wire::MillBranch>& branches) {
     const QString was = branch();
     m_branches->clear();
-    for (const wire::MillBranch& one : branches) m_branches->addItem(tr("%1 — at revision %2").arg(words(one.name)).arg(one.head), words(one.name));
+    for (const wire::MillBranch& one : branches)
+        m_branches->addItem(tr("%1 — at revision %2").arg(words(one.name)).arg(one.head), words(one.name));
     const int found = m_branches->findData(was);
     if (found >= 0) m_branches->setCurrentIndex(found);
     m_branches->setVisible(branches.size() > 1);

@@ -15,8 +15,8 @@ namespace weave::studio {
 
 class SignInForm;
 
-/// Where a design goes: the mill and the person, or a form to sign in; then the design's name there, one that stands or a new one,
-/// and its branch where there are several.
+/// Where a design goes: the mill and the person, or a form to sign in; then the design's name there, one that
+/// stands or a new one, and its branch where there are several.
 class MillPlace : public QWidget {
     Q_OBJECT
   public:

@@ -33,7 +33,8 @@ struct Entry {
     QString html;
 };
 
-QString entry_html(const QString& colour, const QString& what, const std::string& by, const std::string& at, const QString& text) {
+QString entry_html(const QString& colour, const QString& what, const std::string& by, const std::string& at,
+                   const QString& text) {
     return QString("<p><b style='color:%1'>%2</b> %3 <span style='color:gray'>%4</span><br>%5</p>")
         .arg(colour, what.toHtmlEscaped(), safe(by), time_in_words(at).toHtmlEscaped(), text);
 }
@@ -50,7 +51,8 @@ ReviewView::ReviewView(QWidget* parent)
       m_revisions(new QComboBox),
       m_flow(new ApprovalFlow),
       m_state(new QLabel),
-      m_empty(new QLabel(tr("Nothing of this design is at the mill yet. Once it is saved, its way to the loom is shown here, with what others say of it."))),
+      m_empty(new QLabel(tr("Nothing of this design is at the mill yet. Once it is saved, its way to the "
+                            "loom is shown here, with what others say of it."))),
       m_talk(new QTextBrowser),
       m_comment(new QLineEdit),
       m_send(new QPushButton(tr("Comment"))),
@@ -128,8 +130,11 @@ void ReviewView::show_history(const wire::MillHistory& history, std::optional<st
         const QSignalBlocker quiet(m_revisions);
         m_revisions->clear();
         for (const wire::MillRevision& one : history.revisions)
-            m_revisions->addItem(tr("Revision %1 — %2 — %3").arg(one.number).arg(state_in_words(words(one.state)), words(one.message).section('\n', 0, 0)),
-                                 QVariant::fromValue<qlonglong>(one.number));
+            m_revisions->addItem(
+                tr("Revision %1 — %2 — %3")
+                    .arg(one.number)
+                    .arg(state_in_words(words(one.state)), words(one.message).section('\n', 0, 0)),
+                QVariant::fromValue<qlonglong>(one.number));
         const int found = chosen ? m_revisions->findData(QVariant::fromValue<qlonglong>(*chosen)) : -1;
         m_revisions->setCurrentIndex(std::max(0, found));
     }
@@ -160,36 +165,55 @@ void ReviewView::take_commented() {
 namespace {
 
 QString state_text(const wire::MillReview& review, const wire::MillHistory& history) {
-    QStringList lines{ReviewView::tr("Revision %1 is %2.").arg(review.revision.number).arg(state_in_words(words(review.revision.state)))};
+    QStringList lines{ReviewView::tr("Revision %1 is %2.")
+                          .arg(review.revision.number)
+                          .arg(state_in_words(words(review.revision.state)))};
     for (const wire::MillDecision& decision : review.decisions)
-        if (decision.what == "changes requested") lines << ReviewView::tr("%1 asks for changes: %2").arg(words(decision.by), words(decision.reason));
+        if (decision.what == "changes requested")
+            lines
+                << ReviewView::tr("%1 asks for changes: %2").arg(words(decision.by), words(decision.reason));
     for (const wire::MillRelease& release : history.releases)
         if (release.revision == review.revision.number)
-            lines << ReviewView::tr("Release %1 for the loom %2: %3").arg(release.number).arg(words(release.loom), words(release.state));
-    for (const std::string& missing : review.missing) lines << ReviewView::tr("It still lacks: %1").arg(words(missing));
+            lines << ReviewView::tr("Release %1 for the loom %2: %3")
+                         .arg(release.number)
+                         .arg(words(release.loom), words(release.state));
+    for (const std::string& missing : review.missing)
+        lines << ReviewView::tr("It still lacks: %1").arg(words(missing));
     if (review.revision.state == "submitted")
-        lines << ReviewView::tr("A mill keeps what was submitted: nobody can take it back. If it was too early, say so in a comment and save a better revision.");
+        lines << ReviewView::tr(
+            "A mill keeps what was submitted: nobody can take it back. If it was too early, say so in a "
+            "comment and save a better revision.");
     return lines.join('\n');
 }
 
 std::vector<Entry> entries_of(const wire::MillReview& review) {
-    std::vector<Entry> list{{review.revision.at, entry_html("", ReviewView::tr("Saved"), review.revision.author, review.revision.at, safe(review.revision.message))}};
+    std::vector<Entry> list{
+        {review.revision.at, entry_html("", ReviewView::tr("Saved"), review.revision.author,
+                                        review.revision.at, safe(review.revision.message))}};
     for (const wire::MillDecision& one : review.decisions) {
         const bool approved = one.what == "approved";
-        list.push_back({one.at, entry_html(approved ? "#00795a" : "#b34f00", approved ? ReviewView::tr("✓ Approved") : ReviewView::tr("✗ Changes asked for"), one.by, one.at,
-                                           safe(one.reason))});
+        list.push_back({one.at, entry_html(approved ? "#00795a" : "#b34f00",
+                                           approved ? ReviewView::tr("✓ Approved")
+                                                    : ReviewView::tr("✗ Changes asked for"),
+                                           one.by, one.at, safe(one.reason))});
     }
     for (const wire::MillComment& one : review.comments) {
         QStringList place;
         if (one.pick) place << ReviewView::tr("pick %1").arg(*one.pick);
         if (one.end) place << ReviewView::tr("end %1").arg(*one.end);
         const QString at = place.isEmpty() ? QString() : "<i>" + place.join(", ") + ":</i> ";
-        list.push_back({one.at, entry_html("#0060a0", ReviewView::tr("Comment"), one.by, one.at, at + safe(one.text))});
+        list.push_back(
+            {one.at, entry_html("#0060a0", ReviewView::tr("Comment"), one.by, one.at, at + safe(one.text))});
     }
     for (const wire::MillEvidence& one : review.evidence) {
-        const QString stale = one.stale.empty() ? QString() : "<br><b>" + ReviewView::tr("Does not count: ").toHtmlEscaped() + "</b>" + safe(one.stale);
-        const QString kind = one.kind == "simulation" ? ReviewView::tr("Simulation") : ReviewView::tr("Held to a loom");
-        list.push_back({one.at, entry_html("", kind, one.signer, one.at, safe(one.covers) + ": " + safe(one.result) + stale)});
+        const QString stale =
+            one.stale.empty()
+                ? QString()
+                : "<br><b>" + ReviewView::tr("Does not count: ").toHtmlEscaped() + "</b>" + safe(one.stale);
+        const QString kind =
+            one.kind == "simulation" ? ReviewView::tr("Simulation") : ReviewView::tr("Held to a loom");
+        list.push_back({one.at, entry_html("", kind, one.signer, one.at,
+                                           safe(one.covers) + ": " + safe(one.result) + stale)});
     }
     std::stable_sort(list.begin(), list.end(), [](const Entry& a, const Entry& b) { return a.at < b.at; });
     return list;

@@ -15,7 +15,8 @@ namespace weave::studio {
 
 class ApprovalFlow;
 
-/// What became of a revision: its state as a way, why it was rejected, what it lacks, and what others decided and said of it.
+/// What became of a revision: its state as a way, why it was rejected, what it lacks, and what others decided
+/// and said of it.
 class ReviewView : public QWidget {
     Q_OBJECT
   public:

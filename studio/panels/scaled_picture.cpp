@@ -36,7 +36,9 @@ void ScaledPicture::set_image(const QImage& image) {
 QSize ScaledPicture::shown_in(int width) const {
     if (m_image.isNull()) return {0, 0};
     const QSize room(std::max(1, width), most_lines * fontMetrics().height());
-    return m_image.width() <= room.width() && m_image.height() <= room.height() ? m_image.size() : m_image.size().scaled(room, Qt::KeepAspectRatio);
+    return m_image.width() <= room.width() && m_image.height() <= room.height()
+               ? m_image.size()
+               : m_image.size().scaled(room, Qt::KeepAspectRatio);
 }
 
 QSize ScaledPicture::sizeHint() const {
@@ -62,11 +64,13 @@ void ScaledPicture::paintEvent(QPaintEvent*) {
 }
 
 void ScaledPicture::mouseReleaseEvent(QMouseEvent* event) {
-    if (event->button() == Qt::LeftButton && rect().contains(event->position().toPoint())) Q_EMIT large_wanted();
+    if (event->button() == Qt::LeftButton && rect().contains(event->position().toPoint()))
+        Q_EMIT large_wanted();
 }
 
 void ScaledPicture::keyPressEvent(QKeyEvent* event) {
-    if (event->key() == Qt::Key_Return || event->key() == Qt::Key_Enter || event->key() == Qt::Key_Space) return Q_EMIT large_wanted();
+    if (event->key() == Qt::Key_Return || event->key() == Qt::Key_Enter || event->key() == Qt::Key_Space)
+        return Q_EMIT large_wanted();
     QWidget::keyPressEvent(event);
 }
 

@@ -5,8 +5,8 @@
 
 namespace weave::studio {
 
-/// A picture as wide as there is room, never larger than it is, and no higher than some lines of text. A click, Enter or Space asks
-/// for it in its own size.
+/// A picture as wide as there is room, never larger than it is, and no higher than some lines of text. A
+/// click, Enter or Space asks for it in its own size.
 class ScaledPicture : public QWidget {
     Q_OBJECT
   public:

@@ -17,13 +17,17 @@ SignInForm::SignInForm(QWidget* parent)
       m_password(new QLineEdit),
       m_go(new QPushButton(tr("Sign in"))),
       m_words(new TroubleLabel) {
-    auto* greeting = new QLabel(tr("You are not signed in. A mill keeps every revision of a design and lets others approve it; ask your mill's administrator for "
-                                   "its address, the fingerprint of its certificate, and an invitation."));
+    auto* greeting =
+        new QLabel(tr("You are not signed in. A mill keeps every revision of a design and lets others "
+                      "approve it; ask your mill's administrator for "
+                      "its address, the fingerprint of its certificate, and an invitation."));
     greeting->setWordWrap(true);
     m_origin->setPlaceholderText(tr("https://mill:8443"));
     m_origin->setToolTip(tr("The address of the mill's loomlink"));
     m_fingerprint->setPlaceholderText(tr("64 digits; empty: the system's authorities vouch for it"));
-    m_fingerprint->setToolTip(tr("SHA-256 of the mill's certificate, as loomlink told it when it started. No other server is talked to then"));
+    m_fingerprint->setToolTip(
+        tr("SHA-256 of the mill's certificate, as loomlink told it when it started. No other server is "
+           "talked to then"));
     m_name->setToolTip(tr("Your name at the mill"));
     m_password->setEchoMode(QLineEdit::Password);
     m_password->setInputMethodHints(Qt::ImhHiddenText | Qt::ImhNoPredictiveText);
@@ -74,7 +78,8 @@ void SignInForm::set_busy(bool busy) {
 }
 
 void SignInForm::judge() {
-    const bool whole = !m_origin->text().trimmed().isEmpty() && !m_name->text().trimmed().isEmpty() && !m_password->text().isEmpty();
+    const bool whole = !m_origin->text().trimmed().isEmpty() && !m_name->text().trimmed().isEmpty() &&
+                       !m_password->text().isEmpty();
     m_go->setEnabled(whole && !m_busy);
     m_go->setToolTip(whole ? QString() : tr("Mill, name and password are needed"));
 }

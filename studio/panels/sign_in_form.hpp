@@ -22,7 +22,8 @@ class SignInForm : public QWidget {
     void set_busy(bool busy);
 
   Q_SIGNALS:
-    void sign_in_wanted(const QString& origin, const QString& fingerprint, const QString& name, const QString& password);
+    void sign_in_wanted(const QString& origin, const QString& fingerprint, const QString& name,
+                        const QString& password);
 
   private:
     void go();

@@ -30,7 +30,8 @@ QPixmap number_disc(int number, const QFont& font, int side, qreal ratio) {
 
 }  // namespace
 
-StepBox::StepBox(int number, const QString& title, QWidget* parent) : QFrame(parent), m_words(new QLabel), m_body(new QVBoxLayout) {
+StepBox::StepBox(int number, const QString& title, QWidget* parent)
+    : QFrame(parent), m_words(new QLabel), m_body(new QVBoxLayout) {
     QFont bold = font();
     bold.setBold(true);
     const int side = fontMetrics().height() * 3 / 2;

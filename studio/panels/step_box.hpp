@@ -7,7 +7,8 @@ class QVBoxLayout;
 
 namespace weave::studio {
 
-/// A step of a longer way: its number in a disc, its title, a word on where it stands, and below them what the step asks for.
+/// A step of a longer way: its number in a disc, its title, a word on where it stands, and below them what
+/// the step asks for.
 class StepBox : public QFrame {
   public:
     StepBox(int number, const QString& title, QWidget* parent = nullptr);

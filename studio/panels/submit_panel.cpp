@@ -132,7 +132,10 @@ void SubmitPanel::connect_desk() {
         if (busy) m_trouble->setText({});
     });
     connect(&m_desk, &MillDesk::reached_changed, this, [this](bool reached) {
-        m_gone->setText(reached ? QString() : tr("The mill at %1 does not answer. It is asked again every few seconds; what you wrote stays.").arg(m_desk.access().origin));
+        m_gone->setText(reached ? QString()
+                                : tr("The mill at %1 does not answer. It is asked again every few seconds; "
+                                     "what you wrote stays.")
+                                      .arg(m_desk.access().origin));
         m_again->setVisible(!reached);
         judge();
     });
@@ -156,18 +159,22 @@ void SubmitPanel::connect_desk() {
 void SubmitPanel::connect_parts() {
     connect(&m_soon, &QTimer::timeout, this, &SubmitPanel::compare);
     connect(m_again, &QPushButton::clicked, &m_desk, &MillDesk::refresh);
-    connect(&m_place->form(), &SignInForm::sign_in_wanted, this, [this](const QString& origin, const QString& fingerprint, const QString& name, const QString& password) {
-        m_place->form().set_busy(true);
-        m_desk.sign_in(origin, fingerprint, name, password);
-    });
+    connect(&m_place->form(), &SignInForm::sign_in_wanted, this,
+            [this](const QString& origin, const QString& fingerprint, const QString& name,
+                   const QString& password) {
+                m_place->form().set_busy(true);
+                m_desk.sign_in(origin, fingerprint, name, password);
+            });
     connect(m_place, &MillPlace::sign_out_wanted, &m_desk, &MillDesk::sign_out);
     connect(m_place, &MillPlace::design_changed, this, &SubmitPanel::take_design_choice);
     connect(m_place, &MillPlace::branch_changed, this, [this] {
         if (m_history) take_history(*m_history);
     });
     connect(m_changes, &ChangeView::other_wanted, this, &SubmitPanel::compare);
-    connect(m_form, &HandInForm::save_wanted, this, [this](const QString& note) { hand_in(false, note, {}); });
-    connect(m_form, &HandInForm::submit_wanted, this, [this](const QString& note, const QString& password) { hand_in(true, note, password); });
+    connect(m_form, &HandInForm::save_wanted, this,
+            [this](const QString& note) { hand_in(false, note, {}); });
+    connect(m_form, &HandInForm::submit_wanted, this,
+            [this](const QString& note, const QString& password) { hand_in(true, note, password); });
     connect(m_form, &HandInForm::cancel_wanted, &m_desk, &MillDesk::cancel);
     connect(m_review, &ReviewView::revision_wanted, &m_desk, &MillDesk::review);
     connect(m_review, &ReviewView::comment_wanted, &m_desk, &MillDesk::comment);
@@ -238,7 +245,8 @@ void SubmitPanel::take_access() {
     m_place->form().set_busy(false);
     m_place->show_access(access);
     m_where->say(access.signed_in ? QString() : tr("not signed in"));
-    for (QWidget* part : {static_cast<QWidget*>(m_note), static_cast<QWidget*>(m_review)}) part->setEnabled(access.signed_in);
+    for (QWidget* part : {static_cast<QWidget*>(m_note), static_cast<QWidget*>(m_review)})
+        part->setEnabled(access.signed_in);
     if (access.signed_in) {
         m_trouble->setText({});
         m_place->form().complain({});
@@ -258,11 +266,13 @@ void SubmitPanel::take_design_choice() {
     m_history.reset();
     m_comparison.reset();
     m_just_saved.reset();
+    m_trouble->setText({});
     m_review->clear();
     m_changes->show_revisions({}, {});
     const QString name = m_place->is_new() ? QString() : m_place->design();
     m_desk.open(m_desk.access().signed_in ? name : QString());
-    m_changes->say(name.isEmpty() ? tr("A new design: all of it is new to the mill.") : tr("Looking up the last revision …"));
+    m_changes->say(name.isEmpty() ? tr("A new design: all of it is new to the mill.")
+                                  : tr("Looking up the last revision …"));
     judge();
 }
 
@@ -277,15 +287,27 @@ void SubmitPanel::take_history(const wire::MillHistory& history) {
 
 void SubmitPanel::take_trouble(const MillTrouble& trouble) {
     m_place->form().set_busy(false);
-    if (trouble.unreachable && trouble.task != MillTask::sign_in && trouble.task != MillTask::hand_in && trouble.task != MillTask::comment) return;
+    if (trouble.unreachable && trouble.task != MillTask::sign_in && trouble.task != MillTask::hand_in &&
+        trouble.task != MillTask::comment)
+        return;
     if (!m_desk.access().signed_in) {
         const bool ended = trouble.task != MillTask::sign_in && trouble.task != MillTask::look_in;
-        return m_place->form().complain(ended ? tr("Your session at the mill has ended. Sign in again; what you wrote stays.") : trouble.words);
+        return m_place->form().complain(
+            ended ? tr("Your session at the mill has ended. Sign in again; what you wrote stays.")
+                  : trouble.words);
     }
-    if (trouble.given_up) return m_trouble->setText(tr("Cancelled. If the mill had all of it already, the revision shows below."));
-    if (trouble.task == MillTask::compare) return m_changes->say(tr("The revision cannot be compared: %1").arg(trouble.words));
-    m_trouble->setText(trouble.task == MillTask::hand_in ? tr("The mill did not take it: %1").arg(trouble.words) : trouble.words);
-    if (trouble.task == MillTask::hand_in) m_desk.list_designs(), m_desk.refresh();
+    if (trouble.given_up)
+        return m_trouble->setText(
+            tr("Cancelled. If the mill had all of it already, the revision shows below."));
+    if (trouble.task == MillTask::compare)
+        return m_changes->say(tr("The revision cannot be compared: %1").arg(trouble.words));
+    if (trouble.task == MillTask::hand_in) {
+        m_trouble->setText(tr("The mill did not take it: %1").arg(trouble.words));
+        return m_desk.refresh();
+    }
+    if (trouble.task == MillTask::evidence)
+        return m_trouble->setText(tr("The mill did not take the evidence: %1").arg(trouble.words));
+    m_trouble->setText(trouble.words);
 }
 
 // ---- Comparing ----
@@ -306,14 +328,16 @@ const wire::MillRevision* SubmitPanel::head() const {
     if (!m_history) return nullptr;
     const auto number = m_history->head_of(m_place->branch().toStdString());
     const auto& list = m_history->revisions;
-    const auto found = std::find_if(list.begin(), list.end(), [&](const wire::MillRevision& one) { return one.number == number; });
+    const auto found = std::find_if(list.begin(), list.end(),
+                                    [&](const wire::MillRevision& one) { return one.number == number; });
     return found == list.end() ? nullptr : &*found;
 }
 
 std::optional<bool> SubmitPanel::is_saved() const {
     if (m_place->is_new() || (m_history && head() == nullptr)) return false;
     if (!m_comparison || !m_history || m_comparison->edition != m_edition) return {};
-    if (m_comparison->number != head()->number) return false;  // the person compares with an older one; the mill knows
+    if (m_comparison->number != head()->number)
+        return false;  // the person compares with an older one; the mill knows
     return m_comparison->same;
 }
 
@@ -326,9 +350,12 @@ void SubmitPanel::hand_in(bool submits, const QString& note, const QString& pass
     wish.is_new = m_place->is_new();
     wish.branch = m_place->branch();
     if (const wire::MillRevision* newest = head()) wish.expected = newest->number;
-    if (is_saved().value_or(false)) wish.revision = wish.expected;
-    else wish.document = *m_design;
-    if (m_evidence && m_evidence->edition == m_edition && m_evidence->paper) wish.evidence.push_back(*m_evidence->paper);
+    if (is_saved().value_or(false))
+        wish.revision = wish.expected;
+    else
+        wish.document = *m_design;
+    if (m_evidence && m_evidence->edition == m_edition && m_evidence->paper)
+        wish.evidence.push_back(*m_evidence->paper);
     wish.note = note;
     wish.submits = submits;
     wish.password = password;
@@ -337,7 +364,8 @@ void SubmitPanel::hand_in(bool submits, const QString& note, const QString& pass
 
 QString SubmitPanel::no_saving() const {
     if (!m_desk.access().signed_in) return tr("Sign in first.");
-    if (!m_desk.access().may_design()) return tr("Your roles at the mill do not let you save: a designer does.");
+    if (!m_desk.access().may_design())
+        return tr("Your roles at the mill do not let you save: a designer does.");
     if (!m_desk.is_reached()) return tr("The mill does not answer.");
     if (!m_design) return tr("No design is open.");
     if (!m_cloth) return tr("The design makes no cloth yet; a mill takes what can be woven.");
@@ -351,27 +379,38 @@ QString SubmitPanel::no_saving() const {
 QString SubmitPanel::no_submitting() const {
     const auto saved = is_saved();
     if (!saved.value_or(false) || !m_desk.is_reached() || !m_desk.access().may_design()) return no_saving();
-    if (head()->state != "draft") return tr("Revision %1 holds this design: %2.").arg(head()->number).arg(state_in_words(QString::fromStdString(head()->state)));
+    if (head()->state != "draft")
+        return tr("Revision %1 holds this design: %2.")
+            .arg(head()->number)
+            .arg(state_in_words(QString::fromStdString(head()->state)));
     return {};
 }
 
 void SubmitPanel::judge() {
     const bool saved = is_saved().value_or(false);
-    m_form->set_hindrances(no_saving(), no_submitting(), saved ? tr("Submit revision %1").arg(head()->number) : tr("Save and submit"));
+    m_form->set_hindrances(no_saving(), no_submitting(),
+                           saved ? tr("Submit revision %1").arg(head()->number) : tr("Save and submit"));
     m_form->warn(m_errors == 0 || !m_has_findings
                      ? QString()
-                     : tr("The design has %n error(s). The mill may keep a submission that has errors, but nobody can approve it until they are gone or let pass.", nullptr,
-                          static_cast<int>(m_errors)));
+                     : tr("The design has %n error(s). The mill may keep a submission that has errors, but "
+                          "nobody can approve it until they are gone or let pass.",
+                          nullptr, static_cast<int>(m_errors)));
 }
 
 void SubmitPanel::tell_what() {
     const QLocale locale;
-    if (!m_design) m_size->setText(tr("No design is open."));
-    else if (!m_cloth) m_size->setText(tr("The design makes no cloth yet."));
-    else m_size->setText(tr("The open design: %1 picks, %2 ends").arg(locale.toString(static_cast<qulonglong>(m_cloth->picks())), locale.toString(static_cast<qulonglong>(m_cloth->ends()))));
+    if (!m_design)
+        m_size->setText(tr("No design is open."));
+    else if (!m_cloth)
+        m_size->setText(tr("The design makes no cloth yet."));
+    else
+        m_size->setText(tr("The open design: %1 picks, %2 ends")
+                            .arg(locale.toString(static_cast<qulonglong>(m_cloth->picks())),
+                                 locale.toString(static_cast<qulonglong>(m_cloth->ends()))));
     QString findings = tr("Findings: not looked for yet");
     if (m_has_findings && m_errors + m_warnings == 0) findings = tr("Findings: none");
-    if (m_has_findings && m_errors + m_warnings > 0) findings = tr("Findings: %1 error(s), %2 warning(s)").arg(m_errors).arg(m_warnings);
+    if (m_has_findings && m_errors + m_warnings > 0)
+        findings = tr("Findings: %1 error(s), %2 warning(s)").arg(m_errors).arg(m_warnings);
     if (m_has_findings && !m_findings_text.isEmpty()) findings += "\n" + m_findings_text;
     m_findings->setText(findings);
     m_show_findings->setVisible(m_has_findings && m_errors + m_warnings > 0);
@@ -380,12 +419,19 @@ void SubmitPanel::tell_what() {
 void SubmitPanel::tell_evidence() {
     QString words = tr("Simulation: none yet; simulate first if your mill asks for it");
     if (m_evidence) {
-        words = tr("Simulation: relaxed on %1 at %2, %3").arg(m_evidence->machine, m_evidence->fidelity, m_evidence->at_rest ? tr("at rest") : tr("NOT at rest"));
-        if (m_evidence->at.isValid()) words += tr(" (%1)").arg(QLocale().toString(m_evidence->at, QLocale::ShortFormat));
+        words = tr("Simulation: relaxed on %1 at %2, %3")
+                    .arg(m_evidence->machine, m_evidence->fidelity,
+                         m_evidence->at_rest ? tr("at rest") : tr("NOT at rest"));
+        if (m_evidence->at.isValid())
+            words += tr(" (%1)").arg(QLocale().toString(m_evidence->at, QLocale::ShortFormat));
         if (!m_evidence->order_kept) words += tr("; yarns do not lie as the card says");
-        if (m_evidence->edition != m_edition) words += "\n" + tr("The design has changed since: it is not filed. Simulate again.");
-        else if (m_evidence->paper) words += "\n" + tr("Signed; it is filed with the revision.");
-        else words += "\n" + tr("No machine that the mill knows has signed it, so that it stays here. A simulation daemon with a key signs what it finds.");
+        if (m_evidence->edition != m_edition)
+            words += "\n" + tr("The design has changed since: it is not filed. Simulate again.");
+        else if (m_evidence->paper)
+            words += "\n" + tr("Signed; it is filed with the revision.");
+        else
+            words += "\n" + tr("No machine that the mill knows has signed it, so that it stays here. A "
+                               "simulation daemon with a key signs what it finds.");
     }
     m_relaxed->setText(words);
     m_simulate->setVisible(!m_evidence || m_evidence->edition != m_edition || !m_evidence->at_rest);

@@ -32,12 +32,14 @@ struct SimulationFound {
     QString fidelity;  ///< `draft`, `standard`, `reference`
     QDateTime at;
     bool at_rest = false, order_kept = true;
-    std::uint64_t edition = 0;                 ///< of the design, as set_design() was told
-    std::optional<wire::SignedEvidence> paper; ///< nothing: no enrolled machine signed it, so that a mill does not take it
+    std::uint64_t edition = 0;  ///< of the design, as set_design() was told
+    std::optional<wire::SignedEvidence>
+        paper;  ///< nothing: no enrolled machine signed it, so that a mill does not take it
 };
 
-/// Three steps that bring the open design to a mill, and what becomes of it there: saved, submitted, approved, released, or rejected
-/// with a reason; what others decide and say shows by itself while the panel is to be seen.
+/// Three steps that bring the open design to a mill, and what becomes of it there: saved, submitted,
+/// approved, released, or rejected with a reason; what others decide and say shows by itself while the panel
+/// is to be seen.
 class SubmitPanel : public QWidget {
     Q_OBJECT
   public:

@@ -14,9 +14,9 @@
 
 #include <catch2/catch.hpp>
 #include <functional>
+#include <string>
 #include <studio/panels/submit_panel.hpp>
 #include <studio/support/mill.hpp>
-#include <string>
 
 namespace weave::studio::test {
 
@@ -83,7 +83,9 @@ class SubmitWindow {
         type("password", password);
         click("sign_in");
     }
-    void wait_signed_in() { REQUIRE(wait([&] { return panel.desk().access().signed_in; })); }
+    void wait_signed_in() {
+        REQUIRE(wait([&] { return panel.desk().access().signed_in; }));
+    }
     void submit(const std::string& note) {
         write_note(note);
         type("signing_password", Mill::password);

@@ -184,7 +184,8 @@ TEST_CASE("a path is what was meant, whatever a name holds", "[mill]") {
 TEST_CASE("a call that is given up between two tries is not made again", "[mill]") {
     ScriptedServer server({http("503 Service Unavailable", "{}")});
     wire::MillClient client = client_of(server);
-    client.report_to([](std::size_t, std::size_t of) { return of > 0; });  // nothing is under way between two tries
+    client.report_to(
+        [](std::size_t, std::size_t of) { return of > 0; });  // nothing is under way between two tries
     const auto answer = client.post("/designs", {{"name", "x"}});
     REQUIRE_FALSE(answer);
     CHECK_THAT(answer.error().text(), Catch::Contains("given up"));
@@ -231,7 +232,8 @@ TEST_CASE("the history of a design says where a branch stands and where a new on
 }
 
 TEST_CASE("a review is read for what it says; what is not there is empty", "[mill]") {
-    const std::string body = R"({"design":"shoe","number":3,"state":"submitted","author":"dora","author_name":"Dora Dill","picks":8,"ends":4,
+    const std::string body =
+        R"({"design":"shoe","number":3,"state":"submitted","author":"dora","author_name":"Dora Dill","picks":8,"ends":4,
         "missing":["1 approval"],"may":["comment",7],"decisions":[{"what":"approved","by":"Abel","at":"t","reason":"Fine"}],
         "comments":[{"by":"Abel","at":"t","text":"Here","pick":3}],"evidence":[{"kind":"simulation","covers":"all","result":"draft","signer":"box","at":"t","stale":null}]})";
     ScriptedServer server({http("200 OK", body)});
@@ -248,7 +250,8 @@ TEST_CASE("a review is read for what it says; what is not there is empty", "[mil
 }
 
 TEST_CASE("an answer without what it must have is no answer", "[mill]") {
-    for (const char* body : {R"({})", R"({"designs":7})", R"({"designs":[{"newest":null}]})", R"({"designs":[7]})"}) {
+    for (const char* body :
+         {R"({})", R"({"designs":7})", R"({"designs":[{"newest":null}]})", R"({"designs":[7]})"}) {
         ScriptedServer server({http("200 OK", body)});
         wire::MillClient client = client_of(server);
         const auto designs = wire::list_designs(client);
@@ -259,7 +262,8 @@ TEST_CASE("an answer without what it must have is no answer", "[mill]") {
 }
 
 TEST_CASE("what is saved and submitted is sent as the API asks for it", "[mill]") {
-    ScriptedServer server({http("200 OK", R"({"number":4})"), http("200 OK", R"({"state":"submitted"})"), http("200 OK", R"({"at":"t"})")});
+    ScriptedServer server({http("200 OK", R"({"number":4})"), http("200 OK", R"({"state":"submitted"})"),
+                           http("200 OK", R"({"at":"t"})")});
     wire::MillClient client = client_of(server);
     REQUIRE(wire::save_revision(client, "shoe", {"text", "main", 3, "Why", {}}));
     REQUIRE(wire::submit_revision(client, "shoe", 4, "Ready", {}, "secret"));
@@ -294,6 +298,10 @@ TEST_CASE("a session is kept for its owner alone, and none is there before", "[m
 TEST_CASE("plain HTTP goes to this machine alone, and a fingerprint belongs to TLS", "[mill]") {
     CHECK(wire::client_options({"http://127.0.0.1:1", {}, {}, {}, {}}));
     CHECK(wire::client_options({"http://mill:1", {}, {}, {}, {}}).error().code == ErrorCode::refused);
-    CHECK(wire::client_options({"http://127.0.0.1:1", std::string(64, 'a'), {}, {}, {}}).error().code == ErrorCode::usage);
-    CHECK(wire::server_wished("https://mill", "4f3a", {}, "fingerprint").error().text().starts_with("fingerprint: must be 64"));
+    CHECK(wire::client_options({"http://127.0.0.1:1", std::string(64, 'a'), {}, {}, {}}).error().code ==
+          ErrorCode::usage);
+    CHECK(wire::server_wished("https://mill", "4f3a", {}, "fingerprint")
+              .error()
+              .text()
+              .starts_with("fingerprint: must be 64"));
 }

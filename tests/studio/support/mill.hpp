@@ -17,8 +17,8 @@
 
 namespace weave::studio::test {
 
-/// A mill of the test's own: the real program `loomlink` serves an empty folder on a free port, and people come to it by its commands.
-/// Mary administers, Dora designs, Abel approves; no simulation is asked for.
+/// A mill of the test's own: the real program `loomlink` serves an empty folder on a free port, and people
+/// come to it by its commands. Mary administers, Dora designs, Abel approves; no simulation is asked for.
 class Mill {
   public:
     static constexpr const char* password = "warp and weft and warp";
@@ -33,7 +33,10 @@ class Mill {
     }
 
     void start() {
-        m_server = std::make_unique<Server>("loomlink", std::vector<std::string>{"serve", at("site"), "--host", "localhost", "--port", m_port, "--json"}, at("told"));
+        m_server = std::make_unique<Server>(
+            "loomlink",
+            std::vector<std::string>{"serve", at("site"), "--host", "localhost", "--port", m_port, "--json"},
+            at("told"));
         m_introduction = parse_json(m_server->line()).value();
         const std::string url = m_introduction.at("url");
         m_port = url.substr(url.rfind(':') + 1);
@@ -51,8 +54,18 @@ class Mill {
     void resume() const { m_server->end(SIGCONT); }
 
     [[nodiscard]] std::string origin() const { return "https://localhost:" + m_port; }
+    [[nodiscard]] std::string site() const { return m_introduction.at("site"); }
+    /// The file of a key that an enrolled machine signs evidence with.
+    std::string enrol_machine() const {
+        const std::string code = as("mary", {"signer", "invite", "box"}).at("code");
+        as("machine", {"signer", "enrol", code, "--server", origin(), "--fingerprint", fingerprint(),
+                       "--key-file", at("evidence.key")});
+        return at("evidence.key");
+    }
     [[nodiscard]] std::string fingerprint() const { return m_introduction.at("certificate_sha256"); }
-    [[nodiscard]] std::filesystem::path session_of(const std::string& who) const { return at(who + ".session"); }
+    [[nodiscard]] std::filesystem::path session_of(const std::string& who) const {
+        return at(who + ".session");
+    }
     [[nodiscard]] std::string at(const std::string& name) const { return (m_folder.path() / name).string(); }
 
     /// What a command of this person's answers; it must succeed.
@@ -77,9 +90,14 @@ class Mill {
     using Server = weave::testing::Program;
 
     void join(const std::string& link, const std::string& name) const {
-        as(name, {"user", "join", link, "--name", name, "--full-name", "The " + name, "--fingerprint", fingerprint()}, true);
+        as(name,
+           {"user", "join", link, "--name", name, "--full-name", "The " + name, "--fingerprint",
+            fingerprint()},
+           true);
     }
-    void invite(const std::string& name, const std::string& role) const { join(as("mary", {"user", "invite", role}).at("link"), name); }
+    void invite(const std::string& name, const std::string& role) const {
+        join(as("mary", {"user", "invite", role}).at("link"), name);
+    }
     void put_private(const std::string& name, const std::string& text) const {
         REQUIRE(write_file(at(name), text));
         REQUIRE(::chmod(at(name).c_str(), 0600) == 0);
