@@ -46,8 +46,10 @@ void MillLine::work() {
 Status MillLine::run(const Errand& errand) {
     Status status = errand(*this);
     if (status || !m_client || !m_client->is_signed_out()) return status;
-    const auto is_newer = read_session();  // somebody signed in anew beside the studio
-    return is_newer && *is_newer ? errand(*this) : status;
+    auto kept = wire::load_session(m_file);
+    if (!kept || kept->token.empty() || kept->token == m_session.token) return status;
+    use(*std::move(kept));  // somebody signed in anew beside the studio
+    return errand(*this);
 }
 
 Result<wire::MillClient*> MillLine::client() {
@@ -55,11 +57,10 @@ Result<wire::MillClient*> MillLine::client() {
     return &*m_client;
 }
 
-Result<bool> MillLine::read_session() {
+Status MillLine::read_session() {
     WEAVE_TRY(wire::MillSession kept, wire::load_session(m_file));
-    const bool is_newer = !kept.token.empty() && kept.token != m_session.token;
     use(std::move(kept));
-    return is_newer;
+    return {};
 }
 
 void MillLine::use(wire::MillSession session) {

@@ -41,8 +41,8 @@ class MillLine {
     [[nodiscard]] bool is_given_up() const { return m_gives_up; }
     [[nodiscard]] bool is_signed_out() const { return !m_client || m_client->is_signed_out(); }
     [[nodiscard]] const wire::MillSession& session() const { return m_session; }
-    /// Reads the kept session. Whether it holds another token than before.
-    Result<bool> read_session();
+    /// From now on as the kept session says.
+    Status read_session();
     /// Goes on as this client's person, and keeps the session where `loomlink`'s commands look for it.
     Status adopt(wire::MillClient client);
     /// Forgets the person; server and name are kept.

@@ -10,6 +10,8 @@ class QPushButton;
 
 namespace weave::studio {
 
+class TroubleLabel;
+
 /// The note to a revision, the password that signs a submission, and the buttons that save and submit; while
 /// something is on its way to the mill, how far it is, and a way to give it up.
 class HandInForm : public QWidget {
@@ -41,7 +43,8 @@ class HandInForm : public QWidget {
     QPlainTextEdit* m_note;
     QLineEdit* m_password;
     QPushButton *m_save, *m_submit, *m_cancel;
-    QLabel *m_warning, *m_hint, *m_told, *m_way;
+    TroubleLabel* m_warning;
+    QLabel *m_hint, *m_told, *m_way;
     QProgressBar* m_progress;
     QString m_no_saving, m_no_submitting;
     bool m_busy = false;

@@ -64,6 +64,8 @@ MillPlace::MillPlace(QWidget* parent)
     m_designs->setObjectName("design");
     m_designs->setToolTip(tr("The design at the mill that this is a revision of"));
     m_designs->setSizeAdjustPolicy(QComboBox::AdjustToMinimumContentsLengthWithIcon);
+    for (QComboBox* list : {m_designs, m_branches})
+        list->setMinimumContentsLength(12), list->setSizePolicy(QSizePolicy::Expanding, QSizePolicy::Fixed);
     m_name->setObjectName("new_design");
     m_name->setValidator(new QRegularExpressionValidator(QRegularExpression("[A-Za-z0-9._-]{0,64}"), m_name));
     m_name->setToolTip(tr("Letters a to z, digits, point, hyphen and underscore; at most 64"));

@@ -86,8 +86,9 @@ ReviewView::ReviewView(QWidget* parent)
     inner->addLayout(say);
     auto* all = new QVBoxLayout(this);
     all->setContentsMargins(0, 0, 0, 0);
-    all->addWidget(m_empty);
-    all->addWidget(m_whole, 1);
+    m_empty->setAlignment(Qt::AlignTop);
+    all->addWidget(m_empty, 1);
+    all->addWidget(m_whole, 100);
     connect(m_revisions, &QComboBox::currentIndexChanged, this, [this] {
         m_review.reset();
         m_state->clear();
@@ -177,8 +178,11 @@ QString state_text(const wire::MillReview& review, const wire::MillHistory& hist
             lines << ReviewView::tr("Release %1 for the loom %2: %3")
                          .arg(release.number)
                          .arg(words(release.loom), words(release.state));
-    for (const std::string& missing : review.missing)
-        lines << ReviewView::tr("It still lacks: %1").arg(words(missing));
+    if (review.revision.state == "changes_requested")
+        lines << ReviewView::tr("Next: save the changes as a new revision, and submit that one.");
+    else
+        for (const std::string& missing : review.missing)
+            lines << ReviewView::tr("It still lacks: %1").arg(words(missing));
     if (review.revision.state == "submitted")
         lines << ReviewView::tr(
             "A mill keeps what was submitted: nobody can take it back. If it was too early, say so in a "

@@ -12,7 +12,7 @@ namespace weave::studio {
 
 namespace {
 
-constexpr int most_lines = 16;
+constexpr int most_lines = 24;
 
 }  // namespace
 

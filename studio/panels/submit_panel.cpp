@@ -122,6 +122,9 @@ void SubmitPanel::connect_desk() {
     connect(&m_desk, &MillDesk::design_made, m_place, &MillPlace::take_made);
     connect(&m_desk, &MillDesk::history_told, this, &SubmitPanel::take_history);
     connect(&m_desk, &MillDesk::review_told, m_review, &ReviewView::show);
+    connect(&m_desk, &MillDesk::review_told, this, [this](const wire::MillReview& review) {
+        if (review.revision.state != "draft" && review.revision.state != "submitted") m_form->tell({});  // what was done is history
+    });
     connect(&m_desk, &MillDesk::failed, this, &SubmitPanel::take_trouble);
     connect(&m_desk, &MillDesk::commented, m_review, &ReviewView::take_commented);
     connect(&m_desk, &MillDesk::commented, &m_desk, &MillDesk::refresh);

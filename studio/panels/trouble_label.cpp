@@ -7,7 +7,7 @@ TroubleLabel::TroubleLabel(QWidget* parent) : QLabel(parent) {
     setTextFormat(Qt::PlainText);
     setTextInteractionFlags(Qt::TextSelectableByMouse);
     setMargin(fontMetrics().height() / 3);
-    setStyleSheet("QLabel { background: #fbe3d3; color: #5a2500; border-left: 4px solid #d55e00; }");
+    setStyleSheet("QLabel { background: #fbe3d3; color: #5a2500; border-left: 4px solid #d55e00; padding-left: 0.5em; }");
     setVisible(false);
 }
 

@@ -220,6 +220,7 @@ TEST_CASE("submit: findings, evidence and a cloth that cannot be made are told")
     window.panel.set_findings(2, 1, "A float of 40 picks on the back");
     CHECK(window.text("findings_summary").contains("2 error(s), 1 warning(s)"));
     CHECK(window.text("submit_warning").contains("nobody can approve it"));
+    CHECK(window.find<QLabel>("submit_warning").isVisible());
     window.panel.set_findings(0, 0, {});
     CHECK(window.text("submit_warning").isEmpty());
 
