@@ -6,13 +6,15 @@ namespace weave::loomlink {
 
 Result<std::filesystem::path> ClientWish::session_path() const {
     if (!session_file.empty()) return std::filesystem::path(session_file);
-    return usual_session_file();
+    return wire::usual_session_file();
 }
 
-Result<ApiClient> ClientWish::connect() const {
+Result<wire::MillClient> ClientWish::connect() const {
     WEAVE_TRY(const auto file, session_path());
-    WEAVE_TRY(KeptSession session, load_session(file));
-    return ApiClient::of(std::move(session));
+    WEAVE_TRY(wire::MillSession session, wire::load_session(file));
+    if (session.origin.empty())
+        return Error{ErrorCode::refused, "you have not signed in here: loomlink login", file.string()};
+    return wire::MillClient::of(std::move(session));
 }
 
 ClientCommand add_client_command(CLI::App& app, CommandOutcome& outcome, const std::string& name,
@@ -31,16 +33,24 @@ void add_password_option(const ClientCommand& command) {
 }
 
 void on_client_run(const ClientCommand& command, CommandOutcome& outcome,
-                   std::function<Status(ApiClient&)> run) {
+                   std::function<Status(wire::MillClient&)> run) {
     on_run(command.command, outcome, [wish = command.wish, run = std::move(run)]() -> Status {
-        WEAVE_TRY(ApiClient client, wish->connect());
-        return run(client);
+        WEAVE_TRY(wire::MillClient client, wish->connect());
+        Status done = run(client);
+        if (done || !client.is_signed_out()) return done;
+        Error error = std::move(done).error();
+        error.message += " (loomlink login)";
+        return error;
     });
 }
 
-Result<Json> sign_and_post(ApiClient& client, const ClientWish& wish, const std::string& path, Json body) {
+Result<std::string> password_to_sign(const wire::MillClient& client, const ClientWish& wish) {
     PasswordSource source(wish.password_file);
-    WEAVE_TRY(body["password"], source.ask("Password of " + client.session().name + ", to sign"));
+    return source.ask("Password of " + client.session().name + ", to sign");
+}
+
+Result<Json> sign_and_post(wire::MillClient& client, const ClientWish& wish, const std::string& path, Json body) {
+    WEAVE_TRY(body["password"], password_to_sign(client, wish));
     return client.post(path, std::move(body));
 }
 

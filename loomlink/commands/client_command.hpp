@@ -1,7 +1,7 @@
 #pragma once
 
 #include <functional>
-#include <loomlink/commands/api_client.hpp>
+#include <weave/wire/mill_client.hpp>
 #include <loomlink/commands/command.hpp>
 #include <loomlink/commands/password_source.hpp>
 #include <loomlink/commands/words.hpp>
@@ -17,7 +17,7 @@ struct ClientWish {
 
     [[nodiscard]] Result<std::filesystem::path> session_path() const;
     /// A client as the person of the session.
-    [[nodiscard]] Result<ApiClient> connect() const;
+    [[nodiscard]] Result<wire::MillClient> connect() const;
 };
 
 /// A command that talks to the server.
@@ -35,9 +35,12 @@ void add_password_option(const ClientCommand& command);
 
 /// Lets `run` be the command's work, once it is clear which server is meant and who asks.
 void on_client_run(const ClientCommand& command, CommandOutcome& outcome,
-                   std::function<Status(ApiClient&)> run);
+                   std::function<Status(wire::MillClient&)> run);
+
+/// The person types the password for a step that is signed.
+Result<std::string> password_to_sign(const wire::MillClient& client, const ClientWish& wish);
 
 /// Sends a step that is signed: the person types the password for it.
-Result<Json> sign_and_post(ApiClient& client, const ClientWish& wish, const std::string& path, Json body);
+Result<Json> sign_and_post(wire::MillClient& client, const ClientWish& wish, const std::string& path, Json body);
 
 }  // namespace weave::loomlink

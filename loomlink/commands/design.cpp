@@ -2,6 +2,7 @@
 
 #include <weave/core/file.hpp>
 #include <weave/core/text.hpp>
+#include <weave/wire/mill_designs.hpp>
 
 #include <loomlink/commands/client_command.hpp>
 #include <loomlink/commands/names.hpp>
@@ -11,9 +12,7 @@ namespace weave::loomlink {
 
 namespace {
 
-constexpr std::uint64_t most_design_bytes = std::uint64_t{32} << 20;
-
-Status list_designs(ApiClient& client, CommandOutcome& outcome) {
+Status list_designs(wire::MillClient& client, CommandOutcome& outcome) {
     WEAVE_TRY(const Json answer, client.get("/designs"));
     std::vector<std::vector<std::string>> lines;
     for (const Json& design : entries(answer, "designs")) {
@@ -25,8 +24,8 @@ Status list_designs(ApiClient& client, CommandOutcome& outcome) {
     return {};
 }
 
-Status show_design(ApiClient& client, const std::string& design, CommandOutcome& outcome) {
-    WEAVE_TRY(const Json answer, client.get(api_path({"designs", design})));
+Status show_design(wire::MillClient& client, const std::string& design, CommandOutcome& outcome) {
+    WEAVE_TRY(const Json answer, client.get(wire::mill_path({"designs", design})));
     outcome.answer(answer, in_columns(answer, "revisions",
                                       {"number", "state", "branches", "parents", "at", "author", "message"}) +
                                in_columns(answer, "releases", {"loom", "number", "state", "revision"}));
@@ -51,40 +50,26 @@ std::string revision_words(const Json& revision) {
     return words + in_columns(revision, "evidence", {"kind", "covers", "result", "signer", "at", "stale"});
 }
 
-Status show_revision(ApiClient& client, const RevisionPlace& place, CommandOutcome& outcome) {
+Status show_revision(wire::MillClient& client, const RevisionPlace& place, CommandOutcome& outcome) {
     WEAVE_TRY(const Json answer, client.get(place.path()));
     outcome.answer(answer, revision_words(answer));
     return {};
 }
 
 struct SaveWords {
-    std::string file, design, branch = "main", message;
+    std::string file, design, branch = wire::main_branch, message;
     std::optional<std::int64_t> expected;
     std::vector<std::int64_t> also;
 };
 
-/// Where a branch stands now, or main, where a new one starts; nothing in a design without revisions.
-Result<std::optional<std::int64_t>> head_of(ApiClient& client, const SaveWords& words) {
-    WEAVE_TRY(const Json design, client.get(api_path({"designs", words.design})));
-    for (const std::string& name : {words.branch, std::string("main")})
-        for (const Json& branch : entries(design, "branches"))
-            if (branch.is_object() && branch.value("name", Json()) == name) {
-                WEAVE_TRY(const std::int64_t head, number_member(branch, "head"));
-                return std::optional(head);
-            }
-    return std::optional<std::int64_t>();
-}
-
-Status save(ApiClient& client, const SaveWords& words, CommandOutcome& outcome) {
-    WEAVE_TRY(std::string document, read_file(words.file, most_design_bytes));
+Status save(wire::MillClient& client, const SaveWords& words, CommandOutcome& outcome) {
+    WEAVE_TRY(std::string document, read_file(words.file, wire::most_design_bytes));
     std::optional<std::int64_t> expected = words.expected;
     if (!expected) {
-        WEAVE_TRY(expected, head_of(client, words));
+        WEAVE_TRY(const wire::MillHistory history, wire::history_of(client, words.design));
+        expected = history.head_of(words.branch);
     }
-    Json body{{"document", std::move(document)}, {"branch", words.branch}, {"message", words.message}};
-    if (expected) body["expected"] = *expected;
-    if (!words.also.empty()) body["also"] = words.also;
-    auto answer = client.post(api_path({"designs", words.design, "revisions"}), std::move(body));
+    auto answer = wire::save_revision(client, words.design, {std::move(document), words.branch, expected, words.message, words.also});
     if (!answer && answer.error().code != ErrorCode::refused && answer.error().code != ErrorCode::system)
         return std::move(answer).error().in(words.file);
     if (!answer) return std::move(answer).error();
@@ -110,15 +95,15 @@ void add_save(CLI::App& app, CommandOutcome& outcome) {
                "given, the branch as the server has it now");
     add_numbers(command.command, "--also", words->also, "other parents, of a merge");
     on_client_run(command, outcome,
-                  [words, &outcome](ApiClient& client) { return save(client, *words, outcome); });
+                  [words, &outcome](wire::MillClient& client) { return save(client, *words, outcome); });
 }
 
 /// The document alone, or, into a folder, document and evidence bundle.
-Status export_revision(ApiClient& client, const RevisionPlace& place, const std::string& out,
+Status export_revision(wire::MillClient& client, const RevisionPlace& place, const std::string& out,
                        CommandOutcome& outcome) {
     constexpr std::size_t most_bundle = std::size_t{256} << 20;
     const std::string name = place.design + "-" + std::to_string(place.revision());
-    WEAVE_TRY(const std::string document, client.get_bytes(place.path("document"), most_design_bytes));
+    WEAVE_TRY(const std::string document, wire::document_of(client, place.design, place.revision()));
     Json files = Json::array();
     if (lower_extension(out) == ".weave") {
         WEAVE_CHECK_OK(write_file(out, document));
@@ -142,10 +127,10 @@ struct DiffWords {
     std::optional<std::int64_t> before, after;
 };
 
-Status diff(ApiClient& client, const DiffWords& words, CommandOutcome& outcome) {
+Status diff(wire::MillClient& client, const DiffWords& words, CommandOutcome& outcome) {
     const net::Parameters between{{"from", std::to_string(*words.before)},
                                   {"to", std::to_string(*words.after)}};
-    const std::string path = api_path({"designs", words.design});
+    const std::string path = wire::mill_path({"designs", words.design});
     WEAVE_TRY(Json answer, client.get(path + "/diff", between));
     if (!words.out.empty()) {
         WEAVE_TRY(const std::string picture,
@@ -174,7 +159,7 @@ void add_diff(CLI::App& app, CommandOutcome& outcome) {
     add_text(command.command, "-o,--out", words->out, "draw both cards laid on each other, as PNG")
         ->type_name("FILE");
     on_client_run(command, outcome,
-                  [words, &outcome](ApiClient& client) { return diff(client, *words, outcome); });
+                  [words, &outcome](wire::MillClient& client) { return diff(client, *words, outcome); });
 }
 
 void add_export(CLI::App& app, CommandOutcome& outcome) {
@@ -187,7 +172,7 @@ void add_export(CLI::App& app, CommandOutcome& outcome) {
     add_text(command.command, "-o,--out", *out, "a name that ends in .weave, or a folder that must not exist")
         ->type_name("FILE")
         ->required();
-    on_client_run(command, outcome, [place, out, &outcome](ApiClient& client) {
+    on_client_run(command, outcome, [place, out, &outcome](wire::MillClient& client) {
         return export_revision(client, *place, *out, outcome);
     });
 }
@@ -198,11 +183,11 @@ void add_design_commands(CLI::App& app, CommandOutcome& outcome) {
     CLI::App& design = add_group(app, "design", "Designs and their revisions");
     const auto list =
         add_client_command(design, outcome, "list", "List all designs with their newest revision");
-    on_client_run(list, outcome, [&outcome](ApiClient& client) { return list_designs(client, outcome); });
+    on_client_run(list, outcome, [&outcome](wire::MillClient& client) { return list_designs(client, outcome); });
     const auto make = add_client_command(design, outcome, "make", "Make a design that has no revisions yet");
     const auto name = std::make_shared<std::string>();
     add_name(make.command, "NAME", *name, "its name")->required();
-    on_client_run(make, outcome, [name, &outcome](ApiClient& client) -> Status {
+    on_client_run(make, outcome, [name, &outcome](wire::MillClient& client) -> Status {
         WEAVE_TRY(const Json answer, client.post("/designs", {{"name", *name}}));
         outcome.answer(answer, "Made the design " + on_one_line(*name) + "\n");
         return {};
@@ -212,7 +197,7 @@ void add_design_commands(CLI::App& app, CommandOutcome& outcome) {
                                          "decisions, evidence, and what it lacks",
                                          "loomlink design show shoe 3");
     const auto place = add_revision_place(show.command, false);
-    on_client_run(show, outcome, [place, &outcome](ApiClient& client) {
+    on_client_run(show, outcome, [place, &outcome](wire::MillClient& client) {
         return place->number ? show_revision(client, *place, outcome)
                              : show_design(client, place->design, outcome);
     });

@@ -2,6 +2,7 @@
 
 #include <weave/core/file.hpp>
 #include <weave/keys/server_key.hpp>
+#include <weave/wire/mill_designs.hpp>
 
 #include <loomlink/commands/client_command.hpp>
 #include <loomlink/commands/evidence_file.hpp>
@@ -19,14 +20,14 @@ struct EvidenceWords {
 
 /// The site that a statement is for: the one that this machine is enrolled at, or that of the server's trust
 /// document.
-Result<std::string> site_of(ApiClient& client) {
+Result<std::string> site_of(wire::MillClient& client) {
     if (!client.session().site.empty()) return client.session().site;
     WEAVE_TRY(const TrustDocument trust, newest_trust_of(client));
     return trust.site;
 }
 
 /// Signs the answer of `weave simulate --json` with the machine's key.
-Result<EvidenceToFile> signed_now(ApiClient& client, std::string report, const EvidenceWords& words) {
+Result<EvidenceToFile> signed_now(wire::MillClient& client, std::string report, const EvidenceWords& words) {
     if (words.key_file.empty())
         return Error{ErrorCode::usage, "a result that is not signed yet takes the machine's key: --key-file", words.file};
     WEAVE_TRY(const KeyPair key, load_server_key(words.key_file, ServerKeyRole::evidence));
@@ -38,7 +39,7 @@ Result<EvidenceToFile> signed_now(ApiClient& client, std::string report, const E
 }
 
 /// What a file holds, by what it says of itself: evidence that is signed, or a result that is signed here.
-Result<EvidenceToFile> evidence_of(ApiClient& client, const EvidenceWords& words) {
+Result<EvidenceToFile> evidence_of(wire::MillClient& client, const EvidenceWords& words) {
     WEAVE_TRY(std::string bytes, read_file(words.file, wire::most_evidence));
     const auto json = parse_json(bytes);
     if (!json) return Error(json.error()).in(words.file);
@@ -50,10 +51,10 @@ Result<EvidenceToFile> evidence_of(ApiClient& client, const EvidenceWords& words
     return evidence;
 }
 
-Status add_evidence(ApiClient& client, const RevisionPlace& place, const EvidenceWords& words,
+Status add_evidence(wire::MillClient& client, const RevisionPlace& place, const EvidenceWords& words,
                     CommandOutcome& outcome) {
     WEAVE_TRY(const EvidenceToFile filed, evidence_of(client, words));
-    WEAVE_TRY(Json number, file_evidence(client, place, filed));
+    WEAVE_TRY(Json number, wire::file_evidence(client, place.design, place.revision(), filed.evidence));
     outcome.answer({{"evidence", std::move(number)}, {"statement", filed.evidence.statement}},
                    place.words() + ": " + filed.words() + "\n");
     return {};
@@ -72,12 +73,12 @@ void add_add(CLI::App& app, CommandOutcome& outcome) {
     add_text(command.command, "--key-file", words->key_file,
              "for a result that is not signed: the machine's key, as signer enrol made it")
         ->type_name("FILE");
-    on_client_run(command, outcome, [place, words, &outcome](ApiClient& client) {
+    on_client_run(command, outcome, [place, words, &outcome](wire::MillClient& client) {
         return add_evidence(client, *place, *words, outcome);
     });
 }
 
-Status list_evidence(ApiClient& client, const RevisionPlace& place, CommandOutcome& outcome) {
+Status list_evidence(wire::MillClient& client, const RevisionPlace& place, CommandOutcome& outcome) {
     WEAVE_TRY(const Json revision, client.get(place.path()));
     const Json answer{{"evidence", entries(revision, "evidence")}};
     outcome.answer(answer,
@@ -93,7 +94,7 @@ void add_evidence_commands(CLI::App& app, CommandOutcome& outcome) {
     const auto list = add_client_command(evidence, outcome, "list", "List it, and what is stale and why");
     const auto place = add_revision_place(list.command);
     on_client_run(list, outcome,
-                  [place, &outcome](ApiClient& client) { return list_evidence(client, *place, outcome); });
+                  [place, &outcome](wire::MillClient& client) { return list_evidence(client, *place, outcome); });
 }
 
 }  // namespace weave::loomlink

@@ -26,14 +26,4 @@ Result<EvidenceToFile> load_evidence(const std::string& file) {
     return evidence;
 }
 
-Result<Json> file_evidence(ApiClient& client, const RevisionPlace& place, const EvidenceToFile& filed) {
-    const wire::SignedEvidence& evidence = filed.evidence;
-    WEAVE_TRY(const Json answer,
-              client.post(place.path("evidence"),
-                          {{"statement", evidence.statement},
-                           {"signature", {{"key", evidence.signature.key}, {"value", evidence.signature.value}}},
-                           {"report", evidence.report}}));
-    return answer.value("evidence", Json());
-}
-
 }  // namespace weave::loomlink

@@ -2,8 +2,6 @@
 
 #include <weave/wire/evidence.hpp>
 
-#include <loomlink/commands/api_client.hpp>
-#include <loomlink/commands/revision_place.hpp>
 #include <string>
 
 namespace weave::loomlink {
@@ -22,8 +20,5 @@ Result<EvidenceToFile> load_evidence(const std::string& file);
 
 /// The same of bytes that were read already.
 Result<EvidenceToFile> evidence_from(std::string_view bytes);
-
-/// Files it for a revision, and answers its number. The server judges the signature, and for whom it was given.
-Result<Json> file_evidence(ApiClient& client, const RevisionPlace& place, const EvidenceToFile& filed);
 
 }  // namespace weave::loomlink

@@ -23,13 +23,13 @@ struct LogWords {
 };
 
 /// How many records the log has.
-Result<std::int64_t> log_size(ApiClient& client) {
+Result<std::int64_t> log_size(wire::MillClient& client) {
     WEAVE_TRY(const Json head, client.get("/audit/head"));
-    return number_member(head, "size");
+    return wire::number_member(head, "size");
 }
 
 /// Records from a number on, oldest first, at most `limit`; without a number, the newest ones.
-Result<std::vector<Json>> records(ApiClient& client, const LogWords& words) {
+Result<std::vector<Json>> records(wire::MillClient& client, const LogWords& words) {
     const std::int64_t limit = words.limit.value_or(usual_limit);
     std::int64_t from = words.from.value_or(0);
     if (!words.from && words.design.empty()) {
@@ -47,12 +47,12 @@ Result<std::vector<Json>> records(ApiClient& client, const LogWords& words) {
         if (!words.from && many > limit) found.erase(found.begin(), found.end() - limit);
         if (words.from && many >= limit) found.resize(static_cast<std::size_t>(limit));
         if (static_cast<std::int64_t>(page.size()) < most_page || (words.from && many >= limit)) return found;
-        WEAVE_TRY(const std::int64_t last, number_member(page.back(), "seq"));
+        WEAVE_TRY(const std::int64_t last, wire::number_member(page.back(), "seq"));
         from = last + 1;
     }
 }
 
-Status tell_log(ApiClient& client, const LogWords& words, CommandOutcome& outcome) {
+Status tell_log(wire::MillClient& client, const LogWords& words, CommandOutcome& outcome) {
     WEAVE_TRY(const auto found, records(client, words));
     std::vector<std::vector<std::string>> lines;
     for (const Json& record : found) lines.push_back(log_cells(record));
@@ -78,27 +78,27 @@ void add_log(CLI::App& app, CommandOutcome& outcome) {
         ->type_name("N");
     add_number(command.command, "--limit", words->limit, "how many at most; 100 if not given");
     on_client_run(command, outcome,
-                  [words, &outcome](ApiClient& client) { return tell_log(client, *words, outcome); });
+                  [words, &outcome](wire::MillClient& client) { return tell_log(client, *words, outcome); });
 }
 
 /// The signed head as it is retained and exported.
 Result<std::string> head_file(const Json& answer) {
     SignedTreeHead head;
-    WEAVE_TRY(head.head.site, text_member(answer, "site"));
-    WEAVE_TRY(const std::int64_t size, number_member(answer, "size"));
+    WEAVE_TRY(head.head.site, wire::text_member(answer, "site"));
+    WEAVE_TRY(const std::int64_t size, wire::number_member(answer, "size"));
     head.head.size = static_cast<std::uint64_t>(size);
-    WEAVE_TRY(const std::string root, text_member(answer, "root"));
+    WEAVE_TRY(const std::string root, wire::text_member(answer, "root"));
     const auto hash = parse_hash(root);
     if (!hash) return bad_input("is no hash", "root");
     head.head.root = *hash;
-    WEAVE_TRY(head.head.at, text_member(answer, "at"));
+    WEAVE_TRY(head.head.at, wire::text_member(answer, "at"));
     WEAVE_TRY(head.signature, signature_from(answer.value("signature", Json()), "signature"));
     const std::string bytes = signed_head_bytes(head);
     WEAVE_CHECK_OK(parse_signed_head(bytes));
     return bytes;
 }
 
-Status tell_head(ApiClient& client, const std::string& out, CommandOutcome& outcome) {
+Status tell_head(wire::MillClient& client, const std::string& out, CommandOutcome& outcome) {
     WEAVE_TRY(Json answer, client.get("/audit/head"));
     if (!out.empty()) {
         WEAVE_TRY(const std::string bytes, head_file(answer));
@@ -110,7 +110,7 @@ Status tell_head(ApiClient& client, const std::string& out, CommandOutcome& outc
     return {};
 }
 
-Status fetch_bundle(ApiClient& client, const std::string& out, CommandOutcome& outcome) {
+Status fetch_bundle(wire::MillClient& client, const std::string& out, CommandOutcome& outcome) {
     WEAVE_TRY(const std::string bytes, client.get_bytes("/audit/bundle", default_file_limit));
     WEAVE_CHECK_OK(write_file(out, bytes));
     outcome.answer({{"file", out}, {"bytes", bytes.size()}},
@@ -130,13 +130,13 @@ void add_log_commands(CLI::App& app, CommandOutcome& outcome) {
     add_text(head.command, "-o,--out", *out, "the file to keep it in, for audit verify --retained")
         ->type_name("FILE");
     on_client_run(head, outcome,
-                  [out, &outcome](ApiClient& client) { return tell_head(client, *out, outcome); });
+                  [out, &outcome](wire::MillClient& client) { return tell_head(client, *out, outcome); });
     const auto bundle =
         add_client_command(audit, outcome, "bundle", "Write the whole log to a file, to be verified offline",
                            "loomlink audit bundle -o log.json");
     add_text(bundle.command, "-o,--out", *out, "the file to write")->type_name("FILE")->required();
     on_client_run(bundle, outcome,
-                  [out, &outcome](ApiClient& client) { return fetch_bundle(client, *out, outcome); });
+                  [out, &outcome](wire::MillClient& client) { return fetch_bundle(client, *out, outcome); });
     add_audit_verify(audit, outcome);
 }
 

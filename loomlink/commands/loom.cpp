@@ -12,7 +12,7 @@ namespace {
 
 constexpr std::uint64_t most_profile = 1 << 20;
 
-Status list_looms(ApiClient& client, CommandOutcome& outcome) {
+Status list_looms(wire::MillClient& client, CommandOutcome& outcome) {
     WEAVE_TRY(const Json answer, client.get("/looms"));
     std::vector<std::vector<std::string>> lines;
     for (const Json& loom : entries(answer, "looms"))
@@ -22,8 +22,8 @@ Status list_looms(ApiClient& client, CommandOutcome& outcome) {
     return {};
 }
 
-Status show_loom(ApiClient& client, const std::string& name, CommandOutcome& outcome) {
-    WEAVE_TRY(const Json answer, client.get(api_path({"looms", name})));
+Status show_loom(wire::MillClient& client, const std::string& name, CommandOutcome& outcome) {
+    WEAVE_TRY(const Json answer, client.get(wire::mill_path({"looms", name})));
     outcome.answer(answer, in_columns({{"loom", told(answer, "name")},
                                        {"profile", told(answer, "profile_name") + ", version " +
                                                        told(answer, "profile_version")},
@@ -44,12 +44,12 @@ struct ProfileWish {
 };
 
 /// Adds a loom, or puts a new version of its profile in force.
-Status send_profile(ApiClient& client, const ProfileWish& wish, bool is_new, CommandOutcome& outcome) {
+Status send_profile(wire::MillClient& client, const ProfileWish& wish, bool is_new, CommandOutcome& outcome) {
     WEAVE_TRY(std::string profile, read_file(wish.file, most_profile));
     Json body{{"profile", std::move(profile)}};
     if (is_new) body["name"] = wish.loom;
     auto answer = is_new ? client.post("/looms", std::move(body))
-                         : client.change("PUT", api_path({"looms", wish.loom, "profile"}), std::move(body));
+                         : client.change("PUT", wire::mill_path({"looms", wish.loom, "profile"}), std::move(body));
     if (!answer && answer.error().where.starts_with("profile"))
         return std::move(answer).error().in(wish.file);
     if (!answer) return std::move(answer).error();
@@ -69,13 +69,13 @@ void add_profile_command(CLI::App& app, CommandOutcome& outcome, bool is_new) {
     add_loom_name(command.command, "LOOM", wish->loom, "the loom's name")->required();
     add_text(command.command, "FILE", wish->file, "its profile, a .json file (weave: PROFILE.md)")
         ->required();
-    on_client_run(command, outcome, [wish, is_new, &outcome](ApiClient& client) {
+    on_client_run(command, outcome, [wish, is_new, &outcome](wire::MillClient& client) {
         return send_profile(client, *wish, is_new, outcome);
     });
 }
 
-Status list_faults(ApiClient& client, const std::string& loom, CommandOutcome& outcome) {
-    WEAVE_TRY(const Json answer, client.get(api_path({"looms", loom, "faults"})));
+Status list_faults(wire::MillClient& client, const std::string& loom, CommandOutcome& outcome) {
+    WEAVE_TRY(const Json answer, client.get(wire::mill_path({"looms", loom, "faults"})));
     std::vector<std::vector<std::string>> lines;
     for (const Json& fault : entries(answer, "faults")) {
         const auto place = [&](const char* what) {
@@ -93,12 +93,12 @@ Status list_faults(ApiClient& client, const std::string& loom, CommandOutcome& o
 void add_loom_commands(CLI::App& app, CommandOutcome& outcome) {
     CLI::App& loom = add_group(app, "loom", "Looms: profiles, operators, releases");
     const auto list = add_client_command(loom, outcome, "list", "List the looms that are open to you");
-    on_client_run(list, outcome, [&outcome](ApiClient& client) { return list_looms(client, outcome); });
+    on_client_run(list, outcome, [&outcome](wire::MillClient& client) { return list_looms(client, outcome); });
     const auto name = std::make_shared<std::string>();
     const auto show = add_client_command(loom, outcome, "show", "Tell all of a loom and its releases");
     add_loom_name(show.command, "LOOM", *name, "the loom")->required();
     on_client_run(show, outcome,
-                  [name, &outcome](ApiClient& client) { return show_loom(client, *name, outcome); });
+                  [name, &outcome](wire::MillClient& client) { return show_loom(client, *name, outcome); });
     add_profile_command(loom, outcome, true);
     add_profile_command(loom, outcome, false);
     const auto operators =
@@ -107,9 +107,9 @@ void add_loom_commands(CLI::App& app, CommandOutcome& outcome) {
     const auto people = std::make_shared<std::vector<std::string>>();
     add_loom_name(operators.command, "LOOM", *name, "the loom")->required();
     operators.command->add_option("NAME", *people, "operators; nobody if none is given")->type_name("");
-    on_client_run(operators, outcome, [name, people, &outcome](ApiClient& client) -> Status {
+    on_client_run(operators, outcome, [name, people, &outcome](wire::MillClient& client) -> Status {
         WEAVE_TRY(const Json answer,
-                  client.change("PUT", api_path({"looms", *name, "operators"}), {{"operators", *people}}));
+                  client.change("PUT", wire::mill_path({"looms", *name, "operators"}), {{"operators", *people}}));
         outcome.answer(answer, on_one_line(*name) + ": " + told(answer, "operators") + "\n");
         return {};
     });
@@ -117,7 +117,7 @@ void add_loom_commands(CLI::App& app, CommandOutcome& outcome) {
         add_client_command(app, outcome, "faults", "List the faults that a loom's operators reported");
     add_loom_name(faults.command, "LOOM", *name, "the loom")->required();
     on_client_run(faults, outcome,
-                  [name, &outcome](ApiClient& client) { return list_faults(client, *name, outcome); });
+                  [name, &outcome](wire::MillClient& client) { return list_faults(client, *name, outcome); });
 }
 
 }  // namespace weave::loomlink

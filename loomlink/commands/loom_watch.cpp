@@ -15,7 +15,7 @@ using std::chrono::seconds;
 
 class LoomWatch {
   public:
-    LoomWatch(ApiClient& client, const PullWish& wish, seconds every, const SignInAgain& sign_in_again,
+    LoomWatch(wire::MillClient& client, const PullWish& wish, seconds every, const SignInAgain& sign_in_again,
               CommandOutcome& outcome)
         : m_client(&client),
           m_wish(&wish),
@@ -26,7 +26,7 @@ class LoomWatch {
     Status run() {
         while (true) {
             // The socket first: what changes while a pull goes on is told on it.
-            auto socket = m_client->watch(api_path({"looms", m_wish->loom, "watch"}));
+            auto socket = m_client->watch(wire::mill_path({"looms", m_wish->loom, "watch"}));
             do {
                 WEAVE_CHECK_OK(round());
             } while (socket && waits_on(*socket));
@@ -80,7 +80,7 @@ class LoomWatch {
         return std::min({seconds(1 << std::min(m_failures, most_doublings)), seconds(60), m_every});
     }
 
-    ApiClient* m_client;
+    wire::MillClient* m_client;
     const PullWish* m_wish;
     seconds m_every;
     const SignInAgain* m_sign_in_again;
@@ -95,14 +95,14 @@ class LoomWatch {
 
 }  // namespace
 
-Result<PullReport> pull_signed_in(ApiClient& client, const PullWish& wish, const SignInAgain& sign_in_again) {
+Result<PullReport> pull_signed_in(wire::MillClient& client, const PullWish& wish, const SignInAgain& sign_in_again) {
     auto report = pull(client, wish);
     if (report || !client.is_signed_out() || !sign_in_again) return report;
     WEAVE_CHECK_OK(sign_in_again(client));
     return pull(client, wish);
 }
 
-Status watch_loom(ApiClient& client, const PullWish& wish, seconds every, const SignInAgain& sign_in_again,
+Status watch_loom(wire::MillClient& client, const PullWish& wish, seconds every, const SignInAgain& sign_in_again,
                   CommandOutcome& outcome) {
     return LoomWatch(client, wish, every, sign_in_again, outcome).run();
 }

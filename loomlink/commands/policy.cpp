@@ -25,7 +25,7 @@ std::optional<Json> changed(Json policy, const PolicyWish& wish) {
     return policy;
 }
 
-Status tell_policy(ApiClient& client, const PolicyWish& wish, CommandOutcome& outcome) {
+Status tell_policy(wire::MillClient& client, const PolicyWish& wish, CommandOutcome& outcome) {
     WEAVE_TRY(Json policy, client.get("/policy"));
     if (const auto wanted = changed(policy, wish)) {
         WEAVE_TRY(policy, client.change("PUT", "/policy", *wanted));
@@ -60,7 +60,7 @@ void add_policy_command(CLI::App& app, CommandOutcome& outcome) {
     add_number(command.command, "--index-valid-hours", wish->index_valid_hours,
                "how long a loom may go on with its last index");
     on_client_run(command, outcome,
-                  [wish, &outcome](ApiClient& client) { return tell_policy(client, *wish, outcome); });
+                  [wish, &outcome](wire::MillClient& client) { return tell_policy(client, *wish, outcome); });
 }
 
 }  // namespace weave::loomlink

@@ -5,7 +5,7 @@
 #include <loomlink/commands/client_command.hpp>
 #include <loomlink/commands/loom_watch.hpp>
 #include <loomlink/commands/names.hpp>
-#include <loomlink/commands/sign_in.hpp>
+#include <weave/wire/mill_sign_in.hpp>
 
 namespace weave::loomlink {
 
@@ -23,7 +23,7 @@ Result<PullWish> wish_of(const PullWords& words) {
         WEAVE_TRY(wish.state_file, usual_state_file(words.loom));
     }
     if (!words.trust.empty()) {
-        WEAVE_TRY(wish.trust, parse_fingerprint(words.trust, "--trust",
+        WEAVE_TRY(wish.trust, wire::parse_fingerprint(words.trust, "--trust",
                                                 "as an administrator reads them from loomlink trust show"));
     }
     if (words.release && words.all) return Error{ErrorCode::usage, "takes either --release or --all", "pull"};
@@ -44,13 +44,13 @@ Result<SignInAgain> sign_in_with(const ClientWish& client_wish, const std::strin
     const auto password = std::make_shared<KeptPassword>();
     WEAVE_TRY(password->text, source.ask(""));
     WEAVE_TRY(const auto file, client_wish.session_path());
-    return SignInAgain([password, file, name](ApiClient& client) -> Status {
-        WEAVE_CHECK_OK(sign_in(client, name, password->text));
-        return save_session(file, client.session());
+    return SignInAgain([password, file, name](wire::MillClient& client) -> Status {
+        WEAVE_CHECK_OK(wire::sign_in(client, name, password->text));
+        return wire::save_session(file, client.session());
     });
 }
 
-Status run_pull(ApiClient& client, const ClientWish& client_wish, const PullWords& words,
+Status run_pull(wire::MillClient& client, const ClientWish& client_wish, const PullWords& words,
                 CommandOutcome& outcome) {
     constexpr std::int64_t usual_seconds = 60;
     WEAVE_TRY(const PullWish wish, wish_of(words));
@@ -93,7 +93,7 @@ void add_pull_command(CLI::App& app, CommandOutcome& outcome) {
     add_number(command.command, "--every", words->every,
                "seconds between pulls with --watch, besides; 60 if not given");
     add_password_option(command);
-    on_client_run(command, outcome, [wish = command.wish, words, &outcome](ApiClient& client) {
+    on_client_run(command, outcome, [wish = command.wish, words, &outcome](wire::MillClient& client) {
         return run_pull(client, *wish, *words, outcome);
     });
 }

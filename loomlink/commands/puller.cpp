@@ -25,7 +25,7 @@ namespace {
 /// One pull, from its first question to the last file.
 class Pull {
   public:
-    Pull(ApiClient& client, const PullWish& wish) : m_client(&client), m_wish(&wish) {}
+    Pull(wire::MillClient& client, const PullWish& wish) : m_client(&client), m_wish(&wish) {}
 
     Result<PullReport> run() {
         WEAVE_TRY(const Descriptor turn, take_turn());
@@ -52,7 +52,7 @@ class Pull {
 
     /// The right to change state and folder, while it is held.
     [[nodiscard]] Result<Descriptor> take_turn() const {
-        WEAVE_CHECK_OK(make_folders_for(m_wish->state_file));
+        WEAVE_CHECK_OK(wire::make_folders_for(m_wish->state_file));
         const fs::path file = m_wish->state_file.string() + ".lock";
         Descriptor turn(::open(file.c_str(), O_RDWR | O_CREAT | O_CLOEXEC | O_NOFOLLOW, 0600));
         if (turn.number() < 0) return file_fault(file, "open");
@@ -70,7 +70,7 @@ class Pull {
     }
 
     [[nodiscard]] std::string path(std::initializer_list<std::string> below) const {
-        return api_path({"looms", m_wish->loom}) + api_path(below);
+        return wire::mill_path({"looms", m_wish->loom}) + wire::mill_path(below);
     }
 
     /// What the terminal remembers, or its first trust.
@@ -111,9 +111,9 @@ class Pull {
 
     Result<CheckedIndex> fetch_index(TerminalState state) {
         WEAVE_TRY(const Json answer, ask_for_index(state));
-        WEAVE_TRY(const std::string index, text_member(answer, "index"));
-        WEAVE_TRY(const auto documents, texts_member(answer, "trust"));
-        WEAVE_CHECK_OK(make_folders_for(m_wish->state_file));
+        WEAVE_TRY(const std::string index, wire::text_member(answer, "index"));
+        WEAVE_TRY(const auto documents, wire::texts_member(answer, "trust"));
+        WEAVE_CHECK_OK(wire::make_folders_for(m_wish->state_file));
         if (!documents.empty()) {  // kept whatever comes of the index: it may revoke a key
             WEAVE_TRY(state, adopt_trust(state, documents));
             WEAVE_CHECK_OK(save_state(m_wish->state_file, state));
@@ -124,7 +124,7 @@ class Pull {
     }
 
     static Status check_growth(const Json& answer, const LogHead& older, const LogHead& newer) {
-        WEAVE_TRY(const auto texts, texts_member(answer, "consistency"));
+        WEAVE_TRY(const auto texts, wire::texts_member(answer, "consistency"));
         std::vector<Hash> proof;
         for (const std::string& text : texts) {
             const auto hash = parse_hash(text);
@@ -191,7 +191,7 @@ class Pull {
         return refusal ? Status() : Status(refusal.error());
     }
 
-    ApiClient* m_client;
+    wire::MillClient* m_client;
     const PullWish* m_wish;
 };
 
@@ -241,11 +241,11 @@ std::string in_words(const PullReport& report, const std::string& loom) {
 }
 
 Result<fs::path> usual_state_file(const std::string& loom) {
-    WEAVE_TRY(const fs::path folder, user_folder("XDG_STATE_HOME", ".local/state"));
+    WEAVE_TRY(const fs::path folder, wire::user_folder("XDG_STATE_HOME", ".local/state"));
     return folder / "loomlink" / (net::percent_encoded(loom) + ".json");
 }
 
-Result<PullReport> pull(ApiClient& client, const PullWish& wish) {
+Result<PullReport> pull(wire::MillClient& client, const PullWish& wish) {
     return Pull(client, wish).run();
 }
 

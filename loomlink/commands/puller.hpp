@@ -1,7 +1,7 @@
 #pragma once
 
 #include <filesystem>
-#include <loomlink/commands/api_client.hpp>
+#include <weave/wire/mill_client.hpp>
 #include <loomlink/terminal/folder.hpp>
 #include <optional>
 #include <string>
@@ -57,6 +57,6 @@ Result<std::filesystem::path> usual_state_file(const std::string& loom);
 /// whole or not at all. Pulls with one state wait for one another.
 /// Errors as of adopt_trust() and check_index(), usage where the terminal trusts nobody yet and no fingerprint is
 /// given; those of single releases, as of check_release() and place_release(), stand in the report.
-Result<PullReport> pull(ApiClient& client, const PullWish& wish);
+Result<PullReport> pull(wire::MillClient& client, const PullWish& wish);
 
 }  // namespace weave::loomlink

@@ -17,7 +17,7 @@ struct ReleaseWords {
 };
 
 /// Each of the design's feeders on the loom's of the same number.
-Result<std::vector<std::int64_t>> straight_feeders(ApiClient& client, const RevisionPlace& place) {
+Result<std::vector<std::int64_t>> straight_feeders(wire::MillClient& client, const RevisionPlace& place) {
     WEAVE_TRY(const Json revision, client.get(place.path()));
     std::vector<std::int64_t> feeders;
     for (std::size_t k = 0; k < entries(revision, "feeders").size(); ++k)
@@ -25,7 +25,7 @@ Result<std::vector<std::int64_t>> straight_feeders(ApiClient& client, const Revi
     return feeders;
 }
 
-Status release(ApiClient& client, const ClientWish& wish, const RevisionPlace& place, ReleaseWords words,
+Status release(wire::MillClient& client, const ClientWish& wish, const RevisionPlace& place, ReleaseWords words,
                CommandOutcome& outcome) {
     if (words.feeders.empty()) {
         WEAVE_TRY(words.feeders, straight_feeders(client, place));
@@ -58,7 +58,7 @@ void add_release(CLI::App& app, CommandOutcome& outcome) {
                "the release of this design that the loom has now, which this one takes the place of");
     add_text(command.command, "-r,--reason", words->reason, "why; it stands in the log")->required();
     add_password_option(command);
-    on_client_run(command, outcome, [wish = command.wish, place, words, &outcome](ApiClient& client) {
+    on_client_run(command, outcome, [wish = command.wish, place, words, &outcome](wire::MillClient& client) {
         return release(client, *wish, *place, *words, outcome);
     });
 }
@@ -77,9 +77,9 @@ void add_step(CLI::App& app, CommandOutcome& outcome, const std::string& step, c
     add_text(command.command, "-r,--reason", place->reason, "why; it stands in the log")->required();
     add_password_option(command);
     on_client_run(
-        command, outcome, [wish = command.wish, place, step, &outcome](ApiClient& client) -> Status {
+        command, outcome, [wish = command.wish, place, step, &outcome](wire::MillClient& client) -> Status {
             const std::string path =
-                api_path({"looms", place->loom, "releases", std::to_string(*place->number), step});
+                wire::mill_path({"looms", place->loom, "releases", std::to_string(*place->number), step});
             WEAVE_TRY(const Json answer, sign_and_post(client, *wish, path, {{"reason", place->reason}}));
             outcome.answer(answer, on_one_line(place->loom) + ", release " + std::to_string(*place->number) +
                                        ": " + told(answer, "state") + "\n");

@@ -2,13 +2,13 @@
 
 #include <weave/core/text.hpp>
 
-#include <loomlink/commands/api_client.hpp>
+#include <weave/wire/mill_designs.hpp>
 #include <loomlink/commands/names.hpp>
 
 namespace weave::loomlink {
 
 std::string RevisionPlace::path(const std::string& below) const {
-    const std::string path = api_path({"designs", design, "revisions", std::to_string(revision())});
+    const std::string path = wire::revision_path(design, revision());
     return below.empty() ? path : path + "/" + below;
 }
 

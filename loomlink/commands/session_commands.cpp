@@ -3,7 +3,7 @@
 #include <weave/core/text.hpp>
 
 #include <loomlink/commands/client_command.hpp>
-#include <loomlink/commands/sign_in.hpp>
+#include <weave/wire/mill_sign_in.hpp>
 
 namespace weave::loomlink {
 
@@ -15,15 +15,15 @@ struct LoginWish {
 
 Status log_in(const ClientWish& wish, const LoginWish& login, CommandOutcome& outcome) {
     WEAVE_TRY(const auto file, wish.session_path());
-    WEAVE_TRY(const KeptSession before, load_session_if_any(file));
+    WEAVE_TRY(const wire::MillSession before, wire::load_session(file));
     const std::string& name = login.name.empty() ? before.name : login.name;
     if (name.empty()) return Error{ErrorCode::usage, "say who you are", "--name"};
-    WEAVE_TRY(const KeptSession server, server_wished(login.origin, login.fingerprint, before));
-    WEAVE_TRY(ApiClient client, ApiClient::of(server));
+    WEAVE_TRY(const wire::MillSession server, wire::server_wished(login.origin, login.fingerprint, before));
+    WEAVE_TRY(wire::MillClient client, wire::MillClient::of(server));
     PasswordSource source(wish.password_file);
     WEAVE_TRY(std::string password, source.ask("Password of " + name));
-    WEAVE_TRY(const Json answer, sign_in(client, name, std::move(password)));
-    WEAVE_CHECK_OK(save_session(file, client.session()));
+    WEAVE_TRY(const Json answer, wire::sign_in(client, name, std::move(password)));
+    WEAVE_CHECK_OK(wire::save_session(file, client.session()));
     outcome.answer({{"origin", server.origin},
                     {"person", answer.value("person", Json())},
                     {"expires", answer.value("expires", Json())}},
@@ -48,17 +48,17 @@ void add_login(CLI::App& app, CommandOutcome& outcome) {
            [wish = command.wish, login, &outcome] { return log_in(*wish, *login, outcome); });
 }
 
-Status log_out(ApiClient& client, const ClientWish& wish, CommandOutcome& outcome) {
+Status log_out(wire::MillClient& client, const ClientWish& wish, CommandOutcome& outcome) {
     WEAVE_CHECK_OK(client.post("/logout"));
-    KeptSession session = client.session();
+    wire::MillSession session = client.session();
     session.token.clear();
     WEAVE_TRY(const auto file, wish.session_path());
-    WEAVE_CHECK_OK(save_session(file, session));
+    WEAVE_CHECK_OK(wire::save_session(file, session));
     outcome.answer({{"signed_in", false}}, "You are signed out.\n");
     return {};
 }
 
-Status tell_who(ApiClient& client, CommandOutcome& outcome) {
+Status tell_who(wire::MillClient& client, CommandOutcome& outcome) {
     WEAVE_TRY(Json me, client.get("/me"));
     WEAVE_TRY(const Json waiting, client.get("/me/waiting"));
     const Json person = me.value("person", Json::object());
@@ -78,11 +78,11 @@ Status tell_who(ApiClient& client, CommandOutcome& outcome) {
 void add_session_commands(CLI::App& app, CommandOutcome& outcome) {
     add_login(app, outcome);
     const auto logout = add_client_command(app, outcome, "logout", "Sign out: the session counts no more");
-    on_client_run(logout, outcome, [wish = logout.wish, &outcome](ApiClient& client) {
+    on_client_run(logout, outcome, [wish = logout.wish, &outcome](wire::MillClient& client) {
         return log_out(client, *wish, outcome);
     });
     const auto me = add_client_command(app, outcome, "me", "Tell who is signed in, and what waits for you");
-    on_client_run(me, outcome, [&outcome](ApiClient& client) { return tell_who(client, outcome); });
+    on_client_run(me, outcome, [&outcome](wire::MillClient& client) { return tell_who(client, outcome); });
 }
 
 }  // namespace weave::loomlink

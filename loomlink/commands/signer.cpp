@@ -7,7 +7,7 @@
 
 #include <loomlink/commands/client_command.hpp>
 #include <loomlink/commands/names.hpp>
-#include <loomlink/commands/sign_in.hpp>
+#include <weave/wire/mill_sign_in.hpp>
 
 namespace weave::loomlink {
 
@@ -20,10 +20,10 @@ struct EnrolWish {
 /// Makes the machine's key, has the server list it, and keeps which server and site it is for.
 Status enrol(const ClientWish& client_wish, const EnrolWish& wish, CommandOutcome& outcome) {
     WEAVE_TRY(const auto file, client_wish.session_path());
-    WEAVE_TRY(const KeptSession kept, load_session_if_any(file));
-    WEAVE_TRY(const KeptSession server, server_wished(wish.origin, wish.fingerprint, kept));
-    WEAVE_TRY(ApiClient client, ApiClient::of(server));
-    WEAVE_CHECK_OK(make_folders_for(wish.key_file));
+    WEAVE_TRY(const wire::MillSession kept, wire::load_session(file));
+    WEAVE_TRY(const wire::MillSession server, wire::server_wished(wish.origin, wish.fingerprint, kept));
+    WEAVE_TRY(wire::MillClient client, wire::MillClient::of(server));
+    WEAVE_CHECK_OK(wire::make_folders_for(wish.key_file));
     WEAVE_TRY(const KeyPair pair, create_server_key(wish.key_file, ServerKeyRole::evidence));
     const Json body{{"code", wish.code}, {"public", to_hex(pair.public_key())}};
     const auto answer = client.post("/signers/enrol", body);
@@ -32,13 +32,13 @@ Status enrol(const ClientWish& client_wish, const EnrolWish& wish, CommandOutcom
         std::filesystem::remove(wish.key_file, ignored);  // a key that nobody knows
         return answer.error();
     }
-    WEAVE_TRY(const std::string site, text_member(*answer, "site"));
-    WEAVE_TRY(const std::string name, text_member(*answer, "name"));
+    WEAVE_TRY(const std::string site, wire::text_member(*answer, "site"));
+    WEAVE_TRY(const std::string name, wire::text_member(*answer, "name"));
     WEAVE_CHECK_OK(save_signer_note(wish.key_file, {pair.id(), site, name}));
-    KeptSession session = kept.origin == server.origin ? kept : server;
+    wire::MillSession session = kept.origin == server.origin ? kept : server;
     session.fingerprint = server.fingerprint;
     session.site = site;
-    WEAVE_CHECK_OK(save_session(file, session));
+    WEAVE_CHECK_OK(wire::save_session(file, session));
     outcome.answer(*answer, told(*answer, "name") + " is enrolled at " + on_one_line(session.site) +
                                 "; its key lies in " + on_one_line(wish.key_file) + "\n");
     return {};
@@ -67,7 +67,7 @@ void add_enrol(CLI::App& app, CommandOutcome& outcome) {
 void add_signer_commands(CLI::App& app, CommandOutcome& outcome) {
     CLI::App& signer = add_group(app, "signer", "Machines whose simulations count");
     const auto list = add_client_command(signer, outcome, "list", "List them");
-    on_client_run(list, outcome, [&outcome](ApiClient& client) -> Status {
+    on_client_run(list, outcome, [&outcome](wire::MillClient& client) -> Status {
         WEAVE_TRY(const Json answer, client.get("/signers"));
         std::vector<std::vector<std::string>> lines;
         for (const Json& one : entries(answer, "signers"))
@@ -80,7 +80,7 @@ void add_signer_commands(CLI::App& app, CommandOutcome& outcome) {
     const auto invite = add_client_command(
         signer, outcome, "invite", "Make a code for a machine to enrol with", "loomlink signer invite gpu-1");
     add_name(invite.command, "NAME", *name, "what the machine is called")->required();
-    on_client_run(invite, outcome, [name, &outcome](ApiClient& client) -> Status {
+    on_client_run(invite, outcome, [name, &outcome](wire::MillClient& client) -> Status {
         WEAVE_TRY(const Json answer, client.post("/signers", {{"name", *name}}));
         outcome.answer(answer, "Enrol it with this code, once, until " + told(answer, "expires") + ": " +
                                    told(answer, "code") + "\n");
@@ -89,8 +89,8 @@ void add_signer_commands(CLI::App& app, CommandOutcome& outcome) {
     add_enrol(signer, outcome);
     const auto revoke = add_client_command(signer, outcome, "revoke", "Let a machine's key count no more");
     add_name(revoke.command, "NAME", *name, "the machine")->required();
-    on_client_run(revoke, outcome, [name, &outcome](ApiClient& client) -> Status {
-        WEAVE_CHECK_OK(client.post(api_path({"signers", *name, "revoke"})));
+    on_client_run(revoke, outcome, [name, &outcome](wire::MillClient& client) -> Status {
+        WEAVE_CHECK_OK(client.post(wire::mill_path({"signers", *name, "revoke"})));
         outcome.answer({{"revoked", *name}}, on_one_line(*name) + " counts no more\n");
         return {};
     });

@@ -1,6 +1,7 @@
 // submit, comment, request-changes, waive, approve, check: the way of a revision to its approval.
 
 #include <weave/core/text.hpp>
+#include <weave/wire/mill_designs.hpp>
 
 #include <loomlink/commands/client_command.hpp>
 #include <loomlink/commands/evidence_file.hpp>
@@ -48,7 +49,7 @@ void on_signed_step(const SignedStep& step, CommandOutcome& outcome, const std::
     on_client_run(
         step.client, outcome,
         [=, wish = step.client.wish, place = step.place, words = step.words, body_of = std::move(body_of),
-         done_words = std::move(done_words), &outcome](ApiClient& client) -> Status {
+         done_words = std::move(done_words), &outcome](wire::MillClient& client) -> Status {
             WEAVE_TRY(const Json answer, sign_and_post(client, *wish, place->path(below), body_of(*words)));
             outcome.answer(answer, place->words() + ": " + done_words(answer, *words) + "\n");
             return {};
@@ -56,7 +57,7 @@ void on_signed_step(const SignedStep& step, CommandOutcome& outcome, const std::
 }
 
 /// Submits a revision; first files the evidence that comes with it, all of which is read before any is filed.
-Status submit(ApiClient& client, const ClientWish& wish, const RevisionPlace& place, const StepWords& words,
+Status submit(wire::MillClient& client, const ClientWish& wish, const RevisionPlace& place, const StepWords& words,
               CommandOutcome& outcome) {
     std::vector<EvidenceToFile> papers;
     for (const std::string& file : words.evidence) {
@@ -66,13 +67,12 @@ Status submit(ApiClient& client, const ClientWish& wish, const RevisionPlace& pl
     std::string filed_words;
     Json filed = Json::array();
     for (const EvidenceToFile& paper : papers) {
-        WEAVE_TRY(Json number, file_evidence(client, place, paper));
+        WEAVE_TRY(Json number, wire::file_evidence(client, place.design, place.revision(), paper.evidence));
         filed.push_back(std::move(number));
         filed_words += place.words() + ": " + paper.words() + "\n";
     }
-    Json body{{"reason", words.reason}};
-    if (!words.looms.empty()) body["looms"] = words.looms;
-    WEAVE_TRY(Json answer, sign_and_post(client, wish, place.path("submit"), std::move(body)));
+    WEAVE_TRY(std::string password, password_to_sign(client, wish));
+    WEAVE_TRY(Json answer, wire::submit_revision(client, place.design, place.revision(), words.reason, words.looms, std::move(password)));
     if (!papers.empty()) answer["evidence_filed"] = std::move(filed);
     outcome.answer(answer, filed_words + place.words() + ": " + state_told(answer, words) + "\n");
     return {};
@@ -92,7 +92,7 @@ void add_submit(CLI::App& app, CommandOutcome& outcome) {
         ->check(loom_name())
         ->allow_extra_args(false)
         ->type_name("LOOM");
-    on_client_run(step.client, outcome, [step, &outcome](ApiClient& client) {
+    on_client_run(step.client, outcome, [step, &outcome](wire::MillClient& client) {
         return submit(client, *step.client.wish, *step.place, *step.words, outcome);
     });
 }
@@ -130,17 +130,15 @@ void add_comment(CLI::App& app, CommandOutcome& outcome) {
     add_text(command.command, "TEXT", words->reason, "the comment")->required();
     add_number(command.command, "--pick", words->pick, "the pick that it is about");
     add_number(command.command, "--end", words->end, "the end that it is about");
-    on_client_run(command, outcome, [place, words, &outcome](ApiClient& client) -> Status {
-        Json body{{"text", words->reason}};
-        if (words->pick) body["pick"] = *words->pick;
-        if (words->end) body["end"] = *words->end;
-        WEAVE_TRY(const Json answer, client.post(place->path("comment"), std::move(body)));
+    on_client_run(command, outcome, [place, words, &outcome](wire::MillClient& client) -> Status {
+        WEAVE_TRY(const Json answer,
+                  wire::comment_on(client, place->design, place->revision(), words->reason, words->pick, words->end));
         outcome.answer(answer, place->words() + ": the comment stands\n");
         return {};
     });
 }
 
-Status check(ApiClient& client, const RevisionPlace& place, const std::string& loom,
+Status check(wire::MillClient& client, const RevisionPlace& place, const std::string& loom,
              CommandOutcome& outcome) {
     WEAVE_TRY(const Json answer, client.get(place.path("check"), {{"loom", loom}}));
     outcome.answer(answer, in_columns(answer, "findings", {"severity", "rule", "message"}) +
@@ -158,7 +156,7 @@ void add_check(CLI::App& app, CommandOutcome& outcome) {
     const auto place = add_revision_place(command.command);
     const auto loom = std::make_shared<std::string>();
     add_loom_name(command.command, "--loom", *loom, "the loom")->required();
-    on_client_run(command, outcome, [place, loom, &outcome](ApiClient& client) {
+    on_client_run(command, outcome, [place, loom, &outcome](wire::MillClient& client) {
         return check(client, *place, *loom, outcome);
     });
 }

@@ -15,12 +15,12 @@ struct TokenWish {
     std::string out;
 };
 
-Status get_token(ApiClient& client, const TokenWish& wish, CommandOutcome& outcome) {
+Status get_token(wire::MillClient& client, const TokenWish& wish, CommandOutcome& outcome) {
     Json body = Json::object();
     if (wish.hours) body["hours"] = *wish.hours;
     WEAVE_TRY(const Json answer, client.post("/access-tokens", std::move(body)));
-    WEAVE_TRY(std::string token, text_member(answer, "token"));
-    WEAVE_TRY(const std::string expires, text_member(answer, "expires"));
+    WEAVE_TRY(std::string token, wire::text_member(answer, "token"));
+    WEAVE_TRY(const std::string expires, wire::text_member(answer, "expires"));
     if (wish.out.empty()) {
         outcome.answer(answer, on_one_line(token) + "\n");
         wipe(token);
@@ -46,7 +46,7 @@ void add_token_command(CLI::App& app, CommandOutcome& outcome) {
              "the file to write, for nobody else to read; if not given, the token is told")
         ->type_name("FILE");
     on_client_run(command, outcome,
-                  [wish, &outcome](ApiClient& client) { return get_token(client, *wish, outcome); });
+                  [wish, &outcome](wire::MillClient& client) { return get_token(client, *wish, outcome); });
 }
 
 }  // namespace weave::loomlink

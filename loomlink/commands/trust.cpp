@@ -12,7 +12,7 @@ namespace weave::loomlink {
 
 namespace {
 
-Status show_trust(ApiClient& client, const std::string& out, CommandOutcome& outcome) {
+Status show_trust(wire::MillClient& client, const std::string& out, CommandOutcome& outcome) {
     WEAVE_TRY(const auto papers, trust_papers(client));
     if (papers.empty()) return Error{ErrorCode::refused, "nobody has signed a trust document yet", "trust"};
     WEAVE_TRY(const TrustDocument trust, read_trust(papers.back()));
@@ -29,7 +29,7 @@ Status show_trust(ApiClient& client, const std::string& out, CommandOutcome& out
     return {};
 }
 
-Status show_pending(ApiClient& client, CommandOutcome& outcome) {
+Status show_pending(wire::MillClient& client, CommandOutcome& outcome) {
     WEAVE_TRY(const Json answer, client.get("/trust/pending"));
     std::string words;
     for (const Json& change : entries(answer, "changes"))
@@ -38,7 +38,7 @@ Status show_pending(ApiClient& client, CommandOutcome& outcome) {
     return {};
 }
 
-Status publish(ApiClient& client, const ClientWish& wish, bool keep, CommandOutcome& outcome) {
+Status publish(wire::MillClient& client, const ClientWish& wish, bool keep, CommandOutcome& outcome) {
     Json body = Json::object();
     if (keep) body["keep_server_keys"] = true;
     WEAVE_TRY(const Json answer, sign_and_post(client, wish, "/trust", std::move(body)));
@@ -56,7 +56,7 @@ Json key_json(const TrustedKey& key) {
             {"roles", std::move(roles)}};
 }
 
-Status list_keys(ApiClient& client, CommandOutcome& outcome) {
+Status list_keys(wire::MillClient& client, CommandOutcome& outcome) {
     WEAVE_TRY(const TrustDocument trust, newest_trust_of(client));
     Json answer{{"number", trust.version}, {"keys", Json::array()}};
     std::vector<std::vector<std::string>> lines;
@@ -69,7 +69,7 @@ Status list_keys(ApiClient& client, CommandOutcome& outcome) {
 }
 
 /// One key in full: by the first characters of its id, or the caller's own.
-Status show_key(ApiClient& client, std::string wanted, CommandOutcome& outcome) {
+Status show_key(wire::MillClient& client, std::string wanted, CommandOutcome& outcome) {
     if (wanted.empty()) {
         WEAVE_TRY(const Json me, client.get("/me"));
         wanted = told(me.value("person", Json()), "key");
@@ -95,9 +95,9 @@ Status show_key(ApiClient& client, std::string wanted, CommandOutcome& outcome) 
 void add_key_commands(CLI::App& app, CommandOutcome& outcome) {
     CLI::App& key = add_group(app, "key", "The keys that count, as the newest trust document lists them, and that of access tokens");
     const auto list = add_client_command(key, outcome, "list", "List them");
-    on_client_run(list, outcome, [&outcome](ApiClient& client) { return list_keys(client, outcome); });
+    on_client_run(list, outcome, [&outcome](wire::MillClient& client) { return list_keys(client, outcome); });
     const auto access = add_client_command(key, outcome, "access", "Tell the public key by which simd knows this site's access tokens");
-    on_client_run(access, outcome, [&outcome](ApiClient& client) -> Status {
+    on_client_run(access, outcome, [&outcome](wire::MillClient& client) -> Status {
         WEAVE_TRY(const Json answer, client.get("/access-key"));
         outcome.answer(answer, in_columns({{"site", told(answer, "site")}, {"id", told(answer, "key")}, {"public", told(answer, "public")}}));
         return {};
@@ -106,7 +106,7 @@ void add_key_commands(CLI::App& app, CommandOutcome& outcome) {
     const auto wanted = std::make_shared<std::string>();
     add_text(show.command, "KEY", *wanted, "how its id begins; your own if not given");
     on_client_run(show, outcome,
-                  [wanted, &outcome](ApiClient& client) { return show_key(client, *wanted, outcome); });
+                  [wanted, &outcome](wire::MillClient& client) { return show_key(client, *wanted, outcome); });
 }
 
 }  // namespace
@@ -118,9 +118,9 @@ void add_trust_commands(CLI::App& app, CommandOutcome& outcome) {
     const auto out = std::make_shared<std::string>();
     add_text(show.command, "-o,--out", *out, "the file to write, for audit verify")->type_name("FILE");
     on_client_run(show, outcome,
-                  [out, &outcome](ApiClient& client) { return show_trust(client, *out, outcome); });
+                  [out, &outcome](wire::MillClient& client) { return show_trust(client, *out, outcome); });
     const auto pending = add_client_command(trust, outcome, "pending", "Tell what a next one would change");
-    on_client_run(pending, outcome, [&outcome](ApiClient& client) { return show_pending(client, outcome); });
+    on_client_run(pending, outcome, [&outcome](wire::MillClient& client) { return show_pending(client, outcome); });
     const auto next =
         add_client_command(trust, outcome, "publish", "Sign a new one that lists the keys as they are now",
                            "loomlink trust publish");
@@ -128,7 +128,7 @@ void add_trust_commands(CLI::App& app, CommandOutcome& outcome) {
     const auto keep = std::make_shared<bool>(false);
     next.command->add_flag("--keep-server-keys", *keep,
                            "the server's keys until now go on counting beside its new ones");
-    on_client_run(next, outcome, [wish = next.wish, keep, &outcome](ApiClient& client) {
+    on_client_run(next, outcome, [wish = next.wish, keep, &outcome](wire::MillClient& client) {
         return publish(client, *wish, *keep, outcome);
     });
     add_key_commands(app, outcome);

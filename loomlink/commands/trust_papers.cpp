@@ -2,12 +2,12 @@
 
 namespace weave::loomlink {
 
-Result<std::vector<std::string>> trust_papers(ApiClient& client) {
+Result<std::vector<std::string>> trust_papers(wire::MillClient& client) {
     WEAVE_TRY(const Json answer, client.get("/trust"));
-    return texts_member(answer, "documents");
+    return wire::texts_member(answer, "documents");
 }
 
-Result<TrustDocument> newest_trust_of(ApiClient& client) {
+Result<TrustDocument> newest_trust_of(wire::MillClient& client) {
     WEAVE_TRY(const auto papers, trust_papers(client));
     if (papers.empty()) return Error{ErrorCode::refused, "nobody has signed a trust document yet", "trust"};
     return read_trust(papers.back());

@@ -1,6 +1,6 @@
 #pragma once
 
-#include <loomlink/commands/api_client.hpp>
+#include <weave/wire/mill_client.hpp>
 #include <loomlink/keys/trust.hpp>
 #include <string>
 #include <vector>
@@ -8,10 +8,10 @@
 namespace weave::loomlink {
 
 /// The texts of all trust documents of the server, oldest first. Nothing in them has been checked.
-Result<std::vector<std::string>> trust_papers(ApiClient& client);
+Result<std::vector<std::string>> trust_papers(wire::MillClient& client);
 
 /// The newest one, sound in itself. Whether it is the right one is for the caller to know. Error (refused):
 /// there is none yet.
-Result<TrustDocument> newest_trust_of(ApiClient& client);
+Result<TrustDocument> newest_trust_of(wire::MillClient& client);
 
 }  // namespace weave::loomlink

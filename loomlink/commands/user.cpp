@@ -6,7 +6,7 @@
 #include <loomlink/commands/bootstrap.hpp>
 #include <loomlink/commands/client_command.hpp>
 #include <loomlink/commands/names.hpp>
-#include <loomlink/commands/sign_in.hpp>
+#include <weave/wire/mill_sign_in.hpp>
 
 namespace weave::loomlink {
 
@@ -23,7 +23,7 @@ CLI::Option* add_roles(CLI::App* command, std::vector<std::string>& roles) {
 }
 
 /// A new code, and the link that a browser or `user join` takes.
-void tell_code(const ApiClient& client, const Json& answer, CommandOutcome& outcome) {
+void tell_code(const wire::MillClient& client, const Json& answer, CommandOutcome& outcome) {
     const std::string link = client.session().origin + "/join#" + told(answer, "code");
     Json json = answer;
     json["link"] = link;
@@ -31,7 +31,7 @@ void tell_code(const ApiClient& client, const Json& answer, CommandOutcome& outc
                              on_one_line(link) + "\n");
 }
 
-Status list_people(ApiClient& client, CommandOutcome& outcome) {
+Status list_people(wire::MillClient& client, CommandOutcome& outcome) {
     WEAVE_TRY(const Json answer, client.get("/people"));
     std::vector<std::vector<std::string>> lines;
     for (const Json& person : entries(answer, "people"))
@@ -57,8 +57,8 @@ JoinWish without_link(JoinWish wish) {
 
 Status join(const ClientWish& wish, const JoinWish& join_wish, CommandOutcome& outcome) {
     WEAVE_TRY(const auto file, wish.session_path());
-    WEAVE_TRY(const KeptSession server, server_wished(join_wish.origin, join_wish.fingerprint));
-    WEAVE_TRY(ApiClient client, ApiClient::of(server));
+    WEAVE_TRY(const wire::MillSession server, wire::server_wished(join_wish.origin, join_wish.fingerprint));
+    WEAVE_TRY(wire::MillClient client, wire::MillClient::of(server));
     PasswordSource source(wish.password_file);
     WEAVE_TRY(std::string password, source.ask_new("Password for " + join_wish.name + ", of 12 or more"));
     Json body{{"code", join_wish.code},
@@ -67,8 +67,8 @@ Status join(const ClientWish& wish, const JoinWish& join_wish, CommandOutcome& o
               {"password", password}};
     wipe(password);
     WEAVE_TRY(const Json answer, client.post("/invitations/accept", std::move(body)));
-    WEAVE_CHECK_OK(continue_as_told(client, answer, join_wish.name));
-    WEAVE_CHECK_OK(save_session(file, client.session()));
+    WEAVE_CHECK_OK(wire::continue_as_told(client, answer, join_wish.name));
+    WEAVE_CHECK_OK(wire::save_session(file, client.session()));
     outcome.answer({{"origin", server.origin}, {"person", answer.value("person", Json())}},
                    on_one_line(join_wish.name) + " has joined and is signed in\n");
     return {};
@@ -95,7 +95,7 @@ void add_join(CLI::App& app, CommandOutcome& outcome) {
            [client = command.wish, wish, &outcome] { return join(*client, without_link(*wish), outcome); });
 }
 
-Status change_password(ApiClient& client, const ClientWish& wish, CommandOutcome& outcome) {
+Status change_password(wire::MillClient& client, const ClientWish& wish, CommandOutcome& outcome) {
     PasswordSource source(wish.password_file);
     Json body = Json::object();
     WEAVE_TRY(body["old"], source.ask("Password until now"));
@@ -113,8 +113,8 @@ void add_named_steps(CLI::App& app, CommandOutcome& outcome) {
                                               "loomlink user roles dora designer approver");
     add_name(set_roles.command, "NAME", *name, "the person")->required();
     add_roles(set_roles.command, *roles);
-    on_client_run(set_roles, outcome, [name, roles, &outcome](ApiClient& client) -> Status {
-        WEAVE_TRY(const Json answer, client.post(api_path({"people", *name, "roles"}), {{"roles", *roles}}));
+    on_client_run(set_roles, outcome, [name, roles, &outcome](wire::MillClient& client) -> Status {
+        WEAVE_TRY(const Json answer, client.post(wire::mill_path({"people", *name, "roles"}), {{"roles", *roles}}));
         outcome.answer(answer, on_one_line(*name) + ": " + told(answer, "roles") + "\n");
         return {};
     });
@@ -123,8 +123,8 @@ void add_named_steps(CLI::App& app, CommandOutcome& outcome) {
         const auto command = add_client_command(
             app, outcome, step, enable ? "Let a person sign in again" : "Let a person sign in no more");
         add_name(command.command, "NAME", *name, "the person")->required();
-        on_client_run(command, outcome, [name, step, enable, &outcome](ApiClient& client) -> Status {
-            WEAVE_TRY(const Json answer, client.post(api_path({"people", *name, step})));
+        on_client_run(command, outcome, [name, step, enable, &outcome](wire::MillClient& client) -> Status {
+            WEAVE_TRY(const Json answer, client.post(wire::mill_path({"people", *name, step})));
             outcome.answer(answer,
                            on_one_line(*name) + (enable ? " may sign in\n" : " may not sign in any more\n"));
             return {};
@@ -133,8 +133,8 @@ void add_named_steps(CLI::App& app, CommandOutcome& outcome) {
     const auto reset = add_client_command(
         app, outcome, "reset", "Revoke the key of a person who lost the password, and invite anew");
     add_name(reset.command, "NAME", *name, "the person")->required();
-    on_client_run(reset, outcome, [name, &outcome](ApiClient& client) -> Status {
-        WEAVE_TRY(const Json answer, client.post(api_path({"people", *name, "reset"})));
+    on_client_run(reset, outcome, [name, &outcome](wire::MillClient& client) -> Status {
+        WEAVE_TRY(const Json answer, client.post(wire::mill_path({"people", *name, "reset"})));
         tell_code(client, answer, outcome);
         return {};
     });
@@ -145,12 +145,12 @@ void add_named_steps(CLI::App& app, CommandOutcome& outcome) {
 void add_user_commands(CLI::App& app, CommandOutcome& outcome) {
     CLI::App& user = add_group(app, "user", "People: invite, join, roles, passwords");
     const auto list = add_client_command(user, outcome, "list", "List all people and what each may do");
-    on_client_run(list, outcome, [&outcome](ApiClient& client) { return list_people(client, outcome); });
+    on_client_run(list, outcome, [&outcome](wire::MillClient& client) { return list_people(client, outcome); });
     const auto invite = add_client_command(user, outcome, "invite", "Make an invitation for somebody",
                                            "loomlink user invite designer approver");
     const auto roles = std::make_shared<std::vector<std::string>>();
     add_roles(invite.command, *roles);
-    on_client_run(invite, outcome, [roles, &outcome](ApiClient& client) -> Status {
+    on_client_run(invite, outcome, [roles, &outcome](wire::MillClient& client) -> Status {
         WEAVE_TRY(const Json answer, client.post("/invitations", {{"roles", *roles}}));
         tell_code(client, answer, outcome);
         return {};
@@ -161,7 +161,7 @@ void add_user_commands(CLI::App& app, CommandOutcome& outcome) {
     const auto password = add_client_command(
         user, outcome, "password", "Change your password; of a --password-file the old one is line 1");
     add_password_option(password);
-    on_client_run(password, outcome, [wish = password.wish, &outcome](ApiClient& client) {
+    on_client_run(password, outcome, [wish = password.wish, &outcome](wire::MillClient& client) {
         return change_password(client, *wish, outcome);
     });
 }

@@ -1,6 +1,7 @@
 #pragma once
 
 #include <weave/net/router.hpp>
+#include <weave/wire/mill_client.hpp>
 
 #include <functional>
 #include <loomlink/service/fields.hpp>
@@ -53,7 +54,8 @@ struct ApiRoute {
     [[nodiscard]] std::size_t body_bytes() const;
 };
 
-inline constexpr const char* api_root = "/api/v1";
+/// Where the API begins, which its clients know.
+inline constexpr const char* api_root = wire::mill_api_root;
 
 /// Answers a call, or lets a WebSocket in.
 using ApiHandler = std::function<net::Response(const ApiCall&)>;

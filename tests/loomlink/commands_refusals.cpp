@@ -92,6 +92,16 @@ TEST_CASE("every command explains itself with an example or in words", "[command
     }
 }
 
+TEST_CASE("who was signed out elsewhere is told how to sign in again", "[commands]") {
+    CommandMill mill;
+    mill.first_joins();
+    std::filesystem::copy_file(mill.at("mary"), mill.at("elsewhere"));
+    mill.done("elsewhere", {"logout"});
+    const Ended ended = mill.as("mary", {"design", "list"});
+    CHECK(ended.code == 4);
+    CHECK_THAT(ended.err, Catch::Contains("(loomlink login)"));
+}
+
 TEST_CASE("who has not signed in, or not rightly, is refused with 4", "[commands]") {
     CommandMill mill;
     mill.first_joins();

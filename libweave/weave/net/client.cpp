@@ -21,6 +21,7 @@ namespace beast = boost::beast;
 namespace http = beast::http;
 
 constexpr std::size_t piece_bytes = 65536;
+constexpr Milliseconds between_reports{50};
 
 bool may_be_repeated(const ClientRequest& request) {
     return request.method == "GET" || request.method == "HEAD";
@@ -61,14 +62,26 @@ class HttpClient::Connected {
     Result<Response> send(const std::string& head, const ClientRequest& request, const Sink* sink) {
         Result<Response> outcome = system_fault("the request failed", place_of(m_options));
         const auto run = [&]() -> asio::awaitable<void> { outcome = co_await talk(head, request, sink); };
+        m_sent = 0;
         m_io.restart();
         asio::co_spawn(m_io, run, asio::detached);
-        m_io.run();
+        if (!request.progress) return m_io.run(), outcome;
+        while (!m_io.stopped()) {
+            m_io.run_for(between_reports);
+            if (!m_io.stopped() && !request.progress(m_sent)) return given_up();
+        }
         return outcome;
     }
 
   private:
     using Parser = http::response_parser<http::buffer_body>;
+
+    /// What still waits goes with this connection, which is of no use any more.
+    Error given_up() {
+        m_io.stop();
+        m_reusable = m_stale = false;
+        return {ErrorCode::refused, "the request was given up", place_of(m_options)};
+    }
 
     asio::awaitable<Result<Response>> talk(const std::string& head, const ClientRequest& request,
                                            const Sink* sink) {
@@ -87,7 +100,7 @@ class HttpClient::Connected {
     asio::awaitable<Result<Response>> ask(const std::string& head, const ClientRequest& request,
                                           const Sink* sink) {
         co_await write(head);
-        co_await write(request.body);  // a server that refuses early answers all the same
+        co_await write(request.body, &m_sent);  // a server that refuses early answers all the same
         m_line->deadline.set(m_line, m_options.answer_time);
         Parser parser;
         parser.body_limit(boost::none);
@@ -110,13 +123,14 @@ class HttpClient::Connected {
     }
 
     /// Sends all of it, as long as it goes on; that it failed shows when the answer is read.
-    asio::awaitable<void> write(std::string_view bytes) {
+    asio::awaitable<void> write(std::string_view bytes, std::size_t* sent = nullptr) {
         while (!bytes.empty()) {
             m_line->deadline.set(m_line, m_options.stall_time);
             const auto [error, size] = co_await m_line->stream.async_write_some(
                 asio::const_buffer(bytes.data(), std::min(bytes.size(), piece_bytes)), as_result);
             if (error) break;
             bytes.remove_prefix(size);
+            if (sent != nullptr) *sent += size;
         }
     }
 
@@ -156,6 +170,7 @@ class HttpClient::Connected {
     asio::io_context m_io{1};
     std::shared_ptr<Dialled> m_line;
     beast::flat_buffer m_buffer{piece_bytes};
+    std::size_t m_sent = 0;  ///< of the body
     bool m_reusable = false;
     bool m_stale = false;
 };

@@ -37,12 +37,16 @@ struct ClientOptions {
 /// system's authorities are trusted. Errors: bad_input.
 Result<ClientOptions> parse_origin(const std::string& origin);
 
+/// Is told, at least ten times a second while a request is under way, how many bytes of its body are sent; false gives it up.
+using Progress = std::function<bool(std::size_t sent)>;
+
 /// What a client asks.
 struct ClientRequest {
     std::string method = "GET";
     std::string target = "/";  ///< path and query, percent-encoded
     Headers headers;
     std::string body;
+    Progress progress{};  ///< none: it goes on to its end
 };
 
 /// Takes the next piece of an answer's body; an error ends the transfer and is handed on.
@@ -51,7 +55,7 @@ using Sink = std::function<Status(std::string_view piece)>;
 /// A blocking HTTP client that keeps its connection open between requests. For one thread at a time. An
 /// answer with an error status is an answer. Errors: system when the server cannot be reached or falls
 /// silent; refused when it is not the one that was meant; bad_input when it answers nonsense or more than it
-/// may.
+/// may; refused when ClientRequest::progress gave the request up: nobody knows then whether the server did what was asked.
 class HttpClient {
   public:
     explicit HttpClient(ClientOptions options);

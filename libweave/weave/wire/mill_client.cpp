@@ -1,4 +1,4 @@
-#include <loomlink/commands/api_client.hpp>
+#include <weave/wire/mill_client.hpp>
 
 #include <weave/core/text.hpp>
 #include <weave/keys/codes.hpp>
@@ -6,11 +6,10 @@
 #include <weave/net/target.hpp>
 
 #include <chrono>
-#include <loomlink/service/table.hpp>
 #include <thread>
 #include <utility>
 
-namespace weave::loomlink {
+namespace weave::wire {
 
 namespace {
 
@@ -46,7 +45,6 @@ Error error_of(const net::Response& response, const std::string& path) {
                         std::string(net::reason_of(response.status));
     if (error.code == ErrorCode::refused || error.code == ErrorCode::system || error.where.empty())
         error.where = place_of(path);
-    if (response.status == 401 && path != "/login") error.message += " (loomlink login)";
     return error;
 }
 
@@ -59,7 +57,7 @@ Result<Json> json_of(const Result<net::Response>& response, const std::string& p
 }
 
 std::string target_of(const std::string& path, const net::Parameters& query) {
-    std::string target = api_root + path;
+    std::string target = mill_api_root + path;
     char before = '?';
     for (const auto& [name, value] : query) {
         target += before + name + "=" + net::percent_encoded(value);
@@ -84,37 +82,40 @@ Error lacks(const std::string& member) {
 
 }  // namespace
 
-std::string api_path(std::initializer_list<std::string> segments) {
+std::string mill_path(std::initializer_list<std::string> segments) {
     std::string path;
     for (const std::string& segment : segments) path += "/" + net::percent_encoded(segment);
     return path;
 }
 
-ApiClient::ApiClient(KeptSession session, net::ClientOptions options)
+MillClient::MillClient(MillSession session, net::ClientOptions options)
     : m_session(std::move(session)), m_options(options), m_http(std::move(options)) {}
 
-Result<ApiClient> ApiClient::of(KeptSession session) {
+Result<MillClient> MillClient::of(MillSession session) {
     WEAVE_TRY(net::ClientOptions options, client_options(session));
-    return ApiClient(std::move(session), std::move(options));
+    return MillClient(std::move(session), std::move(options));
 }
 
-net::Headers ApiClient::headers() const {
+net::Headers MillClient::headers() const {
     net::Headers headers;
     if (!m_session.token.empty()) headers.set("Authorization", "Bearer " + m_session.token);
     return headers;
 }
 
-Result<net::Response> ApiClient::send(const net::ClientRequest& request, const net::Sink* sink) {
+Result<net::Response> MillClient::send(net::ClientRequest& request, const net::Sink* sink) {
+    if (m_progress)
+        request.progress = [this, of = request.body.size()](std::size_t sent) { return m_progress(sent, of); };
     auto response = sink != nullptr ? m_http.send(request, *sink) : m_http.send(request);
     m_signed_out = response && response->status == 401;
     return response;
 }
 
-Result<Json> ApiClient::get(const std::string& path, const net::Parameters& query) {
-    return json_of(send({"GET", target_of(path, query), headers(), ""}), path);
+Result<Json> MillClient::get(const std::string& path, const net::Parameters& query) {
+    net::ClientRequest request{"GET", target_of(path, query), headers(), ""};
+    return json_of(send(request), path);
 }
 
-Result<std::string> ApiClient::get_bytes(const std::string& path, const net::Parameters& query,
+Result<std::string> MillClient::get_bytes(const std::string& path, const net::Parameters& query,
                                          std::size_t most) {
     std::string bytes;
     const net::Sink keep = [&](std::string_view piece) -> Status {
@@ -123,12 +124,13 @@ Result<std::string> ApiClient::get_bytes(const std::string& path, const net::Par
         bytes += piece;
         return {};
     };
-    WEAVE_TRY(const net::Response response, send({"GET", target_of(path, query), headers(), ""}, &keep));
+    net::ClientRequest request{"GET", target_of(path, query), headers(), ""};
+    WEAVE_TRY(const net::Response response, send(request, &keep));
     if (response.status != 200) return error_of(response, path);
     return bytes;
 }
 
-Result<Json> ApiClient::change(const std::string& method, const std::string& path, Json body) {
+Result<Json> MillClient::change(const std::string& method, const std::string& path, Json body) {
     body["request"] = make_token();
     net::ClientRequest request{method, target_of(path, {}), headers(),
                                body.dump(-1, ' ', false, Json::error_handler_t::replace)};
@@ -136,15 +138,24 @@ Result<Json> ApiClient::change(const std::string& method, const std::string& pat
     request.headers.set("Content-Type", "application/json");
     auto response = send(request);
     auto pause = first_pause;
-    for (int tries = 1; tries < most_tries && may_have_failed(response); ++tries, pause *= 2) {
-        std::this_thread::sleep_for(pause);
-        response = send(request);
-    }
+    for (int tries = 1; tries < most_tries && may_have_failed(response); ++tries, pause *= 2)
+        response = waits(pause) ? send(request) : Error{ErrorCode::refused, "the request was given up", place_of(path)};
     wipe(request.body);
     return json_of(response, path);
 }
 
-Result<net::WebSocketClient> ApiClient::watch(const std::string& path) const {
+/// Waits; false where the request was given up meanwhile.
+bool MillClient::waits(std::chrono::milliseconds time) const {
+    constexpr std::chrono::milliseconds glance{50};
+    for (; time > glance && m_progress; time -= glance) {
+        if (!m_progress(0, 0)) return false;
+        std::this_thread::sleep_for(glance);
+    }
+    std::this_thread::sleep_for(time);
+    return true;
+}
+
+Result<net::WebSocketClient> MillClient::watch(const std::string& path) const {
     return net::WebSocketClient::connect(m_options, target_of(path, {}), headers());
 }
 
@@ -168,4 +179,4 @@ Result<std::vector<std::string>> texts_member(const Json& answer, const std::str
     return texts;
 }
 
-}  // namespace weave::loomlink
+}  // namespace weave::wire

@@ -6,10 +6,10 @@
 #include <filesystem>
 #include <string>
 
-namespace weave::loomlink {
+namespace weave::wire {
 
-/// Which server the commands talk to and as whom, kept from one command to the next.
-struct KeptSession {
+/// Which loomlink a person talks to and as whom, kept from one program to the next: its commands and the studio share it.
+struct MillSession {
     std::string origin;       ///< `https://host:port`
     std::string fingerprint;  ///< SHA-256 of the server's certificate; empty: the system's authorities decide
     std::string name;         ///< of the person who signed in; empty: nobody has
@@ -30,14 +30,11 @@ Status make_folders_for(const std::filesystem::path& file);
 
 /// Keeps a session in a file of mode 0600, whole or not at all; folders that are missing are made for the
 /// user alone. Refused where others may read the file that is there.
-Status save_session(const std::filesystem::path& file, const KeptSession& session);
+Status save_session(const std::filesystem::path& file, const MillSession& session);
 
-/// Reads what save_session() wrote. Error (refused) where it is missing: nobody has signed in; and where
+/// Reads what save_session() wrote; an empty session where there is no file: nobody has signed in. Error (refused) where
 /// others may read it.
-Result<KeptSession> load_session(const std::filesystem::path& file);
-
-/// The same, but an empty session where there is no file.
-Result<KeptSession> load_session_if_any(const std::filesystem::path& file);
+Result<MillSession> load_session(const std::filesystem::path& file);
 
 /// A fingerprint as a person gives it: 64 hexadecimal digits, with or without colons. Lower case. Errors:
 /// bad_input; it names the option, and says where people find the fingerprint, such as `as the server tells
@@ -46,7 +43,7 @@ Result<std::string> parse_fingerprint(const std::string& text, const std::string
                                       const std::string& source);
 
 /// How to reach the server of a session. Errors: bad_input for what is no origin; refused for plain HTTP to
-/// another machine, where passwords could be read on the way.
-Result<net::ClientOptions> client_options(const KeptSession& session);
+/// another machine, where passwords could be read on the way; usage for a fingerprint beside plain HTTP.
+Result<net::ClientOptions> client_options(const MillSession& session);
 
-}  // namespace weave::loomlink
+}  // namespace weave::wire

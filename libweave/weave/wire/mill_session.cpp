@@ -1,4 +1,4 @@
-#include <loomlink/commands/session.hpp>
+#include <weave/wire/mill_session.hpp>
 
 #include <weave/core/json_reader.hpp>
 #include <weave/keys/hex.hpp>
@@ -9,7 +9,7 @@
 #include <cstdlib>
 #include <sys/stat.h>
 
-namespace weave::loomlink {
+namespace weave::wire {
 
 namespace fs = std::filesystem;
 
@@ -18,10 +18,10 @@ namespace {
 constexpr const char* format = "loomlink-session";
 constexpr std::size_t most_bytes = 16384, longest_text = 2048;
 
-Result<KeptSession> read_session(std::string_view bytes) {
+Result<MillSession> read_session(std::string_view bytes) {
     WEAVE_TRY(const Json json, parse_json(bytes));
     JsonReader reader(json, "");
-    KeptSession session;
+    MillSession session;
     if (reader.text("format", std::string()) != format) reader.fail("is no session of loomlink", "format");
     static_cast<void>(reader.integer("version", 1, 1));
     session.origin = reader.text("origin", {}, longest_text);
@@ -64,7 +64,7 @@ Status make_folders_for(const fs::path& file) {
     return {};
 }
 
-Status save_session(const fs::path& file, const KeptSession& session) {
+Status save_session(const fs::path& file, const MillSession& session) {
     WEAVE_CHECK_OK(make_folders_for(file));
     const Json json{{"format", format},         {"version", 1},
                     {"origin", session.origin}, {"fingerprint", session.fingerprint},
@@ -73,20 +73,13 @@ Status save_session(const fs::path& file, const KeptSession& session) {
     return write_private_file(file, json.dump(1, ' ', true, Json::error_handler_t::replace) + "\n");
 }
 
-Result<KeptSession> load_session(const fs::path& file) {
+Result<MillSession> load_session(const fs::path& file) {
     std::error_code code;
-    if (!fs::exists(fs::symlink_status(file, code)))
-        return Error{ErrorCode::refused, "you have not signed in here: loomlink login", file.string()};
+    if (!fs::exists(fs::symlink_status(file, code))) return MillSession{};
     WEAVE_TRY(const SecretBytes bytes, read_private_file(file, most_bytes));
     auto session = read_session({reinterpret_cast<const char*>(bytes.data()), bytes.size()});
     if (!session) return std::move(session).error().in(file.string());
     return session;
-}
-
-Result<KeptSession> load_session_if_any(const fs::path& file) {
-    std::error_code code;
-    if (!fs::exists(fs::symlink_status(file, code))) return KeptSession{};
-    return load_session(file);
 }
 
 Result<std::string> parse_fingerprint(const std::string& text, const std::string& option,
@@ -99,7 +92,7 @@ Result<std::string> parse_fingerprint(const std::string& text, const std::string
     return bad_input("must be 64 hexadecimal digits, " + source, option);
 }
 
-Result<net::ClientOptions> client_options(const KeptSession& session) {
+Result<net::ClientOptions> client_options(const MillSession& session) {
     WEAVE_TRY(net::ClientOptions options, net::parse_origin(session.origin));
     if (options.tls) {
         options.tls->fingerprint = session.fingerprint;
@@ -107,11 +100,11 @@ Result<net::ClientOptions> client_options(const KeptSession& session) {
     }
     if (!session.fingerprint.empty())
         return Error{ErrorCode::usage, "goes with https://: plain HTTP shows no certificate",
-                     "--fingerprint"};
+                     "fingerprint"};
     if (is_this_machine(options.host)) return options;
     return Error{ErrorCode::refused,
                  "plain HTTP to another machine shows passwords to whoever listens; use https://",
                  session.origin};
 }
 
-}  // namespace weave::loomlink
+}  // namespace weave::wire

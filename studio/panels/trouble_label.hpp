@@ -1,0 +1,14 @@
+#pragma once
+
+#include <QLabel>
+
+namespace weave::studio {
+
+/// Words about what went wrong, in place, never in the way: gone while there are none.
+class TroubleLabel : public QLabel {
+  public:
+    explicit TroubleLabel(QWidget* parent = nullptr);
+    void setText(const QString& words);
+};
+
+}  // namespace weave::studio

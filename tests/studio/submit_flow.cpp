@@ -1,0 +1,272 @@
+#include "submit_case.hpp"
+
+#include <weave/core/sha256.hpp>
+#include <weave/keys/server_key.hpp>
+
+using namespace weave;
+using namespace weave::studio;
+using namespace weave::studio::test;
+
+namespace {
+
+/// What a machine of the mill would sign of a whole cloth that came to rest.
+wire::SignedEvidence evidence_of(const Mill& mill, const KeyPair& key, const Design& design,
+                                 const Block& cloth) {
+    const std::size_t picks = cloth.picks(), ends = cloth.ends();
+    const Json report{{"design_sha256", design_sha256(design)},
+                      {"scene_sha256", scene_sha256(design)},
+                      {"yarns_sha256", sha256_hex("yarns")},
+                      {"coverage",
+                       {{"picks", {1, picks}},
+                        {"ends", {1, ends}},
+                        {"of", {{"picks", picks}, {"ends", ends}}},
+                        {"whole", true}}},
+                      {"plan", {{{"term", "friction"}, {"choice", "off"}, {"reason", "the scene has none"}}}},
+                      {"solver", "relax"},
+                      {"fidelity", "standard"},
+                      {"residual", 1e-4},
+                      {"converged", true},
+                      {"order_kept", true}};
+    auto made =
+        wire::sign_evidence(key, mill.site(), report.dump(1), parse_utc("2026-11-26T12:00:00.000Z").value());
+    if (!made) FAIL(made.error().text());
+    return *std::move(made);
+}
+
+}  // namespace
+
+TEST_CASE("submit: a wrong password and a wrong fingerprint are refused, the right ones let in") {
+    const Mill mill;
+    const std::string file = mill.at("studio.session");
+    SubmitWindow window(file);
+    REQUIRE(window.wait([&] { return window.find<QPushButton>("sign_in").isVisible(); }));
+    CHECK_FALSE(window.find<QPlainTextEdit>("note").isEnabled());
+
+    window.sign_in(mill, "not the password");
+    window.wait_for("sign_in_words", "name or password is wrong");
+    CHECK_FALSE(window.panel.desk().access().signed_in);
+    CHECK(window.find<QLineEdit>("password").text().isEmpty());
+
+    window.type("fingerprint", std::string(64, 'a'));
+    window.type("password", Mill::password);
+    window.click("sign_in");
+    window.wait_for("sign_in_words", "shows another certificate");
+    CHECK_FALSE(window.panel.desk().access().signed_in);
+    CHECK_FALSE(std::filesystem::exists(file));
+
+    window.sign_in(mill);
+    window.wait_signed_in();
+    CHECK(window.text("who").startsWith("The dora"));
+    CHECK_FALSE(window.find<QPushButton>("sign_in").isVisible());
+    CHECK(read_file(file).value().find(Mill::password) == std::string::npos);
+}
+
+TEST_CASE("submit: who signed in by a command is signed in here too, and the other way round") {
+    const Mill mill;
+    SubmitWindow window(mill.session_of("dora"));
+    window.wait_signed_in();
+    QTest::mouseClick(&window.find<QPushButton>("sign_out"), Qt::LeftButton);
+    REQUIRE(window.wait([&] { return !window.panel.desk().access().signed_in; }));
+    window.type("password", Mill::password);  // mill, fingerprint and name stand there already
+    QTest::keyClick(&window.find<QLineEdit>("password"), Qt::Key_Return);
+    window.wait_signed_in();
+    CHECK(mill.as("dora", {"me"}).at("person").at("name") == "dora");
+}
+
+TEST_CASE(
+    "submit: a new design is saved and submitted, and another person's approval appears without a click") {
+    const Mill mill;
+    SubmitWindow window(mill.session_of("dora"));
+    window.panel.suggest_name("Pocket, for Anna");
+    window.wait_signed_in();
+    CHECK(window.find<QLineEdit>("new_design").text() == "Pocket-for-Anna");
+    window.type("new_design", "pocket");
+    window.submit("The first pocket");
+    window.wait_for("told", "submitted, waits for approval");
+    window.wait_for("state", "Revision 1 is submitted");
+    CHECK(window.find<QPlainTextEdit>("note").toPlainText().isEmpty());
+    CHECK(window.find<QLineEdit>("signing_password").text().isEmpty());
+    window.wait_for("changes", "is what revision 1 holds");
+    CHECK_FALSE(window.find<QPushButton>("submit").isEnabled());
+
+    mill.signs("abel", {"approve", "pocket", "1"}, "Looked at face and back");
+    window.wait_for("state", "Revision 1 is approved");
+    CHECK(window.talk().contains("The abel"));
+    CHECK(window.talk().contains("Looked at face and back"));
+}
+
+TEST_CASE("submit: a second revision shows what changed, and a rejection its reason") {
+    const Mill mill;
+    SubmitWindow window(mill.session_of("dora"));
+    window.wait_signed_in();
+    window.type("new_design", "cloth");
+    window.write_note("A first try");
+    window.click("save_revision");
+    window.wait_for("state", "Revision 1 is saved, not submitted");
+    window.wait_for("changes", "is what revision 1 holds");
+
+    window.open_sample("twill-2-2");
+    window.wait_for("changes", "crossings differ");
+    CHECK(window.find<QWidget>("change_picture").isVisible());
+    QTest::keyClick(&window.find<QWidget>("all_changes"), Qt::Key_Space);
+    CHECK(window.find<QPlainTextEdit>("change_words").toPlainText().contains("revision 1"));
+
+    window.submit("Twill in place of the pocket");
+    window.wait_for("state", "Revision 2 is submitted");
+    mill.signs("abel", {"request-changes", "cloth", "2"}, "The toe floats too far");
+    window.wait_for("state", "The abel asks for changes: The toe floats too far");
+    CHECK(window.text("state").contains("Revision 2 is rejected"));
+
+    mill.as("abel", {"comment", "cloth", "2", "Here it is", "--pick", "3"});
+    REQUIRE(window.wait([&] { return window.talk().contains("pick 3: Here it is"); }));
+    window.type("comment", "I see it");
+    window.click("send_comment");
+    REQUIRE(window.wait([&] { return window.talk().contains("I see it"); }));
+    CHECK(window.find<QLineEdit>("comment").text().isEmpty());
+}
+
+TEST_CASE("submit: a wrong signing password keeps what was saved, and the mill's words are shown") {
+    const Mill mill;
+    SubmitWindow window(mill.session_of("dora"));
+    window.wait_signed_in();
+    window.type("new_design", "cloth");
+    window.write_note("Mine");
+    window.type("signing_password", "not it");
+    window.click("submit");
+    window.wait_for("trouble", "the password is wrong");
+    window.wait_for("state", "Revision 1 is saved, not submitted");
+    REQUIRE(window.wait([&] { return window.find<QPushButton>("submit").text() == "Submit revision 1"; }));
+    CHECK(window.panel.desk().access().signed_in);
+    window.submit("Now with the right one");
+    window.wait_for("state", "Revision 1 is submitted");
+    CHECK(window.text("trouble").isEmpty());
+}
+
+TEST_CASE("submit: somebody who saved first is not overwritten unseen") {
+    const Mill mill;
+    SubmitWindow window(mill.session_of("dora"));
+    window.wait_signed_in();
+    window.type("new_design", "cloth");
+    window.write_note("Mine");
+    window.click("save_revision");
+    window.wait_for("state", "Revision 1 is");
+    const std::string other = mill.at("other.weave");
+    REQUIRE(write_file(other, write_document(find_sample("twill-2-2")->make())));
+    mill.as("dora", {"save", other, "cloth", "--message", "From elsewhere"});
+    window.wait_for("changes", "crossings differ");  // with revision 2 now
+    CHECK(window.find<QComboBox>("compare_with").currentText().contains("From elsewhere"));
+}
+
+TEST_CASE("submit: a mill that is gone is told in words, and all goes on when it is back") {
+    Mill mill;
+    SubmitWindow window(mill.session_of("dora"));
+    window.wait_signed_in();
+    window.type("new_design", "cloth");
+    window.write_note("Half a note");
+    mill.stop();
+    window.find<QPushButton>("save_revision").click();
+    window.wait_for("trouble", "The mill did not take it");
+    window.wait_for("gone", "does not answer");
+    CHECK(window.find<QPlainTextEdit>("note").toPlainText() == "Half a note");
+    CHECK_FALSE(window.find<QPushButton>("save_revision").isEnabled());
+    mill.start();
+    REQUIRE(window.wait([&] { return window.text("gone").isEmpty(); }));
+    window.click("save_revision");
+    window.wait_for("state", "Revision 1 is saved");
+}
+
+TEST_CASE("submit: a session that has ended asks to sign in, and keeps what was written") {
+    const Mill mill;
+    SubmitWindow window(mill.session_of("dora"));
+    window.wait_signed_in();
+    window.type("new_design", "cloth");
+    window.write_note("Still here");
+    const auto elsewhere = mill.at("copy.session");
+    std::filesystem::copy_file(mill.session_of("dora"), elsewhere);
+    mill.as("copy", {"logout"});
+    window.find<QPushButton>("save_revision").click();
+    window.wait_for("sign_in_words", "has ended");
+    CHECK(window.find<QPlainTextEdit>("note").toPlainText() == "Still here");
+    window.type("password", Mill::password);
+    window.click("sign_in");
+    window.wait_signed_in();
+    CHECK(window.find<QLineEdit>("new_design").text() == "cloth");
+    window.click("save_revision");
+    window.wait_for("state", "Revision 1 is saved");
+}
+
+TEST_CASE("submit: what is on its way can be given up") {
+    Mill mill;
+    SubmitWindow window(mill.session_of("dora"));
+    window.wait_signed_in();
+    window.panel.desk().watch(false);
+    window.type("new_design", "cloth");
+    window.write_note("Too early");
+    mill.suspend();
+    window.click("save_revision");
+    REQUIRE(window.wait([&] { return window.find<QPushButton>("cancel_hand_in").isVisible(); }));
+    window.wait_for("way", "The mill has it");
+    window.click("cancel_hand_in");
+    window.wait_for("trouble", "Cancelled");
+    CHECK_FALSE(window.find<QPushButton>("cancel_hand_in").isVisible());
+    CHECK(window.find<QPlainTextEdit>("note").toPlainText() == "Too early");
+    mill.resume();
+}
+
+TEST_CASE("submit: findings, evidence and a cloth that cannot be made are told") {
+    const Mill mill;
+    SubmitWindow window(mill.session_of("dora"));
+    window.wait_signed_in();
+    window.panel.set_findings(2, 1, "A float of 40 picks on the back");
+    CHECK(window.text("findings_summary").contains("2 error(s), 1 warning(s)"));
+    CHECK(window.text("submit_warning").contains("nobody can approve it"));
+    CHECK(window.find<QLabel>("submit_warning").isVisible());
+    window.panel.set_findings(0, 0, {});
+    CHECK(window.text("submit_warning").isEmpty());
+
+    CHECK(window.text("evidence").contains("none yet"));
+    SimulationFound found{"this computer", "standard", QDateTime::currentDateTime(), true, true,
+                          window.edition,  {}};
+    window.panel.set_evidence(found);
+    CHECK(window.text("evidence").contains("relaxed on this computer at standard, at rest"));
+    CHECK(window.text("evidence").contains("No machine that the mill knows has signed it"));
+    window.open_sample("twill-2-2");
+    CHECK(window.text("evidence").contains("has changed since"));
+
+    window.type("new_design", "cloth");
+    window.write_note("Why not");
+    window.panel.set_design(window.design, nullptr, ++window.edition);
+    CHECK_FALSE(window.find<QPushButton>("save_revision").isEnabled());
+    CHECK(window.text("hint").contains("makes no cloth"));
+}
+
+TEST_CASE(
+    "submit: evidence that a machine of the mill signed is filed; that of a stranger is refused in words, "
+    "and no obstacle") {
+    const Mill mill;
+    const KeyPair key = load_server_key(mill.enrol_machine(), ServerKeyRole::evidence).value();
+    SubmitWindow window(mill.session_of("dora"));
+    window.wait_signed_in();
+    window.type("new_design", "cloth");
+    const auto offer = [&](const KeyPair& signer) {
+        const auto cloth = evaluate(window.design).value().block;
+        window.panel.set_evidence(SimulationFound{"box",
+                                                  "standard",
+                                                  {},
+                                                  true,
+                                                  true,
+                                                  window.edition,
+                                                  evidence_of(mill, signer, window.design, *cloth)});
+    };
+    offer(KeyPair::generate());
+    window.submit("Simulated by a stranger");
+    window.wait_for("trouble", "the signer is not enrolled");
+    window.wait_for("state", "Revision 1 is submitted");
+
+    window.open_sample("twill-2-2");
+    offer(key);
+    CHECK(window.text("evidence").contains("Signed; it is filed"));
+    window.submit("Simulated by a machine of the mill");
+    window.wait_for("state", "Revision 2 is submitted");
+    REQUIRE(window.wait([&] { return window.talk().contains("100 % of the crossings: standard, at rest"); }));
+}
