@@ -138,6 +138,10 @@ const LoomProfile* FindingsPanel::profile() const {
     return chosen < m_profiles.size() ? &m_profiles[chosen] : nullptr;
 }
 
+QString FindingsPanel::summary() const {
+    return m_summary->text();
+}
+
 void FindingsPanel::show_document(Document* document) {
     if (m_document != nullptr) m_document->disconnect(this);
     m_document = document;

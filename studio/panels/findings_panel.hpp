@@ -29,6 +29,8 @@ class FindingsPanel : public QWidget {
     void set_relaxed(std::optional<RelaxedCloth> relaxed);
     [[nodiscard]] const std::optional<CheckReport>& report() const { return m_report; }
     [[nodiscard]] const LoomProfile* profile() const;
+    /// The findings in one line.
+    [[nodiscard]] QString summary() const;
 
   Q_SIGNALS:
     /// The person wants to see this crossing of the cloth.

@@ -35,6 +35,7 @@
 #include <studio/panels/preset_dialog.hpp>
 #include <studio/panels/simulation_panel.hpp>
 #include <studio/panels/simulation_scene_group.hpp>
+#include <studio/panels/submit_panel.hpp>
 #include <studio/panels/yarns_panel.hpp>
 #include <studio/viewport/viewer_panel.hpp>
 #include <studio/window/block_actions.hpp>
@@ -43,6 +44,7 @@
 #include <studio/window/slice_desk.hpp>
 #include <studio/window/start_page.hpp>
 #include <studio/window/stencil_desk.hpp>
+#include <studio/window/submit_desk.hpp>
 #include <studio/window/tutorial.hpp>
 #include <studio/window/viewer_desk.hpp>
 
@@ -53,7 +55,7 @@ MainWindow::MainWindow(QWidget* parent)
       m_editors(new QTabWidget), m_card(new CardEditor), m_slice(new SliceEditor), m_slice_desk(new SliceDesk(*m_slice, this)), m_stencil(new StencilEditor),
       m_stencil_desk(new StencilDesk(*m_stencil, this)), m_viewer(new ViewerPanel), m_viewer_desk(new ViewerDesk(*m_viewer, this)), m_tree(new DesignTree),
       m_findings(new FindingsPanel), m_simulation(new SimulationPanel), m_simulation_desk(new SimulationDesk(*m_simulation, *m_viewer, this)), m_yarns(new YarnsPanel),
-      m_tutorial(new Tutorial), m_messages(new MessageBar), m_status(new QLabel) {
+      m_submit(new SubmitPanel), m_submit_desk(new SubmitDesk(*m_submit, *m_findings, *m_simulation, this)), m_tutorial(new Tutorial), m_messages(new MessageBar), m_status(new QLabel) {
     setObjectName("studio");
     resize(1680, 1040);
     make_workspace();
@@ -81,10 +83,12 @@ void MainWindow::show_in_parts(Document* document) {
     m_yarns->show_document(document);
     m_tree->show_document(document);
     m_findings->show_document(document);
+    m_submit_desk->show_document(document);
     m_tutorial->show_document(document);
 }
 
 void MainWindow::make_workspace() {
+    m_editors->setObjectName("editors");
     m_editors->setDocumentMode(true);
     m_editors->addTab(m_card, tr("Card"));
     m_editors->addTab(m_slice, tr("Section (slice)"));
@@ -165,7 +169,10 @@ void MainWindow::make_docks() {
     auto* simulation = dock("simulation-dock", tr("Simulation"), m_simulation, Qt::RightDockWidgetArea);
     auto* yarns = dock("yarns-dock", tr("Yarns"), m_yarns, Qt::RightDockWidgetArea);
     m_tutorial_dock = dock("tutorial-dock", tr("Tutorial"), m_tutorial, Qt::LeftDockWidgetArea);
+    auto* submit = dock("submit-dock", tr("Submit"), m_submit, Qt::RightDockWidgetArea);
     tabifyDockWidget(simulation, yarns);
+    tabifyDockWidget(yarns, submit);
+    connect(m_submit, &SubmitPanel::simulation_wanted, simulation, [simulation] { simulation->raise(); });
     simulation->raise();
     auto* findings = dock("findings-dock", tr("Findings"), m_findings, Qt::BottomDockWidgetArea);
     resizeDocks({findings}, {190}, Qt::Vertical);
@@ -174,6 +181,10 @@ void MainWindow::make_docks() {
     setCorner(Qt::BottomLeftCorner, Qt::LeftDockWidgetArea);
     setCorner(Qt::BottomRightCorner, Qt::RightDockWidgetArea);
     connect(m_findings, &FindingsPanel::place_wanted, this, &MainWindow::go_to);
+    connect(m_submit, &SubmitPanel::findings_wanted, findings, [findings] {
+        findings->show();
+        findings->raise();
+    });
     connect(m_findings, &FindingsPanel::counted, findings, [findings](std::size_t errors, std::size_t warnings) {
         findings->setWindowTitle(errors + warnings == 0 ? tr("Findings") : tr("Findings (%1)").arg(errors + warnings));
     });

@@ -29,6 +29,8 @@ class StencilDesk;
 class StencilEditor;
 class SimulationDesk;
 class SimulationPanel;
+class SubmitDesk;
+class SubmitPanel;
 class Tutorial;
 class ViewerDesk;
 class ViewerPanel;
@@ -105,6 +107,8 @@ class MainWindow : public QMainWindow {
     SimulationPanel* m_simulation;
     SimulationDesk* m_simulation_desk;
     YarnsPanel* m_yarns;
+    SubmitPanel* m_submit;
+    SubmitDesk* m_submit_desk;
     Tutorial* m_tutorial;
     QDockWidget* m_tutorial_dock = nullptr;
     QDockWidget* m_simulation_dock = nullptr;

@@ -1,3 +1,7 @@
+// Pictures of the window for the guide (tests/studio/guide).
+
+#include <studio/panels/design_tree.hpp>
+#include <studio/viewport/viewer_panel.hpp>
 #include <studio/window/main_window.hpp>
 
 #include <QtTest>
@@ -5,29 +9,37 @@
 #include <catch2/catch.hpp>
 #include <cstdlib>
 
+#include "support/hands.hpp"
+
 using namespace weave::studio;
+using namespace weave::studio::test;
 
 namespace {
 
 void keep(QWidget& window, const char* name) {
-    QTest::qWait(400);
+    QTest::qWait(1500);  // pictures, not what is tested: long enough for all that is drawn in the background
     const char* folder = std::getenv("WEAVE_SCREENS");
     window.grab().save(QString("%1/%2.png").arg(folder == nullptr ? "/tmp" : folder, name));
 }
 
 }  // namespace
 
-TEST_CASE("screens", "[.screens]") {
+TEST_CASE("screens of the guide", "[.screens]") {
     MainWindow window;
+    window.resize(1600, 1000);
     window.show();
     REQUIRE(QTest::qWaitForWindowExposed(&window));
-    QTest::qWait(1500);
     keep(window, "start");
     window.show_sample("pocket");
     keep(window, "pocket");
-    window.findChild<QTabWidget*>()->setCurrentIndex(1);
-    keep(window, "pocket-slice");
+    auto* editors = window.findChild<QTabWidget*>("editors");
+    editors->setCurrentIndex(1);
+    keep(window, "section");
+    window.findChild<QDockWidget*>("yarns-dock")->raise();
+    keep(window, "yarns");
+    window.findChild<QDockWidget*>("submit-dock")->raise();
+    keep(window, "submit");
     window.show_sample("shoe-adult");
-    QTest::qWait(1000);
+    editors->setCurrentIndex(0);
     keep(window, "shoe");
 }
