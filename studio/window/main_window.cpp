@@ -66,6 +66,7 @@ MainWindow::MainWindow(QWidget* parent)
     connect(m_files, &DesignFiles::failed, this, &MainWindow::warn);
     connect(m_files, &DesignFiles::told, this, &MainWindow::tell);
     qApp->installEventFilter(this);
+    restoreGeometry(QSettings().value("window").toByteArray());
     show_start_page();
 }
 
