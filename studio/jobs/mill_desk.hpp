@@ -46,6 +46,8 @@ class MillDesk : public QObject {
     void review(std::optional<std::int64_t> number);
     /// Compares a design, the window's `edition` of it, with a revision of the open design.
     void compare(const Design& design, std::uint64_t edition, std::int64_t number);
+    /// What is being compared is of no use any more.
+    void forget_comparison() { ++m_wanted_comparison; }
     void hand_in(MillHandIn wish);
     /// Gives up what is being handed in, where it is not with the mill yet.
     void cancel();

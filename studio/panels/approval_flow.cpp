@@ -66,6 +66,8 @@ QList<ApprovalFlow::Station> ApprovalFlow::stations() const {
     const int done = reached(m_state);
     for (int k = 0; k < list.size(); ++k)
         list[k].mark = k < done ? Mark::done : k == done ? Mark::waits : Mark::later;
+    const QStringList next{tr("To save"), tr("To submit"), tr("To approve"), tr("To release")};
+    if (done < list.size() && !refused) list[done].title = next[done];
     if (refused) list[2].mark = Mark::refused;
     if (m_state == "withdrawn") list[3].mark = Mark::refused;
     return list;

@@ -123,7 +123,8 @@ void SubmitPanel::connect_desk() {
     connect(&m_desk, &MillDesk::history_told, this, &SubmitPanel::take_history);
     connect(&m_desk, &MillDesk::review_told, m_review, &ReviewView::show);
     connect(&m_desk, &MillDesk::review_told, this, [this](const wire::MillReview& review) {
-        if (review.revision.state != "draft" && review.revision.state != "submitted") m_form->tell({});  // what was done is history
+        if (review.revision.state != "draft" && review.revision.state != "submitted")
+            m_form->tell({});  // what was done is history
     });
     connect(&m_desk, &MillDesk::failed, this, &SubmitPanel::take_trouble);
     connect(&m_desk, &MillDesk::commented, m_review, &ReviewView::take_commented);
@@ -193,6 +194,8 @@ void SubmitPanel::set_design(const Design& design, BlockPtr cloth, std::uint64_t
     if (is_other) {
         m_design = design;
         m_edition = edition;
+        if (m_comparison && m_comparison->same)
+            m_changes->say(tr("Comparing with revision %1 …").arg(m_comparison->number));
         compare_soon();
     }
     tell_what();
@@ -204,6 +207,7 @@ void SubmitPanel::clear_design() {
     m_design.reset();
     m_cloth.reset();
     m_comparison.reset();
+    m_desk.forget_comparison();
     m_has_findings = false;
     set_evidence({});
     tell_what();

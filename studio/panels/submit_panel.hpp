@@ -47,9 +47,10 @@ class SubmitPanel : public QWidget {
     explicit SubmitPanel(std::filesystem::path session_file = {}, QWidget* parent = nullptr);
     ~SubmitPanel() override;
 
-    /// The design as it stands; `cloth` is null where it cannot be made; `edition` grows with each change.
+    /// The design as it stands; `cloth` is null where it cannot be made; `edition` grows with each change of
+    /// an open design.
     void set_design(const Design& design, BlockPtr cloth, std::uint64_t edition);
-    /// No design is open.
+    /// No design is open; to be called too before another one is shown, whose editions begin anew.
     void clear_design();
     /// The name that the design may have at the mill, such as its title; asked when another design is opened.
     void suggest_name(const QString& name);

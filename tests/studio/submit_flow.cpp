@@ -213,6 +213,21 @@ TEST_CASE("submit: what is on its way can be given up") {
     mill.resume();
 }
 
+TEST_CASE("submit: another design of the same edition takes the place of the one before") {
+    const Mill mill;
+    SubmitWindow window(mill.session_of("dora"));
+    window.wait_signed_in();
+    window.type("new_design", "cloth");
+    window.write_note("First");
+    window.click("save_revision");
+    window.wait_for("changes", "is what revision 1 holds");
+    window.panel.clear_design();
+    CHECK_FALSE(window.find<QPushButton>("save_revision").isEnabled());
+    --window.edition;
+    window.open_sample("twill-2-2");
+    window.wait_for("changes", "crossings differ");
+}
+
 TEST_CASE("submit: findings, evidence and a cloth that cannot be made are told") {
     const Mill mill;
     SubmitWindow window(mill.session_of("dora"));
