@@ -71,7 +71,9 @@ Document::Document(Recovery recovery, const std::filesystem::path& recoveries)
     ask_for_cloth();
 }
 
-Document::~Document() = default;
+Document::~Document() {
+    m_undo.blockSignals(true);  // it tells that it becomes empty, to a window that may be going as well
+}
 
 void Document::connect_parts() {
     connect(&m_maker, &ClothMaker::made, this, &Document::take);

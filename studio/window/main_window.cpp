@@ -57,6 +57,7 @@ MainWindow::MainWindow(QWidget* parent)
       m_findings(new FindingsPanel), m_simulation(new SimulationPanel), m_simulation_desk(new SimulationDesk(*m_simulation, *m_viewer, this)), m_yarns(new YarnsPanel),
       m_submit(new SubmitPanel), m_submit_desk(new SubmitDesk(*m_submit, *m_findings, *m_simulation, this)), m_tutorial(new Tutorial), m_messages(new MessageBar), m_status(new QLabel) {
     setObjectName("studio");
+    m_messages->setObjectName("messages");
     resize(1680, 1040);
     make_workspace();
     make_docks();
@@ -271,10 +272,8 @@ void MainWindow::take(std::unique_ptr<Document> document) {
 
 void MainWindow::follow_document() {
     Document* document = m_document.get();
-    connect(document, &Document::edited, this, [this] {
-        show_title();
-        show_undo();
-    });
+    connect(document, &Document::edited, this, &MainWindow::show_title);
+    connect(&document->undo_stack(), &QUndoStack::indexChanged, this, &MainWindow::show_undo);
     connect(document, &Document::path_changed, this, &MainWindow::show_title);
     connect(&document->undo_stack(), &QUndoStack::cleanChanged, this, &MainWindow::show_title);
     connect(&document->keeper(), &Keeper::saved, this, [this](const QString& path) { tell(tr("Saved as %1").arg(path)); });

@@ -50,7 +50,7 @@ struct Desk {
         REQUIRE(found != nullptr);
         return *found;
     }
-    QString said() { return window.centralWidget()->findChild<MessageBar*>()->words(); }
+    QString said() { return find<MessageBar>("messages").words(); }
 
     MainWindow window;
 };
@@ -79,7 +79,7 @@ TEST_CASE("a broken or foreign file opens with a message and changes nothing") {
     const Folder folder;
     Desk shown("twill-2-2");
     const auto refuse = [&](const std::string& path, const char* words) {
-        shown.find<MessageBar>().clear();
+        shown.find<MessageBar>("messages").clear();
         shown.window.open_file(QString::fromStdString(path));
         REQUIRE(until([&] { return !shown.said().isEmpty(); }));
         CHECK(shown.said().toStdString().find(words) != std::string::npos);
