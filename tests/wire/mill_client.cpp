@@ -268,14 +268,14 @@ TEST_CASE("what is saved and submitted is sent as the API asks for it", "[mill]"
     REQUIRE(wire::save_revision(client, "shoe", {"text", "main", 3, "Why", {}}));
     REQUIRE(wire::submit_revision(client, "shoe", 4, "Ready", {}, "secret"));
     REQUIRE(wire::comment_on(client, "shoe", 4, "Here", 12));
-    const auto sent = [&](std::size_t k) {
+    const auto check_sent = [&](std::size_t k, const Json& expected) {
         Json body = parse_json(server.bodies.at(k)).value();
         body.erase("request");
-        return body;
+        CHECK(canonical_json(body) == canonical_json(expected));
     };
-    CHECK(sent(0) == Json{{"document", "text"}, {"branch", "main"}, {"expected", 3}, {"message", "Why"}});
-    CHECK(sent(1) == Json{{"reason", "Ready"}, {"password", "secret"}});
-    CHECK(sent(2) == Json{{"text", "Here"}, {"pick", 12}});
+    check_sent(0, {{"document", "text"}, {"branch", "main"}, {"expected", 3}, {"message", "Why"}});
+    check_sent(1, {{"reason", "Ready"}, {"password", "secret"}});
+    check_sent(2, {{"text", "Here"}, {"pick", 12}});
 }
 
 // ---- Sessions ----
