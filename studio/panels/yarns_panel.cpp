@@ -48,7 +48,7 @@ YarnsPanel::YarnsPanel(QWidget* parent) : QWidget(parent), m_title(new QLineEdit
     auto* form = new QFormLayout;
     m_title->setObjectName("title");
     m_notes->setObjectName("notes");
-    m_notes->setMaximumHeight(fontMetrics().height() * 4);
+    m_notes->setFixedHeight(fontMetrics().height() * 4);
     m_notes->setTabChangesFocus(true);
     form->addRow(tr("Title"), m_title);
     form->addRow(tr("Notes"), m_notes);

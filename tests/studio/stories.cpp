@@ -59,7 +59,7 @@ class Designer {
         const char* folder = std::getenv("WEAVE_SCREENS");
         if (folder == nullptr) return;
         QTest::qWait(700);
-        window.grab().save(QString("%1/%2.png").arg(folder, name));
+        window.grab().toImage().convertToFormat(QImage::Format_RGB888).save(QString("%1/%2.png").arg(folder, name), "PNG", 0);
     }
 
     template <class Widget>
