@@ -117,7 +117,8 @@ void SimulationDesk::take_flip(const Flip& flip, bool done, const QString& reaso
     if (m_document == nullptr) return;
     if (!done) return failed(tr("Pick %1 and end %2 did not change sides: %3").arg(flip.pick + 1).arg(flip.end + 1).arg(reason));
     const Status made = m_document->perform({tr("Flip pick %1, end %2").arg(flip.pick + 1).arg(flip.end + 1), {PutFlip{m_document->design().root, flip}}});
-    if (!made) Q_EMIT failed(QString::fromStdString(made.error().text()));
+    if (!made) return failed(QString::fromStdString(made.error().text()));
+    Q_EMIT told(tr("Pick %1 and end %2 have changed sides").arg(flip.pick + 1).arg(flip.end + 1));
 }
 
 }  // namespace weave::studio
