@@ -3,13 +3,11 @@
 #include <weave/block/stencil_edit.hpp>
 #include <weave/core/file.hpp>
 #include <studio/editors/stencil_dialogs.hpp>
+#include <studio/jobs/background.hpp>
 
-#include <QCoreApplication>
 #include <QFileDialog>
 #include <QHBoxLayout>
-#include <QPointer>
 #include <QSplitter>
-#include <QThreadPool>
 #include <QToolButton>
 #include <QVBoxLayout>
 
@@ -334,23 +332,15 @@ void StencilEditor::choose_picture() {
     if (!path.isEmpty()) load_picture(path);
 }
 
-void StencilEditor::in_background(std::function<std::function<void()>()> work) {
-    QThreadPool::globalInstance()->start(
-        [work = std::move(work), reading = ++m_reading, editor = QPointer<StencilEditor>(this)] {
-            auto done = work();
-            // The pointer is looked at in the window's thread alone, where the editor may go.
-            QMetaObject::invokeMethod(
-                QCoreApplication::instance(),
-                [done = std::move(done), reading, editor] {
-                    if (editor && editor->m_reading == reading) done();
-                },
-                Qt::QueuedConnection);
-        });
+void StencilEditor::make_beside(std::function<std::function<void()>()> work) {
+    in_background(this, std::move(work), [this, reading = ++m_reading](const std::function<void()>& done) {
+        if (m_reading == reading) done();
+    });
 }
 
 void StencilEditor::load_picture(const QString& path) {
     Q_EMIT status(tr("reading %1 …").arg(path));
-    in_background([this, path] {
+    make_beside([this, path] {
         ReadPicture picture = read_picture(path);
         return [this, picture = std::move(picture)] {
             if (!picture.image) return m_canvas->refuse(picture.trouble, m_canvas->rect().center());
@@ -390,7 +380,7 @@ void StencilEditor::take_picture(const std::shared_ptr<const ColourImage>& image
         numbers[colours[k].colour] = static_cast<std::uint16_t>(known - operation.of.begin());
         if (known == operation.of.end()) operation.of.push_back(names[k]);
     }
-    in_background([this, image, numbers, operation] {
+    make_beside([this, image, numbers, operation] {
         Result<StencilMap> map = stencil_map(*image, numbers);
         StencilOperation made = operation;
         const QString trouble = map ? QString() : QString::fromStdString(map.error().text());

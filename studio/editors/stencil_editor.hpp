@@ -50,7 +50,7 @@ class StencilEditor : public QWidget {
     void choose_picture();
     /// Does work beside the window's thread, and what it returns in it, unless the editor is gone or asked
     /// for other work since.
-    void in_background(std::function<std::function<void()>()> work);
+    void make_beside(std::function<std::function<void()>()> work);
     void ask_blocks(const std::shared_ptr<const ColourImage>& image,
                     const std::vector<CountedColour>& colours);
     /// `names` are those of the blocks of the colours.

@@ -10,17 +10,16 @@
 
 #include <catch2/catch.hpp>
 
-#include "support/folder.hpp"
+#include <support/temporary_folder.hpp>
 
 using namespace weave;
 using namespace weave::studio;
-using weave::studio::test::Folder;
 
 namespace {
 
 /// A card editor in a window, with the design that it shows.
 struct Desk {
-    explicit Desk(const char* sample) : document(find_sample(sample)->make(), {}, true, folder.path()) {
+    explicit Desk(const char* sample) : document(find_sample(sample)->make(), {}, true, folder.path) {
         editor.resize(800, 640);
         editor.show_document(&document);
         editor.show();
@@ -40,7 +39,7 @@ struct Desk {
         return image.pixel((QPointF(box.left() + box.width() * 0.3, box.top() + box.height() * 0.7) * scale).toPoint());
     }
 
-    Folder folder;
+    weave::testing::TemporaryFolder folder;
     Document document;
     CardEditor editor;
 };

@@ -12,11 +12,10 @@
 #include <filesystem>
 #include <memory>
 
-#include "support/folder.hpp"
+#include <support/temporary_folder.hpp>
 
 using namespace weave;
 using namespace weave::studio;
-using weave::studio::test::Folder;
 
 namespace {
 
@@ -46,8 +45,8 @@ void flip_at(Document& document, std::size_t pick, std::size_t end) {
 }  // namespace
 
 TEST_CASE("steps are undone and made again, and what the block comes to follows") {
-    const Folder folder;
-    Document document(small_design(), {}, true, folder.path());
+    const weave::testing::TemporaryFolder folder;
+    Document document(small_design(), {}, true, folder.path);
     settle(document);
     const CardImage before = document.shown().block->card_image();
     flip_at(document, 1, 2);
@@ -69,8 +68,8 @@ TEST_CASE("steps are undone and made again, and what the block comes to follows"
 }
 
 TEST_CASE("a flip that cannot be is refused with the yarns in the way, and changes nothing") {
-    const Folder folder;
-    Document document(sample("pocket"), {}, true, folder.path());
+    const weave::testing::TemporaryFolder folder;
+    Document document(sample("pocket"), {}, true, folder.path);
     settle(document);
     const Block& block = *document.shown().block;
     std::size_t refused = 0;
@@ -87,8 +86,8 @@ TEST_CASE("a flip that cannot be is refused with the yarns in the way, and chang
 }
 
 TEST_CASE("a flip before its block is made is judged by the design as it stands") {
-    const Folder folder;
-    Document document(small_design(), {}, true, folder.path());
+    const weave::testing::TemporaryFolder folder;
+    Document document(small_design(), {}, true, folder.path);
     settle(document);
     flip_at(document, 0, 0);
     REQUIRE_FALSE(document.shown_is_current());
@@ -98,8 +97,8 @@ TEST_CASE("a flip before its block is made is judged by the design as it stands"
 }
 
 TEST_CASE("a stroke gives its crossings one side as one step") {
-    const Folder folder;
-    Document document(small_design(), {}, true, folder.path());
+    const weave::testing::TemporaryFolder folder;
+    Document document(small_design(), {}, true, folder.path);
     settle(document);
     const std::vector<CardPlace> places{{0, 0}, {0, 1}, {0, 2}, {0, 3}, {0, 4}};
     const bool first = document.shown().block->weft_over(0, 0);
@@ -113,8 +112,8 @@ TEST_CASE("a stroke gives its crossings one side as one step") {
 }
 
 TEST_CASE("what a slider is drawn through is one step") {
-    const Folder folder;
-    Document document(small_design(), {}, true, folder.path());
+    const weave::testing::TemporaryFolder folder;
+    Document document(small_design(), {}, true, folder.path);
     Scene scene;
     for (int k = 1; k <= 5; ++k) {
         scene.friction = 0.1 * k;
@@ -128,8 +127,8 @@ TEST_CASE("what a slider is drawn through is one step") {
 }
 
 TEST_CASE("a step that fails in the middle leaves the design as it was") {
-    const Folder folder;
-    Document document(small_design(), {}, true, folder.path());
+    const weave::testing::TemporaryFolder folder;
+    Document document(small_design(), {}, true, folder.path);
     const EditStep step{"both", {SetTitle{"changed", ""}, RemoveBlock{"nothing"}}};
     CHECK_FALSE(document.perform(step));
     CHECK(document.design() == small_design());
@@ -137,8 +136,8 @@ TEST_CASE("a step that fails in the middle leaves the design as it was") {
 }
 
 TEST_CASE("an edit of a child changes its parents") {
-    const Folder folder;
-    Document document(small_design(), {}, true, folder.path());
+    const weave::testing::TemporaryFolder folder;
+    Document document(small_design(), {}, true, folder.path);
     std::string name;
     REQUIRE(document.perform(*tile_block(document.design(), "face", 3, 2, 1, name)));
     CHECK(document.design().root == name);
@@ -155,8 +154,8 @@ TEST_CASE("an edit of a child changes its parents") {
 }
 
 TEST_CASE("blocks that do not fit are refused in words and nothing is made") {
-    const Folder folder;
-    Document document(small_design(), {}, true, folder.path());
+    const weave::testing::TemporaryFolder folder;
+    Document document(small_design(), {}, true, folder.path);
     std::string name;
     REQUIRE(document.perform(add_block(document.design(), "plain", PresetLeaf{{"plain", {}}}, name)));
     const auto step = attach_block(document.design(), "face", "plain", Face::plus_x, name);
@@ -185,22 +184,22 @@ TEST_CASE("cells that changed are those whose stacks differ") {
 namespace {
 
 /// The design that a crash at this moment would leave, with what can be undone in it.
-std::unique_ptr<Document> after_crash(Document& document, const Folder& folder) {
+std::unique_ptr<Document> after_crash(Document& document, const weave::testing::TemporaryFolder& folder) {
     document.keeper().flush();
     // A copy of the folder is what another program would find: this one still has its lock.
-    const Folder copy;
-    std::filesystem::copy(folder.path(), copy.path(), std::filesystem::copy_options::recursive | std::filesystem::copy_options::overwrite_existing);
-    auto recovered = Keeper::take_recoveries(copy.path());
+    const weave::testing::TemporaryFolder copy;
+    std::filesystem::copy(folder.path, copy.path, std::filesystem::copy_options::recursive | std::filesystem::copy_options::overwrite_existing);
+    auto recovered = Keeper::take_recoveries(copy.path);
     if (recovered.empty()) return nullptr;
     REQUIRE(recovered.size() == 1);
-    return std::make_unique<Document>(std::move(recovered[0]), copy.path());
+    return std::make_unique<Document>(std::move(recovered[0]), copy.path);
 }
 
 }  // namespace
 
 TEST_CASE("edits, undone and redone ones, are there again after a crash, undo included") {
-    const Folder folder;
-    Document document(small_design(), "/nowhere/a.weave", true, folder.path());
+    const weave::testing::TemporaryFolder folder;
+    Document document(small_design(), "/nowhere/a.weave", true, folder.path);
     CHECK(after_crash(document, folder) == nullptr);  // nothing would be lost
     flip_at(document, 1, 2);
     flip_at(document, 2, 2);
@@ -221,11 +220,11 @@ TEST_CASE("edits, undone and redone ones, are there again after a crash, undo in
 }
 
 TEST_CASE("what is undone behind a save is there again after a crash") {
-    const Folder folder;
-    Document document(small_design(), {}, true, folder.path());
+    const weave::testing::TemporaryFolder folder;
+    Document document(small_design(), {}, true, folder.path);
     flip_at(document, 1, 2);
     flip_at(document, 2, 2);
-    document.save(QString::fromStdString((folder.path() / "saved.weave").string()));
+    document.save(QString::fromStdString((folder.path / "saved.weave").string()));
     REQUIRE(QTest::qWaitFor([&] { return !document.path().isEmpty(); }));
     CHECK(after_crash(document, folder) == nullptr);
     const auto check = [&] {
@@ -250,8 +249,8 @@ TEST_CASE("what is undone behind a save is there again after a crash") {
 }
 
 TEST_CASE("a design that was never saved is there again though nothing was done to it") {
-    const Folder folder;
-    Document document(small_design(), {}, false, folder.path());
+    const weave::testing::TemporaryFolder folder;
+    Document document(small_design(), {}, false, folder.path);
     CHECK(document.is_modified());
     const auto again = after_crash(document, folder);
     REQUIRE(again);
@@ -260,62 +259,62 @@ TEST_CASE("a design that was never saved is there again though nothing was done 
 }
 
 TEST_CASE("a closed document leaves nothing to recover, a running one is left alone") {
-    const Folder folder;
+    const weave::testing::TemporaryFolder folder;
     {
-        Document document(small_design(), {}, false, folder.path());
+        Document document(small_design(), {}, false, folder.path);
         document.keeper().flush();
-        CHECK(Keeper::take_recoveries(folder.path()).empty());  // it runs
+        CHECK(Keeper::take_recoveries(folder.path).empty());  // it runs
         document.discard();
     }
-    CHECK(Keeper::take_recoveries(folder.path()).empty());
-    CHECK(std::filesystem::is_empty(folder.path()));
+    CHECK(Keeper::take_recoveries(folder.path).empty());
+    CHECK(std::filesystem::is_empty(folder.path));
 }
 
 TEST_CASE("a torn end of a journal is left out, and a recovered document goes on in it") {
-    const Folder folder;
+    const weave::testing::TemporaryFolder folder;
     {
-        Document document(small_design(), {}, true, folder.path());
+        Document document(small_design(), {}, true, folder.path);
         flip_at(document, 1, 2);
         flip_at(document, 2, 2);
     }
     std::filesystem::path journal;
-    for (const auto& each : std::filesystem::recursive_directory_iterator(folder.path())) {
+    for (const auto& each : std::filesystem::recursive_directory_iterator(folder.path)) {
         if (each.path().extension() == ".journal") journal = each.path();
     }
     std::filesystem::resize_file(journal, std::filesystem::file_size(journal) - 7);
     Design one_flip;
     {
-        auto recovered = Keeper::take_recoveries(folder.path());
+        auto recovered = Keeper::take_recoveries(folder.path);
         REQUIRE(recovered.size() == 1);
         REQUIRE(recovered[0].entries.size() == 1);
-        Document again(std::move(recovered[0]), folder.path());
+        Document again(std::move(recovered[0]), folder.path);
         one_flip = again.design();
         flip_at(again, 4, 4);
         again.undo();
     }
-    auto recovered = Keeper::take_recoveries(folder.path());
+    auto recovered = Keeper::take_recoveries(folder.path);
     REQUIRE(recovered.size() == 1);
-    const Document third(std::move(recovered[0]), folder.path());
+    const Document third(std::move(recovered[0]), folder.path);
     CHECK(third.design() == one_flip);
     CHECK(third.undo_stack().count() == 2);
 }
 
 TEST_CASE("unsaved work that cannot be read is put aside and does not stop the program") {
-    const Folder folder;
+    const weave::testing::TemporaryFolder folder;
     {
-        Document document(small_design(), {}, false, folder.path());
+        Document document(small_design(), {}, false, folder.path);
         document.keeper().flush();
     }
-    for (const auto& each : std::filesystem::directory_iterator(folder.path())) std::filesystem::resize_file(each.path() / "now", 3);
-    CHECK(Keeper::take_recoveries(folder.path()).empty());
-    CHECK(Keeper::take_recoveries(folder.path()).empty());
-    REQUIRE_FALSE(std::filesystem::is_empty(folder.path()));
-    CHECK(std::filesystem::directory_iterator(folder.path())->path().extension() == ".broken");
+    for (const auto& each : std::filesystem::directory_iterator(folder.path)) std::filesystem::resize_file(each.path() / "now", 3);
+    CHECK(Keeper::take_recoveries(folder.path).empty());
+    CHECK(Keeper::take_recoveries(folder.path).empty());
+    REQUIRE_FALSE(std::filesystem::is_empty(folder.path));
+    CHECK(std::filesystem::directory_iterator(folder.path)->path().extension() == ".broken");
 }
 
 TEST_CASE("a save that fails leaves the document unsaved and says why") {
-    const Folder folder;
-    Document document(small_design(), {}, true, folder.path());
+    const weave::testing::TemporaryFolder folder;
+    Document document(small_design(), {}, true, folder.path);
     flip_at(document, 1, 2);
     QSignalSpy failed(&document.keeper(), &Keeper::not_saved);
     document.save("/nowhere/at/all.weave");

@@ -19,11 +19,10 @@
 #include <unistd.h>
 #include <vector>
 
-#include "support/folder.hpp"
+#include <support/temporary_folder.hpp>
 
 using namespace weave;
 using namespace weave::studio;
-using weave::studio::test::Folder;
 
 namespace {
 
@@ -103,10 +102,10 @@ std::string recovered_sha256(const std::filesystem::path& unsaved) {
 
 /// Kills a session at a random moment: what is there afterwards must be the state of some edit of its last second, or later.
 void kill_once(std::mt19937& random) {
-    const Folder folder;
-    EditingSession session(folder.path());
+    const weave::testing::TemporaryFolder folder;
+    EditingSession session(folder.path);
     const std::vector<Made> made = session.kill_after(std::chrono::milliseconds(std::uniform_int_distribution(300, 2200)(random)));
-    const std::string recovered = recovered_sha256(folder.path());
+    const std::string recovered = recovered_sha256(folder.path);
     std::size_t oldest = 0;  // edits up to this one are a second old: none of them may be lost
     while (oldest < made.size() && made[oldest].at < session.killed_at() - 1) ++oldest;
     INFO(made.size() << " edits, of which " << oldest << " older than a second");
@@ -132,8 +131,8 @@ TEST_CASE("a person who edits for ever", "[.session]") {
     REQUIRE(QTest::qWaitFor([&] { return document.shown_is_current(); }, 20000));
     std::mt19937 random(static_cast<unsigned>(getpid()));
     // What each deed leads to is told before it is done, as seen on a document that nothing is kept of.
-    const Folder nowhere;
-    Document shadow(find_sample("twill-2-2")->make(), {}, true, nowhere.path());
+    const weave::testing::TemporaryFolder nowhere;
+    Document shadow(find_sample("twill-2-2")->make(), {}, true, nowhere.path);
     const auto tell = [](const std::string& line) { return write(3, (line + "\n").data(), line.size() + 1) > 0; };
     for (;;) {
         const int deed = std::uniform_int_distribution(0, 9)(random);

@@ -21,7 +21,7 @@
 
 #include <catch2/catch.hpp>
 
-#include "support/folder.hpp"
+#include <support/temporary_folder.hpp>
 #include "support/hands.hpp"
 
 using namespace weave;
@@ -55,8 +55,8 @@ struct Desk {
     MainWindow window;
 };
 
-std::string file_of(const Folder& folder, const char* name, const std::string& bytes) {
-    const std::filesystem::path path = folder.path() / name;
+std::string file_of(const weave::testing::TemporaryFolder& folder, const char* name, const std::string& bytes) {
+    const std::filesystem::path path = folder.path / name;
     REQUIRE(write_file(path, bytes));
     return path.string();
 }
@@ -76,7 +76,7 @@ TEST_CASE("a window comes up with a start page: ways to begin, and samples with 
 }
 
 TEST_CASE("a broken or foreign file opens with a message and changes nothing") {
-    const Folder folder;
+    const weave::testing::TemporaryFolder folder;
     Desk shown("twill-2-2");
     const auto refuse = [&](const std::string& path, const char* words) {
         shown.find<MessageBar>("messages").clear();
@@ -93,9 +93,9 @@ TEST_CASE("a broken or foreign file opens with a message and changes nothing") {
 }
 
 TEST_CASE("a design is saved under its name, and comes back as it was") {
-    const Folder folder;
+    const weave::testing::TemporaryFolder folder;
     Desk shown("pocket");
-    const QString path = QString::fromStdString((folder.path() / "mine.weave").string());
+    const QString path = QString::fromStdString((folder.path / "mine.weave").string());
     auto& canvas = shown.find<CardEditor>().canvas();
     for (std::size_t end = 0; shown.document().undo_stack().count() == 0 && end < 50; ++end)
         QTest::mouseClick(&canvas, Qt::LeftButton, {}, canvas.mapping().box({3, end}).center().toPoint());

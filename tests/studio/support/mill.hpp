@@ -9,7 +9,7 @@
 #include <filesystem>
 #include <memory>
 #include <string>
-#include <studio/support/folder.hpp>
+#include <support/temporary_folder.hpp>
 #include <support/program.hpp>
 #include <sys/stat.h>
 #include <utility>
@@ -66,7 +66,7 @@ class Mill {
     [[nodiscard]] std::filesystem::path session_of(const std::string& who) const {
         return at(who + ".session");
     }
-    [[nodiscard]] std::string at(const std::string& name) const { return (m_folder.path() / name).string(); }
+    [[nodiscard]] std::string at(const std::string& name) const { return (m_folder.path / name).string(); }
 
     /// What a command of this person's answers; it must succeed.
     Json as(const std::string& who, std::vector<std::string> words, bool is_signed = false) const {
@@ -103,7 +103,7 @@ class Mill {
         REQUIRE(::chmod(at(name).c_str(), 0600) == 0);
     }
 
-    Folder m_folder;
+    weave::testing::TemporaryFolder m_folder;
     std::unique_ptr<Server> m_server;
     Json m_introduction;
     std::string m_port = "0";
