@@ -125,7 +125,7 @@ Status Work::loop() {
             m_leg_steps = sim::leg_steps(m_run->now().plan(), m_request.goal.solver);
         }
         m_step = m_run->steps();
-        if (settle_between()) continue;
+        if (m_run->settle_between()) continue;
         tell_layout();
         keep_state();
         if (m_inbox.change_is_due(m_step)) {
@@ -149,15 +149,6 @@ Status Work::loop() {
         m_residual = m_run->now().last().residual;
     }
     return {};
-}
-
-/// What comes between two relaxations and takes no step of its own: after it there is one place for changes at every step.
-bool Work::settle_between() {
-    sim::PlanRun& now = m_run->now();
-    if (!now.at_end() || now.cut_short()) return false;
-    if (!now.is_flipping() && !m_run->is_coarse()) return false;
-    static_cast<void>(m_run->advance(0, {}));  // neither can fail
-    return true;
 }
 
 void Work::keep_state() {

@@ -35,7 +35,6 @@ class Work {
     Status finish();
 
     // Between two legs.
-    [[nodiscard]] bool settle_between();
     void keep_state();
     void save_if_due(bool now);
     void save(Json told);

@@ -202,7 +202,7 @@ void CardEditor::flip(const std::vector<GridCell>& cells) {
     if (m_document == nullptr || !m_block) return;
     std::vector<CardPlace> places;
     for (const GridCell& cell : cells) places.push_back(place_of(cell));
-    const FlippedCrossings flipped = flip_crossings(*m_document, places);
+    const FlippedStroke flipped = flip_stroke(*m_document, places);
     if (Status made = m_document->perform(flipped.step); !made) Q_EMIT told(QString::fromStdString(made.error().text()));
     if (flipped.refused.empty()) {
         QToolTip::hideText();

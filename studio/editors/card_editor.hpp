@@ -8,6 +8,7 @@
 #include <optional>
 #include <span>
 #include <studio/commands/flip_crossing.hpp>
+#include <studio/commands/flip_stroke.hpp>
 #include <studio/document/document.hpp>
 #include <studio/editors/block_pictures.hpp>
 #include <studio/editors/grid_canvas.hpp>

@@ -1,10 +1,9 @@
 #include <studio/editors/slice_reader.hpp>
 
-#include <QCoreApplication>
+#include <studio/jobs/background.hpp>
+
 #include <QHBoxLayout>
-#include <QPointer>
 #include <QSignalBlocker>
-#include <QThreadPool>
 #include <QToolButton>
 #include <QVBoxLayout>
 
@@ -76,15 +75,8 @@ void SliceReader::show_block(const Design& design, BlockPtr block, System dots, 
     const auto read = [design, block] { return std::make_shared<const BlockSlices>(design, block); };
     if (block->picks() * block->ends() <= most_at_once) return take(read(), reading);
     m_canvas->show_slices(nullptr, dots, line);
-    QThreadPool::globalInstance()->start([read, reading, reader = QPointer<SliceReader>(this)] {
-        auto slices = read();
-        // The pointer is looked at in the window's thread alone, where the reader may go.
-        QMetaObject::invokeMethod(
-            QCoreApplication::instance(),
-            [slices = std::move(slices), reading, reader] {
-                if (reader) reader->take(slices, reading);
-            },
-            Qt::QueuedConnection);
+    in_background(this, read, [this, reading](std::shared_ptr<const BlockSlices> slices) {
+        take(std::move(slices), reading);
     });
 }
 

@@ -58,7 +58,7 @@ Status LocalWork::loop() {
             m_leg_steps = sim::leg_steps(m_run->now().plan(), m_request.goal.solver);
         }
         m_step = m_run->steps();
-        if (settle_between()) continue;
+        if (m_run->settle_between()) continue;
         m_meter.aim_at(m_run->now().goal());
         m_meter.see_coarse(m_run->is_coarse());
         tell_layout();
@@ -93,15 +93,6 @@ void LocalWork::finish() {
 }
 
 // ---- Between two legs ----
-
-/// What comes between two relaxations and takes no step of its own.
-bool LocalWork::settle_between() {
-    sim::PlanRun& now = m_run->now();
-    if (!now.at_end() || now.cut_short()) return false;
-    if (!now.is_flipping() && !m_run->is_coarse()) return false;
-    static_cast<void>(m_run->advance(0, {}));  // neither can fail
-    return true;
-}
 
 Status LocalWork::make_change() {
     const Order change = std::move(m_changes.front());

@@ -31,7 +31,6 @@ class LocalWork {
     void finish();
 
     // Between two legs.
-    [[nodiscard]] bool settle_between();
     Status make_change();
     Status make(const Order& change);
     Status flip(const Flip& flip);

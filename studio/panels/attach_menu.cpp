@@ -4,7 +4,7 @@
 
 #include <algorithm>
 #include <array>
-#include <studio/commands/compose.hpp>
+#include <studio/commands/attach_block.hpp>
 
 namespace weave::studio {
 

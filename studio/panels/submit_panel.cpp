@@ -52,9 +52,8 @@ SubmitPanel::SubmitPanel(std::filesystem::path session_file, QWidget* parent)
       m_changes(new ChangeView),
       m_size(plain_label("size")),
       m_findings(plain_label("findings_summary")),
-      m_relaxed(plain_label("evidence")),
+      m_evidence(new EvidenceBox),
       m_show_findings(new QPushButton(tr("Show them"))),
-      m_simulate(new QPushButton(tr("Simulate …"))),
       m_form(new HandInForm),
       m_review(new ReviewView) {
     m_where->body()->addWidget(m_place);
@@ -84,7 +83,6 @@ SubmitPanel::SubmitPanel(std::filesystem::path session_file, QWidget* parent)
     connect_parts();
     take_access();
     tell_what();
-    tell_evidence();
 }
 
 SubmitPanel::~SubmitPanel() = default;
@@ -105,14 +103,12 @@ QWidget* SubmitPanel::make_troubles() {
 QWidget* SubmitPanel::make_what() {
     auto* all = new QWidget;
     m_show_findings->setToolTip(tr("The list of findings, each with its place"));
-    m_simulate->setToolTip(tr("Lets the yarns come to rest; a mill may ask for it before it approves"));
-    m_simulate->setObjectName("simulate");
     auto* column = new QVBoxLayout(all);
     column->setContentsMargins(0, 0, 0, 0);
     column->addWidget(m_size);
     column->addWidget(m_changes);
     column->addLayout(with_button(m_findings, m_show_findings));
-    column->addLayout(with_button(m_relaxed, m_simulate));
+    column->addWidget(m_evidence);
     return all;
 }
 
@@ -157,6 +153,8 @@ void SubmitPanel::connect_desk() {
         m_form->clear_note();
         m_form->tell(tr("Revision %1: %2.").arg(number).arg(state_in_words(state)));
     });
+    connect(&m_desk, &MillDesk::evidence_filed, this,
+            [this](qint64 number) { m_form->tell(tr("The evidence is filed with revision %1.").arg(number)); });
     connect(&m_desk, &MillDesk::handed_in, &m_desk, &MillDesk::refresh);
 }
 
@@ -183,7 +181,8 @@ void SubmitPanel::connect_parts() {
     connect(m_review, &ReviewView::revision_wanted, &m_desk, &MillDesk::review);
     connect(m_review, &ReviewView::comment_wanted, &m_desk, &MillDesk::comment);
     connect(m_show_findings, &QPushButton::clicked, this, &SubmitPanel::findings_wanted);
-    connect(m_simulate, &QPushButton::clicked, this, &SubmitPanel::simulation_wanted);
+    connect(m_evidence, &EvidenceBox::simulation_wanted, this, &SubmitPanel::simulation_wanted);
+    connect(m_evidence, &EvidenceBox::filing_wanted, this, &SubmitPanel::file_evidence);
 }
 
 // ---- From the owner ----
@@ -191,6 +190,7 @@ void SubmitPanel::connect_parts() {
 void SubmitPanel::set_design(const Design& design, BlockPtr cloth, std::uint64_t edition) {
     const bool is_other = edition != m_edition || !m_design;
     m_cloth = std::move(cloth);
+    m_evidence->set_design(design, edition);
     if (is_other) {
         m_design = design;
         m_edition = edition;
@@ -199,7 +199,6 @@ void SubmitPanel::set_design(const Design& design, BlockPtr cloth, std::uint64_t
         compare_soon();
     }
     tell_what();
-    tell_evidence();
     judge();
 }
 
@@ -209,7 +208,7 @@ void SubmitPanel::clear_design() {
     m_comparison.reset();
     m_desk.forget_comparison();
     m_has_findings = false;
-    set_evidence({});
+    m_evidence->set_design({}, m_edition);
     tell_what();
     judge();
 }
@@ -225,11 +224,6 @@ void SubmitPanel::set_findings(std::size_t errors, std::size_t warnings, const Q
     m_has_findings = true;
     tell_what();
     judge();
-}
-
-void SubmitPanel::set_evidence(std::optional<SimulationFound> found) {
-    m_evidence = std::move(found);
-    tell_evidence();
 }
 
 void SubmitPanel::showEvent(QShowEvent* event) {
@@ -361,11 +355,21 @@ void SubmitPanel::hand_in(bool submits, const QString& note, const QString& pass
         wish.revision = wish.expected;
     else
         wish.document = *m_design;
-    if (m_evidence && m_evidence->edition == m_edition && m_evidence->paper)
-        wish.evidence.push_back(*m_evidence->paper);
+    if (const auto* paper = m_evidence->paper()) wish.evidence.push_back(*paper);
     wish.note = note;
     wish.submits = submits;
     wish.password = password;
+    m_desk.hand_in(std::move(wish));
+}
+
+/// For the revision that holds the design already.
+void SubmitPanel::file_evidence() {
+    if (!is_saved().value_or(false) || m_evidence->paper() == nullptr) return;
+    MillHandIn wish;
+    wish.design = m_place->design();
+    wish.branch = m_place->branch();
+    wish.revision = head()->number;
+    wish.evidence.push_back(*m_evidence->paper());
     m_desk.hand_in(std::move(wish));
 }
 
@@ -395,6 +399,7 @@ QString SubmitPanel::no_submitting() const {
 
 void SubmitPanel::judge() {
     const bool saved = is_saved().value_or(false);
+    m_evidence->set_revision(saved ? std::optional(head()->number) : std::nullopt);
     m_form->set_hindrances(no_saving(), no_submitting(),
                            saved ? tr("Submit revision %1").arg(head()->number) : tr("Save and submit"));
     m_form->warn(m_errors == 0 || !m_has_findings
@@ -421,27 +426,6 @@ void SubmitPanel::tell_what() {
     if (m_has_findings && !m_findings_text.isEmpty()) findings += "\n" + m_findings_text;
     m_findings->setText(findings);
     m_show_findings->setVisible(m_has_findings && m_errors + m_warnings > 0);
-}
-
-void SubmitPanel::tell_evidence() {
-    QString words = tr("Simulation: none yet; simulate first if your mill asks for it");
-    if (m_evidence) {
-        words = tr("Simulation: relaxed on %1 at %2, %3")
-                    .arg(m_evidence->machine, m_evidence->fidelity,
-                         m_evidence->at_rest ? tr("at rest") : tr("NOT at rest"));
-        if (m_evidence->at.isValid())
-            words += tr(" (%1)").arg(QLocale().toString(m_evidence->at, QLocale::ShortFormat));
-        if (!m_evidence->order_kept) words += tr("; yarns do not lie as the card says");
-        if (m_evidence->edition != m_edition)
-            words += "\n" + tr("The design has changed since: it is not filed. Simulate again.");
-        else if (m_evidence->paper)
-            words += "\n" + tr("Signed; it is filed with the revision.");
-        else
-            words += "\n" + tr("No machine that the mill knows has signed it, so that it stays here. A "
-                               "simulation daemon with a key signs what it finds.");
-    }
-    m_relaxed->setText(words);
-    m_simulate->setVisible(!m_evidence || m_evidence->edition != m_edition || !m_evidence->at_rest);
 }
 
 }  // namespace weave::studio

@@ -4,7 +4,6 @@
 #include <weave/design/design.hpp>
 #include <weave/design/evaluate.hpp>
 
-#include <QDateTime>
 #include <QTimer>
 #include <QWidget>
 
@@ -12,6 +11,7 @@
 #include <filesystem>
 #include <optional>
 #include <studio/jobs/mill_desk.hpp>
+#include <studio/panels/evidence_box.hpp>
 
 class QLabel;
 class QPushButton;
@@ -25,17 +25,6 @@ class MillPlace;
 class ReviewView;
 class StepBox;
 class TroubleLabel;
-
-/// What a simulation of the open design found, as far as a mill wants to know it.
-struct SimulationFound {
-    QString machine;   ///< where it ran, such as `this computer`
-    QString fidelity;  ///< `draft`, `standard`, `reference`
-    QDateTime at;
-    bool at_rest = false, order_kept = true;
-    std::uint64_t edition = 0;  ///< of the design, as set_design() was told
-    std::optional<wire::SignedEvidence>
-        paper;  ///< nothing: no enrolled machine signed it, so that a mill does not take it
-};
 
 /// Three steps that bring the open design to a mill, and what becomes of it there: saved, submitted,
 /// approved, released, or rejected with a reason; what others decide and say shows by itself while the panel
@@ -56,7 +45,7 @@ class SubmitPanel : public QWidget {
     void suggest_name(const QString& name);
     /// What the rules of a loom have to say of it.
     void set_findings(std::size_t errors, std::size_t warnings, const QString& text);
-    void set_evidence(std::optional<SimulationFound> found);
+    [[nodiscard]] EvidenceBox& evidence() { return *m_evidence; }
     MillDesk& desk() { return m_desk; }
 
   Q_SIGNALS:
@@ -81,7 +70,7 @@ class SubmitPanel : public QWidget {
     void compare();
     void hand_in(bool submits, const QString& note, const QString& password);
     void tell_what();
-    void tell_evidence();
+    void file_evidence();
     void judge();
     [[nodiscard]] const wire::MillRevision* head() const;
     /// Whether the head of the branch holds the open design; nothing while that is not known.
@@ -97,7 +86,6 @@ class SubmitPanel : public QWidget {
     std::size_t m_errors = 0, m_warnings = 0;
     QString m_findings_text;
     bool m_has_findings = false, m_looked_in = false;
-    std::optional<SimulationFound> m_evidence;
     std::optional<wire::MillHistory> m_history;
     std::optional<MillComparison> m_comparison;
     std::optional<std::int64_t> m_just_saved;
@@ -107,8 +95,9 @@ class SubmitPanel : public QWidget {
     StepBox *m_where, *m_what, *m_note;
     MillPlace* m_place;
     ChangeView* m_changes;
-    QLabel *m_size, *m_findings, *m_relaxed;
-    QPushButton *m_show_findings, *m_simulate;
+    QLabel *m_size, *m_findings;
+    EvidenceBox* m_evidence;
+    QPushButton* m_show_findings;
     HandInForm* m_form;
     ReviewView* m_review;
 };

@@ -14,7 +14,9 @@
 #include <QScrollArea>
 #include <QVBoxLayout>
 
-#include <studio/commands/set_up.hpp>
+#include <studio/commands/set_title.hpp>
+#include <studio/commands/set_warp.hpp>
+#include <studio/commands/set_weft.hpp>
 #include <studio/panels/order_text.hpp>
 #include <studio/panels/yarn_table.hpp>
 

@@ -15,9 +15,15 @@
 #include <QSpinBox>
 
 #include <array>
-#include <studio/commands/arrange_blocks.hpp>
-#include <studio/commands/compose.hpp>
-#include <studio/commands/put_block.hpp>
+#include <studio/commands/add_block.hpp>
+#include <studio/commands/attach_block.hpp>
+#include <studio/commands/change_block.hpp>
+#include <studio/commands/compose_blocks.hpp>
+#include <studio/commands/duplicate_block.hpp>
+#include <studio/commands/make_the_cloth.hpp>
+#include <studio/commands/remove_block.hpp>
+#include <studio/commands/rename_block.hpp>
+#include <studio/commands/tile_block.hpp>
 #include <studio/panels/attach_menu.hpp>
 #include <studio/panels/preset_dialog.hpp>
 
@@ -93,7 +99,7 @@ void BlockActions::add_stencil() {
     map->columns = cloth.block->columns();
     map->blocks.assign(map->rows * map->columns, 0);
     std::string name;
-    auto step = compose(m_document.design(), shown, "stencil", StencilOperation{{shown}, map}, name);
+    auto step = compose_blocks(m_document.design(), shown, "stencil", StencilOperation{{shown}, map}, name);
     if (!step) return failed(words(step.error().text()));
     if (perform(*step)) m_document.focus().show_block(name);
 }

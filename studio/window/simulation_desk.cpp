@@ -1,6 +1,6 @@
 #include <studio/window/simulation_desk.hpp>
 
-#include <studio/commands/set_up.hpp>
+#include <studio/commands/set_scene.hpp>
 #include <utility>
 
 namespace weave::studio {

@@ -3,7 +3,7 @@
 #include <QEvent>
 
 #include <algorithm>
-#include <studio/commands/put_block.hpp>
+#include <studio/commands/change_block.hpp>
 
 namespace weave::studio {
 

@@ -3,7 +3,7 @@
 #include <weave/design/tree.hpp>
 
 #include <algorithm>
-#include <studio/commands/put_block.hpp>
+#include <studio/commands/change_block.hpp>
 
 namespace weave::studio {
 

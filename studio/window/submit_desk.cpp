@@ -32,8 +32,8 @@ SubmitDesk::SubmitDesk(SubmitPanel& panel, FindingsPanel& findings, SimulationPa
 void SubmitDesk::show_document(Document* document) {
     if (m_document != nullptr) m_document->disconnect(this);
     m_document = document;
-    m_panel.set_evidence(std::nullopt);
-    if (document == nullptr) return m_panel.clear_design();
+    m_panel.clear_design();
+    if (document == nullptr) return;
     m_panel.suggest_name(document->name());
     connect(document, &Document::whole_made, this, &SubmitDesk::tell_design);
     tell_design();
@@ -53,7 +53,7 @@ void SubmitDesk::take_yarns(const std::shared_ptr<const Yarns>& yarns) {
     found.at_rest = is_true(yarns->report, "converged");
     found.order_kept = is_true(yarns->report, "order_kept");
     found.edition = m_document->revision();
-    m_panel.set_evidence(found);
+    m_panel.evidence().set_found(found);
 }
 
 }  // namespace weave::studio

@@ -1,9 +1,11 @@
 #include <weave/samples/samples.hpp>
 
-#include <studio/commands/compose.hpp>
+#include <studio/commands/add_block.hpp>
+#include <studio/commands/attach_block.hpp>
 #include <studio/commands/flip_crossing.hpp>
-#include <studio/commands/put_block.hpp>
-#include <studio/commands/set_up.hpp>
+#include <studio/commands/flip_stroke.hpp>
+#include <studio/commands/set_scene.hpp>
+#include <studio/commands/tile_block.hpp>
 #include <studio/document/document.hpp>
 
 #include <QtTest>
@@ -102,7 +104,7 @@ TEST_CASE("a stroke gives its crossings one side as one step") {
     settle(document);
     const std::vector<CardPlace> places{{0, 0}, {0, 1}, {0, 2}, {0, 3}, {0, 4}};
     const bool first = document.shown().block->weft_over(0, 0);
-    const FlippedCrossings flipped = flip_crossings(document, places);
+    const FlippedStroke flipped = flip_stroke(document, places);
     CHECK(flipped.refused.empty());
     REQUIRE(document.perform(flipped.step));
     settle(document);

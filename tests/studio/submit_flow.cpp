@@ -1,39 +1,8 @@
 #include "submit_case.hpp"
 
-#include <weave/core/sha256.hpp>
-#include <weave/keys/server_key.hpp>
-
 using namespace weave;
 using namespace weave::studio;
 using namespace weave::studio::test;
-
-namespace {
-
-/// What a machine of the mill would sign of a whole cloth that came to rest.
-wire::SignedEvidence evidence_of(const Mill& mill, const KeyPair& key, const Design& design,
-                                 const Block& cloth) {
-    const std::size_t picks = cloth.picks(), ends = cloth.ends();
-    const Json report{{"design_sha256", design_sha256(design)},
-                      {"scene_sha256", scene_sha256(design)},
-                      {"yarns_sha256", sha256_hex("yarns")},
-                      {"coverage",
-                       {{"picks", {1, picks}},
-                        {"ends", {1, ends}},
-                        {"of", {{"picks", picks}, {"ends", ends}}},
-                        {"whole", true}}},
-                      {"plan", {{{"term", "friction"}, {"choice", "off"}, {"reason", "the scene has none"}}}},
-                      {"solver", "relax"},
-                      {"fidelity", "standard"},
-                      {"residual", 1e-4},
-                      {"converged", true},
-                      {"order_kept", true}};
-    auto made =
-        wire::sign_evidence(key, mill.site(), report.dump(1), parse_utc("2026-11-26T12:00:00.000Z").value());
-    if (!made) FAIL(made.error().text());
-    return *std::move(made);
-}
-
-}  // namespace
 
 TEST_CASE("submit: a wrong password and a wrong fingerprint are refused, the right ones let in") {
     const Mill mill;
@@ -240,11 +209,10 @@ TEST_CASE("submit: findings, evidence and a cloth that cannot be made are told")
     CHECK(window.text("submit_warning").isEmpty());
 
     CHECK(window.text("evidence").contains("none yet"));
-    SimulationFound found{"this computer", "standard", QDateTime::currentDateTime(), true, true,
-                          window.edition,  {}};
-    window.panel.set_evidence(found);
+    window.panel.evidence().set_found(SimulationFound{"this computer", "standard",
+                                                      QDateTime::currentDateTime(), true, true, window.edition});
     CHECK(window.text("evidence").contains("relaxed on this computer at standard, at rest"));
-    CHECK(window.text("evidence").contains("No machine that the mill knows has signed it"));
+    CHECK(window.text("signed_evidence").contains("Nothing is signed"));
     window.open_sample("twill-2-2");
     CHECK(window.text("evidence").contains("has changed since"));
 
@@ -253,35 +221,4 @@ TEST_CASE("submit: findings, evidence and a cloth that cannot be made are told")
     window.panel.set_design(window.design, nullptr, ++window.edition);
     CHECK_FALSE(window.find<QPushButton>("save_revision").isEnabled());
     CHECK(window.text("hint").contains("makes no cloth"));
-}
-
-TEST_CASE(
-    "submit: evidence that a machine of the mill signed is filed; that of a stranger is refused in words, "
-    "and no obstacle") {
-    const Mill mill;
-    const KeyPair key = load_server_key(mill.enrol_machine(), ServerKeyRole::evidence).value();
-    SubmitWindow window(mill.session_of("dora"));
-    window.wait_signed_in();
-    window.type("new_design", "cloth");
-    const auto offer = [&](const KeyPair& signer) {
-        const auto cloth = evaluate(window.design).value().block;
-        window.panel.set_evidence(SimulationFound{"box",
-                                                  "standard",
-                                                  {},
-                                                  true,
-                                                  true,
-                                                  window.edition,
-                                                  evidence_of(mill, signer, window.design, *cloth)});
-    };
-    offer(KeyPair::generate());
-    window.submit("Simulated by a stranger");
-    window.wait_for("trouble", "the signer is not enrolled");
-    window.wait_for("state", "Revision 1 is submitted");
-
-    window.open_sample("twill-2-2");
-    offer(key);
-    CHECK(window.text("evidence").contains("Signed; it is filed"));
-    window.submit("Simulated by a machine of the mill");
-    window.wait_for("state", "Revision 2 is submitted");
-    REQUIRE(window.wait([&] { return window.talk().contains("100 % of the crossings: standard, at rest"); }));
 }

@@ -70,7 +70,7 @@ std::map<std::uint64_t, std::string> reasons_of(wire::Follower& follower, const 
 
 Status list(CommandOutcome& outcome, const ServerWish& wish) {
     WEAVE_TRY(wire::Follower follower, server_of(wish));
-    WEAVE_TRY(wire::JobList jobs, jobs_of(follower));
+    WEAVE_TRY(wire::JobList jobs, wire::jobs_of(follower));
     const std::map<std::uint64_t, std::string> reasons = reasons_of(follower, jobs);
     follower.close();
     return tell_list(outcome, follower, "jobs", std::move(jobs), [&](const Json& job) {
@@ -81,12 +81,12 @@ Status list(CommandOutcome& outcome, const ServerWish& wish) {
 
 /// The end of a job that has ended.
 Result<wire::JobEnded> end_of(wire::Follower& follower, std::uint64_t job) {
-    const std::string where = follower.place().name + ": " + name_of(job);
-    WEAVE_TRY(const wire::JobList jobs, jobs_of(follower));
+    const std::string where = follower.place().name + ": " + wire::name_of(job);
+    WEAVE_TRY(const wire::JobList jobs, wire::jobs_of(follower));
     const auto state = std::ranges::find(jobs.jobs, job, &wire::JobState::job);
     if (state == jobs.jobs.end()) return Error{ErrorCode::refused, "there is no such job, or its end was dealt with", where};
     if (state->phase < wire::JobPhase::done) return Error{ErrorCode::refused, "has not ended yet: weave jobs lists how far it is", where};
-    WEAVE_TRY(auto ended, told_end(follower, job, answer_patience));
+    WEAVE_TRY(auto ended, told_end(follower, job, wire::answer_patience));
     if (!ended) return system_fault("the server does not tell how it ended", where);
     return std::move(*ended);
 }
@@ -116,11 +116,11 @@ Result<std::vector<Flip>> flips_of(const Json& report, const std::string& where)
 /// The design that the job was made of, which with the flips that were made is the one of its yarns.
 Result<FlippedDesign> design_of(const Design& design, const Wish& wish, const wire::JobEnded& ended, const Yarns& yarns, const std::string& server) {
     if (wish.save_design.empty()) return FlippedDesign{design, {}, ""};
-    WEAVE_TRY(const std::vector<Flip> flips, flips_of(ended.report, server + ": " + name_of(ended.job)));
-    if (flips.empty()) return usage_error("without flips the design stays as it is, and " + name_of(ended.job) + " was given none", "--save-design " + wish.save_design);
+    WEAVE_TRY(const std::vector<Flip> flips, flips_of(ended.report, server + ": " + wire::name_of(ended.job)));
+    if (flips.empty()) return usage_error("without flips the design stays as it is, and " + wire::name_of(ended.job) + " was given none", "--save-design " + wish.save_design);
     const auto made = with_flips_made(design, flips, ended.report);
     if (!made || design_sha256(*made) != yarns.design_sha256)
-        return bad_input("is not the design that " + name_of(ended.job) + " was made of: with the flips that were made it is another than that of its yarns (SHA-256)", wish.design);
+        return bad_input("is not the design that " + wire::name_of(ended.job) + " was made of: with the flips that were made it is another than that of its yarns (SHA-256)", wish.design);
     return FlippedDesign{design, flips, wish.save_design};
 }
 
@@ -129,12 +129,12 @@ Status keep(CommandOutcome& outcome, wire::Follower& follower, const wire::JobEn
     const std::string& server = follower.place().name;
     WEAVE_TRY(const RemoteYarns fetched, fetch_yarns(follower, ended));
     WEAVE_TRY(const FlippedDesign flipped, design_of(design, wish, ended, fetched.yarns, server));
-    std::optional<std::string> evidence;
+    std::optional<wire::RemoteEvidence> evidence;
     if (!wish.evidence.empty()) {
-        WEAVE_TRY(evidence, fetch_evidence(follower, ended));
+        WEAVE_TRY(evidence, wire::fetch_evidence(follower, ended));
     }
     WEAVE_CHECK_OK(write_file(wish.out, fetched.bytes));
-    if (evidence) WEAVE_CHECK_OK(write_file(wish.evidence, *evidence));
+    if (evidence) WEAVE_CHECK_OK(write_file(wish.evidence, evidence->bytes));
     Json report = ended.report;
     const auto undone = left_undone(report, {report.value("flips", Json::array()).size(), 0, false});
     if (!undone.empty()) report["left_undone"] = undone;
@@ -153,35 +153,35 @@ Status fetch(CommandOutcome& outcome, const Wish& wish) {
     }
     WEAVE_TRY(wire::Follower follower, server_of(wish.server));
     WEAVE_TRY(const wire::JobEnded ended, end_of(follower, wish.number));
-    if (has_yarns(ended)) WEAVE_CHECK_OK(keep(outcome, follower, ended, design, wish));
+    if (wire::has_yarns(ended)) WEAVE_CHECK_OK(keep(outcome, follower, ended, design, wish));
     settle(outcome, follower, wish.number);
-    return has_yarns(ended) ? Status() : Status(reason_of(ended));
+    return wire::has_yarns(ended) ? Status() : Status(wire::reason_of(ended));
 }
 
 std::string how_cancelled(const wire::JobEnded& ended) {
     if (ended.phase != wire::JobPhase::cancelled) return " had ended meanwhile; weave jobs fetch gets what came of it";
-    if (has_yarns(ended)) return " is cancelled; weave jobs fetch gets its yarns as they lay";
+    if (wire::has_yarns(ended)) return " is cancelled; weave jobs fetch gets its yarns as they lay";
     if (ended.error) return " is cancelled, without its yarns: " + on_one_line(ended.error->text());
     return " is cancelled; it had not begun, so there are no yarns";
 }
 
 Status cancel(CommandOutcome& outcome, const NumberedWish& wish) {
     WEAVE_TRY(wire::Follower follower, server_of(wish.server));
-    const auto accepted = wire::answer_of<wire::Accepted>(follower.ask(wire::Cancel{wire::new_request_id(), wish.number}, answer_patience));
-    if (!accepted) return Error{accepted.error().code, accepted.error().message, follower.place().name + ": " + name_of(wish.number)};
+    const auto accepted = wire::answer_of<wire::Accepted>(follower.ask(wire::Cancel{wire::new_request_id(), wish.number}, wire::answer_patience));
+    if (!accepted) return Error{accepted.error().code, accepted.error().message, follower.place().name + ": " + wire::name_of(wish.number)};
     auto ended = told_end(follower, wish.number, 1s);
     if (ended && !*ended) {
-        outcome.note(name_of(wish.number) + " puts away what it has ...");
+        outcome.note(wire::name_of(wish.number) + " puts away what it has ...");
         ended = told_end(follower, wish.number, cancel_patience);
     }
     follower.close();
     Json answer{{"server", follower.place().name}, {"job", wish.number}, {"ended", ended && *ended}};
     std::string how = " is being cancelled; weave jobs lists when it has ended";
     if (ended && *ended) {
-        answer["yarns"] = has_yarns(**ended);
+        answer["yarns"] = wire::has_yarns(**ended);
         how = how_cancelled(**ended);
     }
-    outcome.answer(answer, name_of(wish.number) + how + "\n");
+    outcome.answer(answer, wire::name_of(wish.number) + how + "\n");
     return {};
 }
 

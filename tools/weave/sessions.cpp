@@ -52,7 +52,7 @@ std::string line_of(const Json& session) {
 
 Status list(CommandOutcome& outcome, const ServerWish& wish) {
     WEAVE_TRY(wire::Follower follower, server_of(wish));
-    auto sessions = wire::answer_of<wire::SessionList>(follower.ask(wire::ListSessions{wire::new_request_id()}, answer_patience));
+    auto sessions = wire::answer_of<wire::SessionList>(follower.ask(wire::ListSessions{wire::new_request_id()}, wire::answer_patience));
     if (!sessions) return std::move(sessions).error().in(follower.place().name);
     follower.close();
     return tell_list(outcome, follower, "sessions", std::move(*sessions), line_of);
@@ -71,10 +71,10 @@ Result<std::optional<wire::Ended>> end_of_session(wire::Follower& follower, std:
 
 /// Ends it, unless it has ended; its end is dealt with, so the server forgets it.
 Result<wire::Ended> closed(wire::Follower& follower, std::uint64_t session) {
-    WEAVE_CHECK_OK(follower.attach(session, 0, 0, answer_patience));
-    static_cast<void>(follower.ask(wire::WantFrames{wire::new_request_id(), session, 0}, answer_patience));  // one of any size would only keep it busy
-    const auto accepted = wire::answer_of<wire::Accepted>(follower.ask(wire::Close{wire::new_request_id(), session}, answer_patience));
-    WEAVE_TRY(auto ended, end_of_session(follower, accepted ? answer_patience : known_end_patience));
+    WEAVE_CHECK_OK(follower.attach(session, 0, 0, wire::answer_patience));
+    static_cast<void>(follower.ask(wire::WantFrames{wire::new_request_id(), session, 0}, wire::answer_patience));  // one of any size would only keep it busy
+    const auto accepted = wire::answer_of<wire::Accepted>(follower.ask(wire::Close{wire::new_request_id(), session}, wire::answer_patience));
+    WEAVE_TRY(auto ended, end_of_session(follower, accepted ? wire::answer_patience : known_end_patience));
     if (!ended && !accepted) return accepted.error();
     if (!ended) return system_fault("is to end, and the server does not tell that it has");
     WEAVE_CHECK_OK(follower.acknowledge());

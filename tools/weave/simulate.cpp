@@ -164,7 +164,7 @@ Status run_simulation(CommandOutcome& outcome, const SimulateWish& wish) {
     if (!wish.server.host.empty()) {
         WEAVE_TRY(const wire::ServerPlace place, place_of(wish.server));
         WEAVE_TRY(server, connected(place));
-        if (!wish.evidence.empty()) WEAVE_CHECK_OK(check_signs(*server));
+        if (!wish.evidence.empty()) WEAVE_CHECK_OK(wire::check_signs(*server));
     }
     WEAVE_TRY(const Cloth cloth, load_cloth(outcome, wish.file));
     const Block& block = *cloth.evaluation.block;

@@ -9,21 +9,12 @@
 #include <weave/core/file.hpp>
 #include <weave/design/document.hpp>
 
-#include <chrono>
 #include <optional>
 #include <utility>
 
 namespace weave::program {
 
 namespace {
-
-using Clock = std::chrono::steady_clock;
-using namespace std::chrono_literals;
-
-/// Without a word of the job for so long, the server is asked whether it still has it.
-constexpr auto longest_silence = 30s;
-/// How long a person who ends a run waits for a server that is away.
-constexpr auto cancel_patience = 15s;
 
 /// The run as a server takes it: its design with the scene of this run, and how it is simulated.
 Result<wire::Submit> order_of(const SimulateTask& task, const SimulateWish& wish) {
@@ -61,85 +52,13 @@ class TroubleNotes {
     wire::Follower& m_follower;
 };
 
-/// Follows one job to its end.
-class JobWatch {
-  public:
-    JobWatch(wire::Follower& follower, std::uint64_t job, Teller& teller) : m_follower(follower), m_job(job), m_teller(teller) {}
-
-    Result<wire::JobEnded> to_its_end() {
-        while (true) {
-            if (interrupted() && !m_cancelled) {
-                WEAVE_CHECK_OK(cancel());
-            }
-            WEAVE_TRY(auto received, m_follower.receive(200ms));
-            notice_return();
-            auto* message = received ? std::get_if<wire::ServerMessage>(&*received) : nullptr;
-            if (message != nullptr && is_end(*message)) return std::get<wire::JobEnded>(std::move(*message));
-            if (message != nullptr) hear(*message);
-            if (Clock::now() - m_heard > longest_silence) {
-                WEAVE_CHECK_OK(look());
-            }
-        }
-    }
-
-    /// The server has no such job any more.
-    [[nodiscard]] bool is_lost() const { return m_lost; }
-
-  private:
-    [[nodiscard]] bool is_end(const wire::ServerMessage& message) const {
-        const auto* ended = std::get_if<wire::JobEnded>(&message);
-        return ended != nullptr && ended->job == m_job;
-    }
-
-    void hear(const wire::ServerMessage& message) {
-        const auto* progress = std::get_if<wire::JobProgress>(&message);
-        if (progress != nullptr && progress->state.job == m_job) hear(progress->state);
-    }
-    void hear(const wire::JobState& state) {
-        m_heard = Clock::now();
-        if (!m_cancelled) m_teller(state);
-    }
-
-    Status cancel() {
-        m_cancelled = true;
-        const auto answer = m_follower.ask(wire::Cancel{wire::new_request_id(), m_job}, cancel_patience);
-        if (!answer) return answer.error();
-        return std::holds_alternative<wire::Refused>(*answer) ? look() : Status();  // it has ended, or is not there any more
-    }
-
-    /// Another client of the same person may have dealt with the end of the job.
-    Status look() {
-        m_heard = Clock::now();
-        auto list = jobs_of(m_follower);
-        if (!list) return m_follower.trouble() ? Status() : Status(std::move(list).error());
-        for (const wire::JobState& state : list->jobs) {
-            if (state.job == m_job) return hear(state), Status();
-        }
-        m_lost = true;
-        return Error{ErrorCode::refused, "the server does not have it any more: it lost it, or the end was dealt with elsewhere", name_of(m_job)};
-    }
-
-    /// Connected again, it sees whether the job is still there.
-    void notice_return() {
-        const bool troubled = m_follower.trouble().has_value();
-        if (!troubled && m_troubled) m_heard = {};
-        m_troubled = troubled;
-    }
-
-    wire::Follower& m_follower;
-    std::uint64_t m_job;
-    Teller& m_teller;
-    bool m_cancelled = false, m_troubled = false, m_lost = false;
-    Clock::time_point m_heard = Clock::now();
-};
-
 /// Whether these are yarns of what was asked for.
 Status check_yarns(const RemoteYarns& fetched, const wire::JobEnded& ended, const SimulateTask& task) {
     const Yarns& yarns = fetched.yarns;
     WEAVE_TRY(const Design woven, with_flips_made(task.design, task.flips, ended.report));
     const bool same = yarns.scene_sha256 == scene_sha256(task.design) && yarns.design_sha256 == design_sha256(woven);
     const bool all_flips = ended.report.value("flips", Json::array()).size() == task.flips.size();
-    if (!same || !all_flips) return bad_input("the server gives yarns of something else than was asked for", name_of(ended.job));
+    if (!same || !all_flips) return bad_input("the server gives yarns of something else than was asked for", wire::name_of(ended.job));
     return {};
 }
 
@@ -147,12 +66,12 @@ Status check_yarns(const RemoteYarns& fetched, const wire::JobEnded& ended, cons
 Status keep_files(wire::Follower& follower, const wire::JobEnded& ended, const SimulateTask& task, const SimulateWish& wish) {
     WEAVE_TRY(const RemoteYarns fetched, fetch_yarns(follower, ended));
     WEAVE_CHECK_OK(check_yarns(fetched, ended, task));
-    std::optional<std::string> evidence;
+    std::optional<wire::RemoteEvidence> evidence;
     if (!wish.evidence.empty() && ended.evidence) {
-        WEAVE_TRY(evidence, fetch_evidence(follower, ended));
+        WEAVE_TRY(evidence, wire::fetch_evidence(follower, ended));
     }
     WEAVE_CHECK_OK(write_file(wish.out, fetched.bytes));
-    return evidence ? write_file(wish.evidence, *evidence) : Status();
+    return evidence ? write_file(wish.evidence, evidence->bytes) : Status();
 }
 
 /// The report as a run on this machine tells it.
@@ -173,16 +92,16 @@ Status simulate_on(CommandOutcome& outcome, wire::Follower& follower, const Desi
     teller.turn_to(" on " + follower.place().name);
     const TroubleNotes notes(follower, teller);
     WEAVE_TRY(const wire::Submit order, order_of(task, wish));
-    WEAVE_TRY(const wire::Accepted accepted, wire::answer_of<wire::Accepted>(follower.ask(order, answer_patience)));
+    WEAVE_TRY(const wire::Accepted accepted, wire::answer_of<wire::Accepted>(follower.ask(order, wire::answer_patience)));
     if (!accepted.job) return bad_input("the server gives the job no number", follower.place().name);
     const std::uint64_t job = *accepted.job;
-    JobWatch watch(follower, job, teller);
+    wire::JobWatch watch(follower, job, {[&](const wire::JobState& state) { teller(state); }, interrupted});
     const Result<wire::JobEnded> ended = watch.to_its_end();
     teller.end();
     if (!ended) return watch.is_lost() ? ended.error() : kept(ended.error(), job, wish);
-    if (!has_yarns(*ended)) {
+    if (!wire::has_yarns(*ended)) {
         settle(outcome, follower, job);
-        return reason_of(*ended).in(wish.file);
+        return wire::reason_of(*ended).in(wish.file);
     }
     if (Status files = keep_files(follower, *ended, task, wish); !files) return kept(std::move(files).error(), job, wish);
     const Json report = report_of(*ended, task);
@@ -191,7 +110,7 @@ Status simulate_on(CommandOutcome& outcome, wire::Follower& follower, const Desi
     answer["job"] = job;
     answer["server"] = follower.place().name;
     Status evidence;
-    if (!wish.evidence.empty()) evidence = check_signed(follower, *ended);
+    if (!wish.evidence.empty()) evidence = wire::check_signed(follower, *ended);
     if (!evidence) answer["error"] = error_json(evidence.error());
     WEAVE_CHECK_OK(tell_ending(outcome, report, std::move(answer), {design, task.flips, wish.save_design}));
     settle(outcome, follower, job);

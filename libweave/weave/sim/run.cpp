@@ -96,6 +96,13 @@ Status Run::advance(std::size_t most_steps, const Watch& watch) {
     return {};
 }
 
+bool Run::settle_between() {
+    if (!m_now->at_end() || m_now->cut_short()) return false;
+    if (!m_now->is_flipping() && !is_coarse()) return false;
+    static_cast<void>(advance(0, {}));  // neither can fail
+    return true;
+}
+
 bool Run::is_over() const {
     if (!m_now->at_end() || m_now->is_flipping()) return false;
     return m_now->cut_short() || (!is_coarse() && m_next_flip == m_request.flips.size());

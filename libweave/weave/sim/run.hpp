@@ -42,6 +42,9 @@ class Run {
     /// What comes next: a leg of so many steps at most, or what lies between two relaxations (other points, the whole cloth, a
     /// flip). Errors: the whole cloth cannot be planned.
     Status advance(std::size_t most_steps, const Watch& watch);
+    /// Does what lies between two relaxations and takes no step of its own, where that comes next, and says whether it did: after
+    /// it there is one place for changes at every step.
+    bool settle_between();
     /// Nothing is left to do, or time or steps are used up. A watch that ended a leg does not make it so.
     [[nodiscard]] bool is_over() const;
 

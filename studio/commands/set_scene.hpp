@@ -1,0 +1,12 @@
+#pragma once
+
+#include <weave/design/design.hpp>
+
+#include <studio/document/edit_step.hpp>
+
+namespace weave::studio {
+
+/// How the cloth is simulated. While a person drags, `is_dragging`, the steps become one.
+EditStep set_scene(const Scene& scene, bool is_dragging = false);
+
+}  // namespace weave::studio

@@ -1,0 +1,12 @@
+#pragma once
+
+#include <weave/design/design.hpp>
+
+#include <studio/document/edit_step.hpp>
+
+namespace weave::studio {
+
+/// The weft's yarns and their order. While a person drags, `is_dragging`, the steps become one.
+EditStep set_weft(const WeftPlan& weft, bool is_dragging = false);
+
+}  // namespace weave::studio
