@@ -164,7 +164,13 @@ Status run_simulation(CommandOutcome& outcome, const SimulateWish& wish) {
     if (!wish.server.host.empty()) {
         WEAVE_TRY(const wire::ServerPlace place, place_of(wish.server));
         WEAVE_TRY(server, connected(place));
-        if (!wish.evidence.empty()) WEAVE_CHECK_OK(wire::check_signs(*server));
+        if (!wish.evidence.empty()) {
+            if (Status signs = wire::check_signs(*server); !signs) {
+                Error error = std::move(signs).error();
+                error.message += " (--evidence)";
+                return error;
+            }
+        }
     }
     WEAVE_TRY(const Cloth cloth, load_cloth(outcome, wish.file));
     const Block& block = *cloth.evaluation.block;
