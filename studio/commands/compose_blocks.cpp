@@ -6,18 +6,25 @@
 #include <QCoreApplication>
 
 #include <memory>
+#include <optional>
 #include <utility>
 
 namespace weave::studio {
 
 namespace {
 
-/// What the library says of a design whose cloth is this block.
-Status check_block(Design design, const std::string& name, const NodePtr& node) {
-    design.blocks[name] = node;
-    design.root = name;
-    WEAVE_CHECK_OK(outline(design));
-    return {};
+double ends_per_column(const BlockGrid& grid) {
+    return static_cast<double>(grid.ends()) / static_cast<double>(grid.columns());
+}
+
+/// Layers that come on top of one another bring their own ends: to the centimetre there are so many more, and the cloth stays as wide
+/// as it was.
+std::optional<WarpPlan> denser_warp(const Design& design, const BlockGrid& before, const BlockGrid& after) {
+    const double times = ends_per_column(after) / ends_per_column(before);
+    if (design.scene.dy_mm || times == 1) return {};
+    WarpPlan warp = design.warp;
+    warp.density_ends_per_cm *= times;
+    return warp;
 }
 
 }  // namespace
@@ -29,10 +36,17 @@ Result<EditStep> compose_blocks(const Design& design, const std::string& grows, 
     for (const std::string& child : children_of(*node)) {
         if (!design.blocks.contains(child)) return invalid("'" + child + "' is not a block of this design");
     }
-    WEAVE_CHECK_OK(check_block(design, name, node));
+    Design made = design;
+    made.blocks[name] = node;
+    made.root = name;
+    WEAVE_TRY(const Outline after, outline(made));
     EditStep step{QCoreApplication::translate("commands", "Make %1").arg(QString::fromStdString(name)),
                   {PutBlock{name, node}}};
-    if (design.root == grows) step.edits.push_back(SetRoot{name});
+    if (design.root != grows) return step;
+    step.edits.push_back(SetRoot{name});
+    const auto before = outline(design);
+    if (!before) return step;  // there was no cloth to be as wide as
+    if (auto warp = denser_warp(design, before->grid, after.grid)) step.edits.push_back(SetWarp{std::move(*warp)});
     return step;
 }
 

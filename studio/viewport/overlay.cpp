@@ -155,14 +155,15 @@ void Overlay::padlock() {
 void Overlay::hint(const QString& text) {
     if (text.isEmpty()) return;
     const double wide = QFontMetricsF(m_painter.font()).horizontalAdvance(text) + 0.9 * em();
-    plate({m_area.center().x() - wide / 2, m_area.bottom() - 2.4 * em()}, text, m_accent);
+    // Below what stands at the top left: at the bottom are the axes.
+    m_left_top = plate({std::max(m_area.left() + 0.8 * em(), m_area.center().x() - wide / 2), m_left_top}, text, m_accent).bottom() + 0.4 * em();
 }
 
 void Overlay::axes(const Camera& camera) {
     // Orange ends and blue picks, as by system.
     const QColor ends(0xd5, 0x5e, 0x00), picks = m_accent;
     const double length = 2.5 * em();
-    const QPointF origin(m_area.left() + 4.4 * em(), m_area.bottom() - 3.9 * em());
+    const QPointF origin(m_area.left() + 5.8 * em(), m_area.bottom() - 3.9 * em());
     const auto arrow = [&](const Vec3& way, const QString& name, const QColor& colour) {
         const QPointF along(way.dot(camera.right()), -way.dot(camera.up()));
         const double seen = std::hypot(along.x(), along.y());

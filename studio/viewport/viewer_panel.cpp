@@ -13,6 +13,7 @@
 #include <QSpinBox>
 #include <QStackedWidget>
 #include <QStandardItemModel>
+#include <QToolButton>
 #include <QToolBar>
 #include <QVBoxLayout>
 
@@ -69,9 +70,10 @@ ViewerPanel::ViewerPanel(QWidget* parent, const QString& trouble) : QWidget(pare
     m_pages = new QStackedWidget;
     m_viewport = new Viewport;
     m_tools = new QToolBar(tr("3D view"));
-    column->addWidget(m_tools);
-    column->addWidget(m_pages, 1);
     build_tools();
+    column->addWidget(m_tools);
+    column->addWidget(m_pieces);
+    column->addWidget(m_pages, 1);
     if (trouble.isEmpty()) {
         m_pages->addWidget(m_viewport);
     } else {  // a widget of OpenGL that is never shown asks for none
@@ -79,9 +81,11 @@ ViewerPanel::ViewerPanel(QWidget* parent, const QString& trouble) : QWidget(pare
         m_viewport->hide();
         m_pages->addWidget(trouble_page(trouble));
         m_tools->setEnabled(false);
+        m_pieces->setEnabled(false);
     }
     connect(m_viewport, &Viewport::trouble_found, this, [this](const QString& words) {
         m_tools->setEnabled(false);
+        m_pieces->setEnabled(false);
         setAccessibleDescription(words);
     });
     connect(&m_maker, &ModelMaker::made, this, &ViewerPanel::show_model);
@@ -101,6 +105,20 @@ void ViewerPanel::set_planned(std::shared_ptr<const Design> design,
     m_design = std::move(design);
     m_curves = std::move(curves);
     if (m_mode == Mode::planned) make_model();
+}
+
+void ViewerPanel::set_no_plan(const QString& why) {
+    m_why_no_plan = why;
+    set_planned(nullptr, nullptr);
+}
+
+void ViewerPanel::set_caption(Mode mode, const QString& words) {
+    m_captions[static_cast<std::size_t>(mode)] = words;
+    show_caption();
+}
+
+void ViewerPanel::show_caption() {
+    m_viewport->set_caption(m_captions[static_cast<std::size_t>(m_mode)]);
 }
 
 void ViewerPanel::set_relaxed(std::shared_ptr<const Yarns> yarns) {
@@ -147,6 +165,8 @@ void ViewerPanel::show_model(std::shared_ptr<TubeModel> model) {
 void ViewerPanel::say_empty() {
     if (!m_failure.isEmpty()) {
         m_viewport->set_empty_words(tr("This cloth cannot be shown: %1.").arg(m_failure));
+    } else if (m_mode == Mode::planned && !m_why_no_plan.isEmpty()) {
+        m_viewport->set_empty_words(m_why_no_plan);
     } else if (m_mode == Mode::planned) {
         m_viewport->set_empty_words(tr("As soon as the block has yarns, its plan is drawn here."));
     } else {
@@ -188,6 +208,7 @@ void ViewerPanel::set_mode(Mode mode) {
         const QSignalBlocker quiet(m_modes);
         m_modes->setCurrentIndex(static_cast<int>(mode));
     }
+    show_caption();
     make_model();
     Q_EMIT mode_changed(mode);
 }
@@ -214,7 +235,7 @@ void ViewerPanel::choose_clip(int axis) {
 void ViewerPanel::apply_clip() {
     const int axis = m_clips->currentIndex() - 1;
     m_clip_at->setEnabled(axis >= 0);
-    m_flip->setEnabled(axis >= 0);
+    m_other_side->setEnabled(axis >= 0);
     if (axis < 0 || m_viewport->model() == nullptr) {
         m_viewport->set_clip({});
         return;

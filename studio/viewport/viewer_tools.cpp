@@ -6,6 +6,7 @@
 #include <QAction>
 #include <QComboBox>
 #include <QFileDialog>
+#include <QHBoxLayout>
 #include <QLabel>
 #include <QMenu>
 #include <QMessageBox>
@@ -44,12 +45,9 @@ void ViewerPanel::build_tools() {
     m_tools->setIconSize({side, side});
     add_looks();
     m_tools->addSeparator();
-    add_repeats();
-    m_tools->addSeparator();
-    add_clip();
-    m_tools->addSeparator();
     add_views();
     add_rest();
+    m_pieces = make_pieces();
 }
 
 void ViewerPanel::add_looks() {
@@ -66,7 +64,27 @@ void ViewerPanel::add_looks() {
     m_tools->addWidget(m_colours);
 }
 
-void ViewerPanel::add_repeats() {
+/// How often the piece is shown, and where it is cut.
+QWidget* ViewerPanel::make_pieces() {
+    make_repeats();
+    make_clip();
+    auto* const all = new QWidget;
+    auto* const row = new QHBoxLayout(all);
+    const int gap = m_tools->style()->pixelMetric(QStyle::PM_ToolBarItemSpacing) + 2;
+    row->setContentsMargins(gap, 0, gap, gap);
+    row->setSpacing(gap);
+    row->addWidget(m_along_ends);
+    row->addWidget(new QLabel(QStringLiteral("×")));
+    row->addWidget(m_along_picks);
+    row->addSpacing(2 * gap);
+    row->addWidget(m_clips);
+    row->addWidget(m_clip_at, 1);
+    row->addWidget(m_other_side);
+    row->addStretch();
+    return all;
+}
+
+void ViewerPanel::make_repeats() {
     const auto make = [&](const QString& name) {
         auto* const box = named(new QSpinBox, name, name);
         box->setRange(1, static_cast<int>(most_repeats));
@@ -77,17 +95,13 @@ void ViewerPanel::add_repeats() {
     m_along_picks = make(tr("Repeats along the picks"));
     m_along_ends->setPrefix(tr("ends "));
     m_along_picks->setPrefix(tr("picks "));
-    m_tools->addWidget(m_along_ends);
-    m_tools->addWidget(new QLabel(QStringLiteral("×")));
-    m_tools->addWidget(m_along_picks);
 }
 
-void ViewerPanel::add_clip() {
+void ViewerPanel::make_clip() {
     m_clips = named(new QComboBox, tr("Cut"), tr("Cuts the cloth open, and shows which yarns are cut"));
     m_clips->addItems(
         {tr("No cut"), tr("Cut across the ends"), tr("Cut across the picks"), tr("Cut by height")});
     connect(m_clips, &QComboBox::currentIndexChanged, this, &ViewerPanel::choose_clip);
-    m_tools->addWidget(m_clips);
     m_clip_at = named(new QSlider(Qt::Horizontal), tr("Place of the cut"), tr("Where the cloth is cut"));
     m_clip_at->setRange(0, clip_steps);
     m_clip_at->setValue(clip_steps / 2);
@@ -95,10 +109,10 @@ void ViewerPanel::add_clip() {
     m_clip_at->setMinimumWidth(fontMetrics().height() * 4);
     m_clip_at->setMaximumWidth(fontMetrics().height() * 9);
     connect(m_clip_at, &QSlider::valueChanged, this, &ViewerPanel::apply_clip);
-    m_tools->addWidget(m_clip_at);
-    m_flip =
-        add_action(static_cast<int>(ViewIcon::flip), tr("Other side"), tr("Keeps the other side of the cut"));
-    connect(m_flip, &QAction::triggered, this, [this] {
+    m_other_side = named(new QToolButton, tr("Other side"), tr("Keeps the other side of the cut"));
+    m_other_side->setIcon(view_icon(ViewIcon::flip));
+    m_other_side->setAutoRaise(true);
+    connect(m_other_side, &QToolButton::clicked, this, [this] {
         m_clip_side = -m_clip_side;
         apply_clip();
     });
@@ -138,6 +152,7 @@ void ViewerPanel::add_rest() {
     m_lock = add_action(static_cast<int>(ViewIcon::unlocked), tr("Lock the view"),
                         tr("Freezes the view, so that no drag moves it (L)"));
     m_lock->setCheckable(true);
+    m_lock->setShortcut(Qt::Key_L);  // of the window, wherever in it one is
     connect(m_lock, &QAction::triggered, m_viewport, &Viewport::set_locked);
     connect(m_viewport, &Viewport::locked_changed, this, [this](bool locked) {
         m_lock->setChecked(locked);
@@ -157,11 +172,12 @@ void ViewerPanel::add_rest() {
 }
 
 void ViewerPanel::ask_for_picture() {
-    QString path =
-        QFileDialog::getSaveFileName(this, tr("Save picture"), tr("cloth.png"), tr("Pictures (*.png)"));
-    if (path.isEmpty()) return;
-    if (!path.endsWith(QStringLiteral(".png"), Qt::CaseInsensitive)) path += QStringLiteral(".png");
-    if (const Status saved = save_picture(path); !saved)
+    QFileDialog dialog(this, tr("Save picture"), {}, tr("Pictures (*.png)"));
+    dialog.setAcceptMode(QFileDialog::AcceptSave);
+    dialog.setDefaultSuffix(QStringLiteral("png"));  // known to the dialog, so that it asks before it writes over a file
+    dialog.selectFile(tr("cloth.png"));
+    if (dialog.exec() != QDialog::Accepted) return;
+    if (const Status saved = save_picture(dialog.selectedFiles().value(0)); !saved)
         QMessageBox::warning(this, tr("Save picture"), QString::fromStdString(saved.error().text()));
 }
 

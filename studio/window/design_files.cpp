@@ -7,7 +7,10 @@
 
 #include <QFileDialog>
 #include <QFileInfo>
+#include <QPointer>
+#include <QRegularExpression>
 #include <QSettings>
+#include <QStandardPaths>
 
 #include <optional>
 #include <studio/jobs/background.hpp>
@@ -18,8 +21,26 @@ namespace {
 
 constexpr int most_recent = 12;
 
+/// Where the person opened or saved last; at first, where documents lie.
 QString last_folder() {
-    return QSettings().value("folder").toString();
+    return QSettings().value("folder", QStandardPaths::writableLocation(QStandardPaths::DocumentsLocation)).toString();
+}
+
+/// A title as a file's name.
+QString file_name(QString title) {
+    static const QRegularExpression no_name("[\\x00-\\x1f/\\\\:*?\"<>|]");
+    title.replace(no_name, "-");
+    return title.left(120);
+}
+
+/// Asks for a file; the dialog knows the ending, so that it asks before it writes over one. Empty: the person gave up.
+QString ask_for_file(QWidget* window, const QString& title, const QString& wish, const QString& kinds, const QString& ending) {
+    QFileDialog dialog(window, title, QFileInfo(wish).absolutePath(), kinds);
+    dialog.setAcceptMode(QFileDialog::AcceptSave);
+    dialog.setDefaultSuffix(ending);
+    dialog.selectFile(QFileInfo(wish).fileName());
+    if (dialog.exec() != QDialog::Accepted) return {};
+    return dialog.selectedFiles().value(0);
 }
 
 /// The bytes of a card as the file's ending asks for them.
@@ -50,7 +71,10 @@ void DesignFiles::open_file(const QString& path) {
     in_background(
         this, [path] { return open_design(path.toStdString()); },
         [this, path](Result<OpenedDesign> read) {
-            if (!read) return failed(QString::fromStdString(read.error().text()));
+            if (!read) {
+                Q_EMIT told({});
+                return failed(QString::fromStdString(read.error().text()));
+            }
             QStringList warnings;
             for (const std::string& warning : read->warnings) warnings.push_back(QString::fromStdString(warning));
             if (read->is_document) note_recent(path);
@@ -67,10 +91,10 @@ bool DesignFiles::save(Document& document) {
 }
 
 bool DesignFiles::save_as(Document& document) {
-    const QString wish = document.path().isEmpty() ? last_folder() + "/" + document.name() + ".weave" : document.path();
-    QString path = QFileDialog::getSaveFileName(m_window, tr("Save the design"), wish, tr("Designs (*.weave)"));
-    if (path.isEmpty()) return false;
-    if (QFileInfo(path).suffix().isEmpty()) path += ".weave";
+    const QString wish = document.path().isEmpty() ? last_folder() + "/" + file_name(document.name()) + ".weave" : document.path();
+    const QPointer<Document> still(&document);
+    const QString path = ask_for_file(m_window, tr("Save the design"), wish, tr("Designs (*.weave)"), "weave");
+    if (path.isEmpty() || !still) return false;
     QSettings().setValue("folder", QFileInfo(path).absolutePath());
     document.save(path);
     note_recent(path);
@@ -80,11 +104,12 @@ bool DesignFiles::save_as(Document& document) {
 void DesignFiles::export_card(const Document& document) {
     const BlockPtr block = document.whole().block;
     if (!block) return failed(tr("There is no cloth to export: it cannot be made"));
-    const QString path = QFileDialog::getSaveFileName(m_window, tr("Export the card image"), last_folder() + "/" + document.name() + ".png",
-                                                      tr("Pictures of the card (*.png *.tif *.bmp);;WIF (*.wif)"));
+    const Design design = document.design();  // as it was when the person asked
+    const QString path = ask_for_file(m_window, tr("Export the card image"), last_folder() + "/" + file_name(document.name()) + ".png",
+                                      tr("Pictures of the card, and WIF (*.png *.tif *.bmp *.wif)"), "png");
     if (path.isEmpty()) return;
     in_background(
-        this, [design = document.design(), block, path] { return export_to(design, *block, path.toStdString()); },
+        this, [design, block, path] { return export_to(design, *block, path.toStdString()); },
         [this, path](Status done) {
             if (!done) return failed(QString::fromStdString(done.error().text()));
             Q_EMIT told(tr("The card image is in %1. It is a sample: only a release goes to a loom").arg(path));

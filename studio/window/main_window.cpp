@@ -14,6 +14,8 @@
 #include <QMessageBox>
 #include <QPushButton>
 #include <QRubberBand>
+#include <QScreen>
+#include <QScrollArea>
 #include <QSettings>
 #include <QSplitter>
 #include <QStackedWidget>
@@ -40,6 +42,7 @@
 #include <studio/viewport/viewer_panel.hpp>
 #include <studio/window/block_actions.hpp>
 #include <studio/window/design_files.hpp>
+#include <studio/window/help_window.hpp>
 #include <studio/window/simulation_desk.hpp>
 #include <studio/window/slice_desk.hpp>
 #include <studio/window/start_page.hpp>
@@ -58,10 +61,11 @@ MainWindow::MainWindow(QWidget* parent)
       m_submit(new SubmitPanel), m_submit_desk(new SubmitDesk(*m_submit, *m_findings, *m_simulation, this)), m_tutorial(new Tutorial), m_messages(new MessageBar), m_status(new QLabel) {
     setObjectName("studio");
     m_messages->setObjectName("messages");
-    resize(1680, 1040);
+    resize(QSize(fontMetrics().averageCharWidth() * 240, fontMetrics().height() * 62).boundedTo(screen()->availableGeometry().size()));
     make_workspace();
     make_docks();
     make_menus();
+    m_status->setTextFormat(Qt::PlainText);  // names in it are foreign
     statusBar()->addWidget(m_status, 1);
     connect(m_files, &DesignFiles::opened, this, &MainWindow::opened);
     connect(m_files, &DesignFiles::failed, this, &MainWindow::warn);
@@ -119,7 +123,6 @@ void MainWindow::make_workspace() {
     connect(m_slice, &SliceEditor::status, this, &MainWindow::tell);
     connect(m_slice_desk, &SliceDesk::failed, this, &MainWindow::warn);
     connect(m_slice_desk, &SliceDesk::flip_wanted, this, &MainWindow::flip_at_once);
-    connect(m_viewer_desk, &ViewerDesk::told, this, &MainWindow::tell);
     connect(m_viewer_desk, &ViewerDesk::attach_wanted, this, [this](Face face) {
         if (m_blocks == nullptr) return;
         m_viewer->viewport()->set_attach_mode(false);
@@ -163,7 +166,13 @@ void MainWindow::make_docks() {
     const auto dock = [&](const QString& name, const QString& title, QWidget* widget, Qt::DockWidgetArea area) {
         auto* made = new QDockWidget(title, this);
         made->setObjectName(name);
-        made->setWidget(widget);
+        auto* scroll = new QScrollArea;  // what is tall must not make the window taller than a laptop's screen
+        scroll->setFrameShape(QFrame::NoFrame);
+        scroll->setWidgetResizable(true);
+        scroll->setHorizontalScrollBarPolicy(Qt::ScrollBarAlwaysOff);
+        scroll->setMinimumWidth(widget->minimumSizeHint().width());
+        scroll->setWidget(widget);
+        made->setWidget(scroll);
         addDockWidget(area, made);
         return made;
     };
@@ -177,8 +186,9 @@ void MainWindow::make_docks() {
     connect(m_submit, &SubmitPanel::simulation_wanted, simulation, [simulation] { simulation->raise(); });
     simulation->raise();
     auto* findings = dock("findings-dock", tr("Findings"), m_findings, Qt::BottomDockWidgetArea);
-    resizeDocks({findings}, {190}, Qt::Vertical);
-    resizeDocks({blocks, simulation}, {270, 400}, Qt::Horizontal);
+    const int em = fontMetrics().height();
+    resizeDocks({findings}, {11 * em}, Qt::Vertical);
+    resizeDocks({blocks, simulation}, {16 * em, 24 * em}, Qt::Horizontal);
     m_simulation_dock = simulation;
     setCorner(Qt::BottomLeftCorner, Qt::LeftDockWidgetArea);
     setCorner(Qt::BottomRightCorner, Qt::RightDockWidgetArea);
@@ -297,6 +307,12 @@ void MainWindow::open_file(const QString& path) {
 }
 
 void MainWindow::opened(const Design& design, const QString& path, const QStringList& warnings) {
+    // What was asked for waits until the person has answered what stands open: that may be about the design that is here.
+    if (QApplication::activeModalWidget() != nullptr || QApplication::activePopupWidget() != nullptr) {
+        constexpr int a_moment = 100;  // milliseconds
+        QTimer::singleShot(a_moment, this, [=, this] { opened(design, path, warnings); });
+        return;
+    }
     if (!may_close()) return;
     show_design(design, path, !path.isEmpty());
     if (!warnings.isEmpty()) m_messages->tell(MessageBar::Kind::note, warnings.join('\n'));
@@ -342,6 +358,15 @@ void MainWindow::begin_tutorial() {
     design.blocks["layer"] = std::make_shared<const Node>(Node{PresetLeaf{{"twill", {{"up", 1}, {"down", 4}}}}, {}});
     show_design(std::move(design), {}, true);
     m_tutorial->begin();
+    const int width = m_tutorial_dock->width();  // its longest step is to be read without scrolling
+    resizeDocks({m_tutorial_dock}, {m_tutorial->height_for(width) + 3 * fontMetrics().height()}, Qt::Vertical);
+}
+
+void MainWindow::show_help(const QString& heading) {
+    if (m_help == nullptr) m_help = new HelpWindow(this);
+    m_help->show();
+    m_help->raise();
+    m_help->show_heading(heading);
 }
 
 /// Rings what a step of the tutorial needs, for two seconds.

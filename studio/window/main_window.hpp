@@ -21,6 +21,7 @@ class CardEditor;
 class DesignFiles;
 class DesignTree;
 class FindingsPanel;
+class HelpWindow;
 class MessageBar;
 class SliceDesk;
 class SliceEditor;
@@ -75,6 +76,7 @@ class MainWindow : public QMainWindow {
     void show_in_parts(Document* document);
     void show_start_page();
     void begin_tutorial();
+    void show_help(const QString& heading);
     void show_where(std::size_t step);
     void follow_document();
     void show_title();
@@ -112,6 +114,7 @@ class MainWindow : public QMainWindow {
     Tutorial* m_tutorial;
     QDockWidget* m_tutorial_dock = nullptr;
     QDockWidget* m_simulation_dock = nullptr;
+    HelpWindow* m_help = nullptr;  ///< once it was asked for
     bool m_is_learning = false;
     MessageBar* m_messages;
     QLabel* m_status;

@@ -115,6 +115,11 @@ void MainWindow::make_view_menu() {
             if (m_viewer->viewport() != nullptr) m_viewer->viewport()->turn_to(view);
         });
     menu.addSeparator();
+    for (QAction* action : m_viewer->menu_actions()) {
+        menu.addAction(action);
+        m_design_actions.push_back(action);
+    }
+    menu.addSeparator();
     QMenu* corners = menu.addMenu(tr("Corner of &pick 1 and end 1"));
     auto* group = new QActionGroup(this);
     const std::vector<QString> names{tr("Bottom left"), tr("Bottom right"), tr("Top left"), tr("Top right")};
@@ -160,6 +165,9 @@ void MainWindow::make_tool_bar() {
 void MainWindow::make_help_menu() {
     QMenu& menu = *menuBar()->addMenu(tr("&Help"));
     add(menu, tr("&Learn it in five steps"), {}, [this] { begin_tutorial(); }, false);
+    add(menu, tr("The designer's &guide"), QKeySequence::HelpContents, [this] { show_help(tr("The designer's guide to the studio")); }, false);
+    add(menu, tr("&Keys and mouse"), {}, [this] { show_help(tr("Keys and mouse")); }, false);
+    menu.addSeparator();
     add(menu, tr("&About"), {}, [this] {
         QMessageBox::about(this, tr("Weave studio"), tr("Weave studio %1\n3D woven cloth, from the first block to the loom.").arg(QApplication::applicationVersion()));
     }, false);

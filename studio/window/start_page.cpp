@@ -10,7 +10,10 @@
 #include <QListWidget>
 #include <QPainter>
 #include <QScrollBar>
+#include <QTextDocument>
 #include <QVBoxLayout>
+
+#include <cmath>
 
 #include <studio/document/thumbnail.hpp>
 #include <studio/jobs/background.hpp>
@@ -31,15 +34,18 @@ QLabel* heading(const QString& text, double scale) {
 }
 
 /// A picture in the middle of a square, so that all stand in line.
-QPixmap in_square(const QImage& image) {
-    QPixmap square(picture_side, picture_side);
+QPixmap in_square(const QImage& image, double pixel_ratio) {
+    const int side = static_cast<int>(std::lround(picture_side * pixel_ratio)), room = side - static_cast<int>(8 * pixel_ratio);
+    QPixmap square(side, side);
     square.fill(Qt::transparent);
-    const QImage scaled = image.scaled(picture_side - 8, picture_side - 8, Qt::KeepAspectRatio, image.width() < picture_side ? Qt::FastTransformation : Qt::SmoothTransformation);
+    const QImage scaled = image.scaled(room, room, Qt::KeepAspectRatio, image.width() < side ? Qt::FastTransformation : Qt::SmoothTransformation);
     QPainter painter(&square);
-    const QRect place((picture_side - scaled.width()) / 2, (picture_side - scaled.height()) / 2, scaled.width(), scaled.height());
+    const QRect place((side - scaled.width()) / 2, (side - scaled.height()) / 2, scaled.width(), scaled.height());
     painter.drawImage(place.topLeft(), scaled);
     painter.setPen(QColor(0, 0, 0, 90));
     painter.drawRect(place.adjusted(-1, -1, 0, 0));
+    painter.end();
+    square.setDevicePixelRatio(pixel_ratio);
     return square;
 }
 
@@ -119,14 +125,14 @@ void StartPage::add_samples(QVBoxLayout& column) {
 void StartPage::picture_sample(const QString& name) {
     in_background(
         this,
-        [name] {
+        [name, side = static_cast<int>((picture_side - 8) * devicePixelRatioF())] {
             const Design design = find_sample(name.toStdString())->make();
             const auto made = evaluate(design);
-            return made ? thumbnail(design, *made->block, picture_side - 8) : QImage();
+            return made ? thumbnail(design, *made->block, side) : QImage();
         },
         [this, name](const QImage& image) {
             for (int k = 0; k < m_samples->count() && !image.isNull(); ++k) {
-                if (m_samples->item(k)->data(name_role).toString() == name) m_samples->item(k)->setIcon(QIcon(in_square(image)));
+                if (m_samples->item(k)->data(name_role).toString() == name) m_samples->item(k)->setIcon(QIcon(in_square(image, devicePixelRatioF())));
             }
         });
 }
@@ -136,7 +142,7 @@ void StartPage::list_recent(const QStringList& paths) {
     for (const QString& path : paths) {
         auto* item = new QListWidgetItem(QFileInfo(path).completeBaseName() + "\n" + QFileInfo(path).path(), m_recent);
         item->setData(name_role, path);
-        item->setToolTip(path);
+        item->setToolTip(Qt::convertFromPlainText(path));
     }
     if (!paths.isEmpty()) return;
     auto* none = new QListWidgetItem(tr("Designs that you open appear here."), m_recent);

@@ -2,7 +2,6 @@
 
 #include <weave/design/tree.hpp>
 
-#include <QHBoxLayout>
 #include <QLabel>
 #include <QProgressBar>
 #include <QPushButton>
@@ -45,9 +44,8 @@ Tutorial::Tutorial(QWidget* parent) : QWidget(parent), m_title(new QLabel), m_te
     m_progress->setRange(0, static_cast<int>(steps));
     m_progress->setFormat(tr("%v of %m steps done"));
     auto* close = new QPushButton(tr("End the tutorial"));
-    auto* buttons = new QHBoxLayout;
+    auto* buttons = new QVBoxLayout;
     buttons->addWidget(m_show);
-    buttons->addStretch();
     buttons->addWidget(close);
     auto* column = new QVBoxLayout(this);
     column->addWidget(m_title);
@@ -103,17 +101,28 @@ void Tutorial::look() {
     show_step();
 }
 
-void Tutorial::show_step() {
-    const std::array<QString, steps + 1> titles{tr("1  Pattern"), tr("2  Relax"), tr("3  Flip"), tr("4  Attach"), tr("5  Seal"), tr("That is a pocket")};
-    const std::array<QString, steps + 1> texts{
+std::array<QString, Tutorial::steps + 1> Tutorial::texts() {
+    return {
         tr("You have one repeat of a twill. Make a layer of it: in Blocks, right-click it and choose Repeat (tile): 4 along and 4 across, so that the cloth has at least 20 picks and 20 ends."),
         tr("See it as cloth: press Run in Simulation (or Space), and wait until it is at rest. Drag in the 3D view to turn it, use the wheel to come nearer; 1 to 6 are standard views."),
         tr("A yarn that floats too far can be caught: click a crossing of the card, and weft and end change sides there. Where that cannot be, it says which yarns stand in the way. Ctrl+Z takes it back."),
         tr("Now a second layer: choose Attach in the 3D view, click the lower face of the block (or drag a block onto another in Blocks), and take the same layer again. It will lie below the first."),
-        tr("Two layers, open on all sides. In Simulation, under Scene, let the weft turn in the cloth (wraparound): at both long sides it goes from one layer to the other and closes them."),
-        tr("The weft closes the sides, the cloth is hollow. Flip crossings of the first picks to close an end as well, look through it with the clipping plane, and save it with Ctrl+S.")};
+        tr("Two layers, open on all sides. In Simulation, on the page Cloth, choose for Weft: Turns at the edge (wraparound): at both long sides it goes from one layer to the other and closes them."),
+        tr("The weft closes the sides, the cloth is hollow. Flip crossings of the first picks to close an end as well, look through it with Cut above the 3D view, and save it with Ctrl+S.")};
+}
+
+int Tutorial::height_for(int width) const {
+    const QMargins margins = layout()->contentsMargins();
+    const QRect room(0, 0, width - margins.left() - margins.right(), 10000);
+    int longest = 0;
+    for (const QString& text : texts()) longest = std::max(longest, m_text->fontMetrics().boundingRect(room, Qt::TextWordWrap, text).height());
+    return longest + sizeHint().height() - m_text->sizeHint().height() + m_text->fontMetrics().height();
+}
+
+void Tutorial::show_step() {
+    const std::array<QString, steps + 1> titles{tr("1  Pattern"), tr("2  Relax"), tr("3  Flip"), tr("4  Attach"), tr("5  Seal"), tr("That is a pocket")};
     m_title->setText(titles[m_step]);
-    m_text->setText(texts[m_step]);
+    m_text->setText(texts()[m_step]);
     m_progress->setValue(static_cast<int>(m_step));
     m_show->setVisible(m_step < steps);
 }

@@ -28,6 +28,8 @@ class Tutorial : public QWidget {
     void note_relaxed();
     /// The step that is to be done, from 0; `steps` when all are.
     [[nodiscard]] std::size_t step() const { return m_step; }
+    /// Pixels that the longest step takes where the panel is so wide.
+    [[nodiscard]] int height_for(int width) const;
 
   Q_SIGNALS:
     /// The person asks to be shown where a step is done: the number of the step.
@@ -38,6 +40,7 @@ class Tutorial : public QWidget {
     void look();
     [[nodiscard]] bool is_done(std::size_t step) const;
     void show_step();
+    [[nodiscard]] static std::array<QString, steps + 1> texts();
 
     Document* m_document = nullptr;
     std::size_t m_step = 0;

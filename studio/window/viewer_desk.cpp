@@ -30,20 +30,26 @@ Result<ClothCurves> planned_curves(const Design& design, const Block& block, con
 }  // namespace
 
 ViewerDesk::ViewerDesk(ViewerPanel& panel, QObject* parent) : QObject(parent), m_panel(panel) {
-    connect(&panel, &ViewerPanel::mode_changed, this, &ViewerDesk::show_caption);
-    if (panel.viewport() != nullptr) follow_clicks();
+    follow_clicks();
 }
 
 void ViewerDesk::follow_clicks() {
     Viewport* viewport = m_panel.viewport();
-    connect(viewport, &Viewport::yarn_clicked, this, [this](System system, std::size_t number) {
+    // Relaxed is the cloth, whichever of its blocks is being edited.
+    const auto show_what_is_clicked = [this] {
+        if (m_panel.mode() == ViewerPanel::Mode::relaxed) m_document->focus().show_block(m_document->design().root);
+    };
+    connect(viewport, &Viewport::yarn_clicked, this, [this, show_what_is_clicked](System system, std::size_t number) {
         if (m_document == nullptr) return;
+        show_what_is_clicked();
         CardPlace place = m_document->focus().place().value_or(CardPlace{});
         (system == System::weft ? place.pick : place.end) = number;
         m_document->focus().go_to(place);
     });
-    connect(viewport, &Viewport::crossing_clicked, this, [this](std::size_t pick, std::size_t end) {
-        if (m_document != nullptr) Q_EMIT flip_wanted({pick, end});
+    connect(viewport, &Viewport::crossing_clicked, this, [this, show_what_is_clicked](std::size_t pick, std::size_t end) {
+        if (m_document == nullptr) return;
+        show_what_is_clicked();
+        Q_EMIT flip_wanted({pick, end});
     });
     connect(viewport, &Viewport::face_clicked, this, &ViewerDesk::attach_wanted);
 }
@@ -55,8 +61,10 @@ void ViewerDesk::show_document(Document* document) {
     }
     m_document = document;
     m_shown_block.clear();
+    m_region.reset();
     ++m_wanted;
-    m_panel.set_planned(nullptr, nullptr);
+    m_panel.set_caption(ViewerPanel::Mode::planned, {});
+    m_panel.set_no_plan();
     if (document == nullptr) return;
     connect(document, &Document::shown_made, this, &ViewerDesk::plan);
     connect(&document->focus(), &Focus::place_changed, this, [this] {
@@ -71,8 +79,12 @@ void ViewerDesk::show_document(Document* document) {
 std::optional<Region> ViewerDesk::region_to_show(const Block& block) const {
     if (block.rows() * block.columns() <= most_cells) return std::nullopt;
     const CardPlace place = m_document->focus().place().value_or(CardPlace{});
-    const auto [first_row, last_row] = lines_round(block.row_of_pick(std::min(place.pick, block.picks() - 1)), block.rows(), most_rows);
-    const auto [first_column, last_column] = lines_round(block.column_of_end(std::min(place.end, block.ends() - 1)), block.columns(), most_columns);
+    const std::size_t row = block.row_of_pick(std::min(place.pick, block.picks() - 1)), column = block.column_of_end(std::min(place.end, block.ends() - 1));
+    // Work within what is shown does not move it.
+    const bool is_same = m_region && m_shown_block == m_document->shown_block() && m_region->last_row < block.rows() && m_region->last_column < block.columns();
+    if (is_same && holds(*m_region, row, column)) return m_region;
+    const auto [first_row, last_row] = lines_round(row, block.rows(), most_rows);
+    const auto [first_column, last_column] = lines_round(column, block.columns(), most_columns);
     return Region{first_row, last_row, first_column, last_column};
 }
 
@@ -82,8 +94,7 @@ void ViewerDesk::plan() {
     const BlockPtr block = m_document->shown().block;
     if (!block) {
         const auto& error = m_document->shown().error;
-        if (Viewport* viewport = m_panel.viewport()) viewport->set_empty_words(error ? QString::fromStdString(error->text()) : tr("The block is being made."));
-        return m_panel.set_planned(nullptr, nullptr);
+        return m_panel.set_no_plan(error ? QString::fromStdString(error->text()) : tr("The block is being made."));
     }
     if (m_is_planning) {
         m_plan_again = true;
@@ -105,32 +116,24 @@ void ViewerDesk::plan() {
         [=, this](Result<ClothCurves> curves) {
             m_is_planning = false;
             if (wanted == m_wanted) {
+                const bool has_moved = m_region != region;
                 m_region = region;
-                m_caption = caption;
-                if (curves) {
-                    show_planned(design, std::make_shared<const ClothCurves>(std::move(*curves)));
-                } else {
-                    m_panel.set_planned(nullptr, nullptr);
-                    if (Viewport* viewport = m_panel.viewport()) viewport->set_empty_words(QString::fromStdString(curves.error().text()));
-                }
+                m_panel.set_caption(ViewerPanel::Mode::planned, caption);
+                if (curves) show_planned(design, std::make_shared<const ClothCurves>(std::move(*curves)), has_moved);
+                else m_panel.set_no_plan(QString::fromStdString(curves.error().text()));
             }
             if (std::exchange(m_plan_again, false)) plan();
         });
 }
 
-void ViewerDesk::show_planned(std::shared_ptr<const Design> design, std::shared_ptr<const ClothCurves> curves) {
-    // What is another block, or has another size, is shown whole; an edit leaves the view where it is.
-    const bool is_other = m_shown_block != m_document->shown_block() || m_shown_size != curves->size_mm;
+void ViewerDesk::show_planned(std::shared_ptr<const Design> design, std::shared_ptr<const ClothCurves> curves, bool has_moved) {
+    // What is another block, another part of it, or has another size, is shown whole; an edit leaves the view where it is.
+    const bool is_other = has_moved || m_shown_block != m_document->shown_block() || m_shown_size != curves->size_mm;
     m_shown_block = m_document->shown_block();
     m_shown_size = curves->size_mm;
     m_panel.set_planned(std::move(design), std::move(curves));
-    show_caption();
-    if (!is_other || m_panel.mode() != ViewerPanel::Mode::planned || m_panel.viewport() == nullptr) return;
+    if (!is_other || m_panel.mode() != ViewerPanel::Mode::planned) return;
     connect(&m_panel, &ViewerPanel::model_shown, this, [this] { m_panel.viewport()->fit(); }, Qt::SingleShotConnection);
-}
-
-void ViewerDesk::show_caption() {
-    if (Viewport* viewport = m_panel.viewport()) viewport->set_caption(m_panel.mode() == ViewerPanel::Mode::planned ? m_caption : QString());
 }
 
 }  // namespace weave::studio

@@ -26,7 +26,6 @@ class ViewerDesk : public QObject {
     void show_document(Document* document);
 
   Q_SIGNALS:
-    void told(const QString& words);
     /// A face of the block was clicked: what is to be attached there?
     void attach_wanted(weave::Face face);
     /// Two yarns were clicked that cross: they may be to change sides.
@@ -35,13 +34,11 @@ class ViewerDesk : public QObject {
   private:
     void follow_clicks();
     void plan();
-    void show_planned(std::shared_ptr<const Design> design, std::shared_ptr<const ClothCurves> curves);
-    void show_caption();
+    void show_planned(std::shared_ptr<const Design> design, std::shared_ptr<const ClothCurves> curves, bool has_moved);
     [[nodiscard]] std::optional<Region> region_to_show(const Block& block) const;
 
     ViewerPanel& m_panel;
     Document* m_document = nullptr;
-    QString m_caption;
     std::optional<Region> m_region;  ///< that is planned
     bool m_is_planning = false, m_plan_again = false;
     std::string m_shown_block;

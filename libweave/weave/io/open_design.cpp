@@ -20,6 +20,11 @@ Design design_of_card(CardImage card) {
 
 namespace {
 
+bool looks_like_json(std::string_view bytes) {
+    const std::size_t first = bytes.find_first_not_of(" \t\r\n");
+    return first != std::string_view::npos && bytes[first] == '{';
+}
+
 Result<OpenedDesign> from_bytes(std::string_view bytes) {
     if (is_bitmap(bytes)) {
         WEAVE_TRY(CardFromBitmap read, read_bitmap(bytes));
@@ -29,8 +34,10 @@ Result<OpenedDesign> from_bytes(std::string_view bytes) {
         WEAVE_TRY(DesignFromWif read, read_wif(bytes));
         return OpenedDesign{std::move(read.design), false, std::move(read.warnings)};
     }
-    WEAVE_TRY(Design design, read_document(bytes));
-    return OpenedDesign{std::move(design), true, {}};
+    auto design = read_document(bytes);
+    if (design) return OpenedDesign{*std::move(design), true, {}};
+    if (!looks_like_json(bytes)) return bad_input("is no design, WIF file or picture of a card (.weave, .wif, .png, .tif, .bmp), or is damaged at its beginning");
+    return std::move(design).error();
 }
 
 }  // namespace
