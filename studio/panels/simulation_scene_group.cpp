@@ -40,6 +40,7 @@ SceneGroup::SceneGroup(QWidget* parent)
     m_weft_mode->addItem(tr("Each pick from edge to edge"), static_cast<int>(WeftMode::periodic));
     m_weft_mode->addItem(tr("Turns at the edge (wraparound)"), static_cast<int>(WeftMode::wraparound));
     m_weft_mode->setAccessibleName(tr("Weft"));
+    m_weft_mode->setObjectName("weft_mode");
     m_weft_mode->setToolTip(
         tr("Whether each pick is a yarn of its own, or the picks of a feeder are one yarn that turns where "
            "an end catches it."));

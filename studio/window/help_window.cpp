@@ -9,6 +9,11 @@
 #include <QUrl>
 #include <QVBoxLayout>
 
+/// A resource of a library that is linked in has to be asked for, outside of any namespace.
+static void read_in_guide() {
+    Q_INIT_RESOURCE(window);
+}
+
 namespace weave::studio {
 
 namespace {
@@ -31,6 +36,7 @@ void fit_pictures(QTextDocument& text, int width, double pixel_ratio) {
 }  // namespace
 
 HelpWindow::HelpWindow(QWidget* parent) : QDialog(parent), m_text(new QTextBrowser) {
+    read_in_guide();
     setWindowTitle(tr("The designer's guide"));
     setObjectName("help");
     auto* wanted = new QLineEdit;

@@ -355,7 +355,7 @@ void MainWindow::begin_tutorial() {
     Design design;
     design.title = tr("My first pocket").toStdString();
     design.root = "layer";
-    design.blocks["layer"] = std::make_shared<const Node>(Node{PresetLeaf{{"twill", {{"up", 1}, {"down", 4}}}}, {}});
+    design.blocks["layer"] = std::make_shared<const Node>(Node{PresetLeaf{{"plain", {}}}, {}});
     show_design(std::move(design), {}, true);
     m_tutorial->begin();
     const int width = m_tutorial_dock->width();  // its longest step is to be read without scrolling

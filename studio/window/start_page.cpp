@@ -73,7 +73,10 @@ void StartPage::add_beginnings(QVBoxLayout& column) {
         auto* button = new QCommandLinkButton(text, about);
         button->setObjectName(name);
         connect(button, &QCommandLinkButton::clicked, this, wanted);
-        button->setSizePolicy(QSizePolicy::Preferred, QSizePolicy::Fixed);
+        const int em = fontMetrics().height();
+        button->setSizePolicy(QSizePolicy::Preferred, QSizePolicy::Maximum);
+        button->setMinimumHeight(3 * em);  // its own hint is that of a column of one word
+        button->setMaximumHeight(5 * em);
         column.addWidget(button);
     };
     way("begin-tutorial", tr("Learn it in five steps"), tr("A small pocket: pattern, relax, flip, attach, seal"), &StartPage::tutorial_wanted);

@@ -1,3 +1,4 @@
+#include <weave/curve/cloth_curves.hpp>
 #include <weave/samples/samples.hpp>
 
 #include <studio/commands/add_block.hpp>
@@ -163,6 +164,26 @@ TEST_CASE("blocks that do not fit are refused in words and nothing is made") {
     const auto step = attach_block(document.design(), "face", "plain", Face::plus_x, name);
     REQUIRE_FALSE(step);
     CHECK(step.error().text().find("plain") != std::string::npos);
+}
+
+TEST_CASE("a layer on another keeps the cloth as wide as it was, and its warp as dense in each layer") {
+    const weave::testing::TemporaryFolder folder;
+    Document document(small_design(), {}, true, folder.path);
+    const auto width = [&] {
+        const auto block = evaluate(document.design())->block;
+        return cloth_curves(document.design(), *block, {})->size_mm[1];
+    };
+    const double before = width(), density = document.design().warp.density_ends_per_cm;
+    std::string name;
+    const std::string root = document.design().root;
+    REQUIRE(document.perform(*attach_block(document.design(), root, root, Face::minus_z, name)));
+    CHECK(width() == Approx(before));
+    CHECK(document.design().warp.density_ends_per_cm == Approx(2 * density));
+    REQUIRE(document.perform(*attach_block(document.design(), name, name, Face::plus_x, name)));
+    CHECK(document.design().warp.density_ends_per_cm == Approx(2 * density));
+    document.undo();
+    document.undo();
+    CHECK(document.design().warp.density_ends_per_cm == density);
 }
 
 TEST_CASE("cells that changed are those whose stacks differ") {

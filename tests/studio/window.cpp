@@ -4,6 +4,8 @@
 #include <weave/design/document.hpp>
 #include <weave/samples/samples.hpp>
 
+#include <studio/commands/flip_crossing.hpp>
+#include <studio/commands/tile_block.hpp>
 #include <studio/editors/card_editor.hpp>
 #include <studio/editors/slice_editor.hpp>
 #include <studio/panels/design_tree.hpp>
@@ -14,8 +16,10 @@
 #include <studio/panels/simulation_panel.hpp>
 #include <studio/panels/yarns_panel.hpp>
 #include <studio/viewport/viewer_panel.hpp>
+#include <studio/window/help_window.hpp>
 #include <studio/window/main_window.hpp>
 #include <studio/window/tutorial.hpp>
+#include <studio/window/viewer_desk.hpp>
 
 #include <QtTest>
 
@@ -29,6 +33,8 @@ using namespace weave::studio;
 using namespace weave::studio::test;
 
 namespace {
+
+constexpr int patience_ms = 180000;  // for what must come
 
 struct Desk {
     explicit Desk(const char* sample = nullptr) {
@@ -86,7 +92,7 @@ TEST_CASE("a broken or foreign file opens with a message and changes nothing") {
         CHECK(shown.document().design() == find_sample("twill-2-2")->make());
     };
     refuse(file_of(folder, "a.weave", "{\"format\": 7"), "a.weave");
-    refuse(file_of(folder, "b.weave", "not a design"), "b.weave");
+    refuse(file_of(folder, "b.weave", "not a design"), "b.weave: is no design, WIF file or picture of a card");
     refuse(file_of(folder, "c.wif", "[WIF]\nVersion=9\n"), "c.wif");
     refuse(file_of(folder, "d.png", std::string("\x89PNG\r\n\x1a\n", 8)), "d.png");
     refuse("/nowhere/e.weave", "e.weave");
@@ -211,14 +217,14 @@ TEST_CASE("the tutorial goes on by what is done, and ends with a pocket") {
     CHECK(tutorial.step() == 0);
     with_dialog([&] { choose(shown.window, {"Block", "Repeat the block shown …"}); },
                 [&](QDialog& dialog) {
-                    type_number(dialog.findChild<QSpinBox*>("along"), 4);
-                    type_number(dialog.findChild<QSpinBox*>("across"), 4);
+                    type_number(dialog.findChild<QSpinBox*>("along"), 10);
+                    type_number(dialog.findChild<QSpinBox*>("across"), 10);
                     press(dialog, QDialogButtonBox::Ok);
                 });
     shown.settle();
     CHECK(tutorial.step() == 1);
-    tutorial.note_relaxed();
-    CHECK(tutorial.step() == 2);
+    choose(shown.window, {"Simulation", "Run"});
+    REQUIRE(QTest::qWaitFor([&] { return tutorial.step() == 2; }, patience_ms));
     auto& canvas = shown.find<CardEditor>().canvas();
     QTest::mouseClick(&canvas, Qt::LeftButton, {}, canvas.mapping().box({2, 1}).center().toPoint());
     shown.settle();
@@ -227,10 +233,101 @@ TEST_CASE("the tutorial goes on by what is done, and ends with a pocket") {
     choose(shown.window, {"Block", "The chosen block", "Attach a block", "below, on the back", QString::fromStdString(layer)});
     shown.settle();
     CHECK(tutorial.step() == 4);
-    Scene scene = shown.document().design().scene;
-    scene.weft_mode = WeftMode::wraparound;
-    REQUIRE(shown.document().perform({"wrap", {SetScene{scene}}}));
+    shown.find<SimulationPanel>().tabs()->setCurrentIndex(2);
+    auto& weft = shown.find<QComboBox>("weft_mode");
+    REQUIRE(weft.isVisible());
+    weft.setFocus();
+    QTest::keyClick(&weft, Qt::Key_Down);
     CHECK(tutorial.step() == Tutorial::steps);
+    CHECK(shown.document().design().scene.weft_mode == WeftMode::wraparound);
+}
+
+TEST_CASE("the window fits the screen of a laptop, and the first step of the tutorial is to be read whole") {
+    Desk shown;
+    const int em = shown.window.fontMetrics().height();
+    CHECK(shown.window.minimumSizeHint().width() <= 80 * em);   // 1,280 pixels where a line has 16
+    CHECK(shown.window.minimumSizeHint().height() <= 48 * em);  // 768
+    click(&shown.find<QAbstractButton>("begin-tutorial"));
+    shown.settle();
+    auto& text = shown.find<QLabel>("tutorial-text");
+    REQUIRE(until([&] { return text.isVisible(); }));
+    CHECK(until([&] { return text.visibleRegion().boundingRect().height() >= text.heightForWidth(text.width()); }));
+}
+
+TEST_CASE("the plan of a large block moves to where the person goes, and stays while he works there") {
+    Desk shown("plain");
+    std::string name;
+    REQUIRE(shown.document().perform(*tile_block(shown.document().design(), shown.document().shown_block(), 30, 30, 1, name)));
+    shown.document().focus().show_block(name);
+    shown.settle();
+    auto& viewer = shown.find<ViewerPanel>();
+    const auto shows = [&](std::size_t pick, std::size_t end) {
+        return until([&] {
+            const TubeModel* model = viewer.viewport()->model();
+            if (model == nullptr) return false;
+            return model->find(System::weft, pick).has_value() && model->find(System::warp, end).has_value();
+        });
+    };
+    const std::size_t last = shown.document().shown().block->picks() - 1;
+    REQUIRE(shown.document().shown().block->picks() * shown.document().shown().block->ends() > ViewerDesk::most_cells);
+    shown.document().focus().go_to({last, last});
+    REQUIRE(shows(last, last));
+    const auto looks_at_it = [&] {
+        const Box seen = viewer.viewport()->shown_box();
+        return ((seen.low + seen.high) / 2 - viewer.viewport()->camera().centre).norm() < 0.1;
+    };
+    REQUIRE(until(looks_at_it));
+    const Json before = viewer.viewport()->camera().to_json();
+    const Box box = viewer.viewport()->shown_box();
+    QSignalSpy made(&viewer, &ViewerPanel::model_shown);
+    shown.document().focus().go_to({last - 2, last - 5});
+    REQUIRE(shown.document().perform(*flip_crossing(shown.document(), {last - 2, last - 5})));
+    REQUIRE(made.wait(patience_ms));
+    CHECK(viewer.viewport()->camera().to_json() == before);
+    CHECK((viewer.viewport()->shown_box().low - box.low).norm() < 0.5);
+}
+
+TEST_CASE("a click on the relaxed cloth is one on the cloth, whichever of its blocks is being edited") {
+    Desk shown("pocket");
+    auto& viewer = shown.find<ViewerPanel>();
+    shown.document().focus().show_block("seam");
+    shown.settle();
+    viewer.set_mode(ViewerPanel::Mode::relaxed);
+    Q_EMIT viewer.viewport()->yarn_clicked(System::weft, 70, Vec3{0, 0, 0});
+    CHECK(shown.document().shown_block() == shown.document().design().root);
+    CHECK(shown.document().focus().place()->pick == 70);
+}
+
+TEST_CASE("a file that was asked for waits until a question is answered") {
+    const weave::testing::TemporaryFolder folder;
+    const std::string path = (folder.path / "twill.weave").string();
+    REQUIRE(write_file(path, write_document(find_sample("twill-2-2")->make())));
+    Desk shown("plain");
+    shown.window.open_file(QString::fromStdString(path));
+    with_dialog([&] { choose(shown.window, {"Block", "Repeat the block shown …"}); },
+                [&](QDialog& dialog) {
+                    QTest::qWait(500);  // the file is read meanwhile
+                    CHECK(shown.document().design() == find_sample("plain")->make());
+                    press(dialog, QDialogButtonBox::Cancel);
+                });
+    CHECK(until([&] { return shown.document().design() == find_sample("twill-2-2")->make(); }));
+}
+
+TEST_CASE("the guide opens in the window, with its pictures and its keys") {
+    Desk shown;
+    choose(shown.window, {"Help", "Keys and mouse"});
+    auto& help = shown.find<HelpWindow>();
+    REQUIRE(until([&] { return help.isVisible(); }));
+    CHECK(help.text()->textCursor().block().text() == "Keys and mouse");
+    const QString guide = help.text()->toPlainText();
+    CHECK(guide.contains("A second layer"));
+    std::size_t pictures = 0;
+    for (const auto& format : help.text()->document()->allFormats()) {
+        if (!format.isImageFormat()) continue;
+        ++pictures;
+        CHECK_FALSE(help.text()->document()->resource(QTextDocument::ImageResource, QUrl(format.toImageFormat().name())).value<QImage>().isNull());
+    }
+    CHECK(pictures >= 8);
 }
 
 TEST_CASE("a yarn clicked in space is shown on the card, and a section follows") {
