@@ -1,5 +1,6 @@
 #include <studio/window/block_actions.hpp>
 
+#include <weave/core/text.hpp>
 #include <weave/design/document.hpp>
 #include <weave/design/merge.hpp>
 #include <weave/design/tree.hpp>
@@ -14,6 +15,7 @@
 #include <QMimeData>
 #include <QSpinBox>
 
+#include <algorithm>
 #include <array>
 #include <studio/commands/add_block.hpp>
 #include <studio/commands/attach_block.hpp>
@@ -25,6 +27,8 @@
 #include <studio/commands/rename_block.hpp>
 #include <studio/commands/tile_block.hpp>
 #include <studio/panels/attach_menu.hpp>
+#include <studio/jobs/background.hpp>
+#include <studio/panels/grouping_dialog.hpp>
 #include <studio/panels/preset_dialog.hpp>
 
 namespace weave::studio {
@@ -84,6 +88,43 @@ void BlockActions::change_weave(const std::string& block) {
     dialog.set_preset(leaf->preset);
     if (dialog.exec() != QDialog::Accepted || dialog.preset() == leaf->preset) return;
     perform(change_block(m_document.design(), block, PresetLeaf{dialog.preset()}, tr("Change the weave of %1").arg(words(block))));
+}
+
+/// `then` is told where the block is still that card once they are found.
+void BlockActions::find_groupings(const std::string& block, std::function<void(const CardLeaf& leaf, const std::vector<Grouping>& found)> then) {
+    const auto leaf_of = [this, block]() -> const CardLeaf* {
+        const auto found = m_document.design().blocks.find(block);
+        return found == m_document.design().blocks.end() ? nullptr : std::get_if<CardLeaf>(&found->second->source);
+    };
+    const CardLeaf* leaf = leaf_of();
+    if (leaf == nullptr) return;
+    in_background(
+        this, [card = leaf->card] { return possible_groupings(*card); },
+        [leaf_of, card = leaf->card, then = std::move(then)](const std::vector<Grouping>& found) {
+            const CardLeaf* now = leaf_of();
+            if (now != nullptr && now->card == card) then(*now, found);
+        });
+}
+
+void BlockActions::ask_layers(const std::string& block) {
+    find_groupings(block, [this, block](const CardLeaf& leaf, const std::vector<Grouping>& found) {
+        CardLeaf grouped = leaf;
+        GroupingDialog dialog(found, m_window);
+        if (dialog.exec() != QDialog::Accepted) return;
+        grouped.t = shortest_repeat(found[dialog.chosen()].t);
+        grouped.p = shortest_repeat(found[dialog.chosen()].p);
+        if (grouped.t == leaf.t && grouped.p == leaf.p) return;
+        perform(change_block(m_document.design(), block, grouped, tr("Set the layers of %1").arg(words(block))));
+    });
+}
+
+void BlockActions::look_for_layers(const std::string& block) {
+    find_groupings(block, [this](const CardLeaf&, const std::vector<Grouping>& found) {
+        const auto is_one = [](const std::vector<std::uint32_t>& counts) { return std::ranges::all_of(counts, [](std::uint32_t count) { return count == 1; }); };
+        const Grouping& best = found.front();
+        if (is_one(best.t) && is_one(best.p)) return;
+        Q_EMIT noted(tr("The card was read as one layer. It may be of several: %1. A right click on it in Blocks, Layers of the card …, sets how it is read.").arg(grouping_words(best)));
+    });
 }
 
 void BlockActions::add_drawing() {
@@ -209,6 +250,7 @@ void BlockActions::fill_menu(QMenu& menu, const std::string& block) {
     const Design& design = m_document.design();
     const Node& node = *design.blocks.at(block);
     if (std::holds_alternative<PresetLeaf>(node.source)) menu.addAction(tr("Change the weave …"), this, [=, this] { change_weave(block); });
+    if (std::holds_alternative<CardLeaf>(node.source)) menu.addAction(tr("Layers of the card …"), this, [=, this] { ask_layers(block); });
     QMenu* attach_to = menu.addMenu(tr("Attach a block"));
     for (const Face face : faces) {
         QMenu* at = attach_to->addMenu(face_words(face));

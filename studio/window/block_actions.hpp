@@ -4,7 +4,11 @@
 #include <weave/block/slice.hpp>
 
 #include <QMenu>
+#include <weave/block/from_card.hpp>
+
 #include <QObject>
+
+#include <functional>
 #include <QWidget>
 
 #include <string>
@@ -25,6 +29,10 @@ class BlockActions : public QObject {
     void add_drawing();
     void add_stencil();
     void change_weave(const std::string& block);
+    /// Asks how many picks and ends of an imported card lie on top of one another.
+    void ask_layers(const std::string& block);
+    /// Says so where an imported card is likely to be of several layers.
+    void look_for_layers(const std::string& block);
     void repeat(const std::string& block);
     void duplicate(const std::string& block);
     void rename(const std::string& from, const std::string& to);
@@ -44,10 +52,13 @@ class BlockActions : public QObject {
   Q_SIGNALS:
     void failed(const QString& reason);
     void told(const QString& words);
+    /// To be read when there is time.
+    void noted(const QString& words);
 
   private:
     bool perform(const EditStep& step);
     void add(const std::string& wish, NodeSource source);
+    void find_groupings(const std::string& block, std::function<void(const CardLeaf& leaf, const std::vector<Grouping>& found)> then);
 
     Document& m_document;
     QWidget* m_window;

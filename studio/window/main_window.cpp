@@ -270,6 +270,7 @@ void MainWindow::take(std::unique_ptr<Document> document) {
     m_blocks = new BlockActions(*m_document, this);
     connect(m_blocks, &BlockActions::failed, this, &MainWindow::warn);
     connect(m_blocks, &BlockActions::told, this, &MainWindow::tell);
+    connect(m_blocks, &BlockActions::noted, this, [this](const QString& words) { m_messages->tell(MessageBar::Kind::note, words); });
     follow_document();
     show_in_parts(m_document.get());
     m_pages->setCurrentWidget(m_work);
@@ -316,6 +317,7 @@ void MainWindow::opened(const Design& design, const QString& path, const QString
     if (!may_close()) return;
     show_design(design, path, !path.isEmpty());
     if (!warnings.isEmpty()) m_messages->tell(MessageBar::Kind::note, warnings.join('\n'));
+    if (path.isEmpty()) m_blocks->look_for_layers(m_document->design().root);
     tell(path.isEmpty() ? tr("Imported; save it as a design to keep it") : tr("Opened %1").arg(path));
 }
 

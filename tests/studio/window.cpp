@@ -2,6 +2,7 @@
 
 #include <weave/core/file.hpp>
 #include <weave/design/document.hpp>
+#include <weave/io/bitmap.hpp>
 #include <weave/samples/samples.hpp>
 
 #include <studio/commands/flip_crossing.hpp>
@@ -339,4 +340,38 @@ TEST_CASE("a yarn clicked in space is shown on the card, and a section follows")
     CHECK(shown.document().focus().place()->pick == 2);
     REQUIRE(shown.find<CardEditor>().canvas().cursor_cell());
     CHECK(shown.find<CardEditor>().canvas().cursor_cell()->row == 2);
+}
+
+TEST_CASE("a card that is likely to be of several layers says so, and is read as such when it is told") {
+    const weave::testing::TemporaryFolder folder;
+    const auto pocket = evaluate(find_sample("pocket")->make());
+    REQUIRE(pocket);
+    const CardImage card = pocket->block->card_image();
+    const std::string path = file_of(folder, "pocket.png", write_proven_bitmap(card, BitmapFormat::png).value());
+    Desk shown;
+    shown.window.open_file(QString::fromStdString(path));
+    REQUIRE(until([&] { return shown.said().contains("may be of several"); }));
+    shown.settle();
+    CHECK(shown.document().shown().block->rows() == card.picks());
+    bool asked = false;
+    with_dialog(
+        [&] {
+            choose(shown.window, {"Block", "The chosen block", "Layers of the card …"});
+            REQUIRE(until([&] { return asked; }));
+        },
+        [&](QDialog& dialog) {
+            asked = true;
+            auto* list = dialog.findChild<QListWidget*>("groupings");
+            const auto wanted = list->findItems("2 picks a row, 2 ends a column", Qt::MatchStartsWith);
+            REQUIRE(wanted.size() == 1);
+            QTest::mouseClick(list->viewport(), Qt::LeftButton, {}, list->visualItemRect(wanted.front()).center());
+            press(dialog, QDialogButtonBox::Ok);
+        });
+    shown.settle();
+    CHECK(shown.document().shown().block->rows() == card.picks() / 2);
+    CHECK(shown.document().shown().block->columns() == card.ends() / 2);
+    CHECK(shown.document().shown().block->card_image() == card);
+    shown.document().undo();
+    shown.settle();
+    CHECK(shown.document().shown().block->rows() == card.picks());
 }
