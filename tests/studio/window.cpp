@@ -281,8 +281,8 @@ TEST_CASE("the plan of a large block moves to where the person goes, and stays w
     const Json before = viewer.viewport()->camera().to_json();
     const Box box = viewer.viewport()->shown_box();
     QSignalSpy made(&viewer, &ViewerPanel::model_shown);
-    shown.document().focus().go_to({last - 2, last - 5});
-    REQUIRE(shown.document().perform(*flip_crossing(shown.document(), {last - 2, last - 5})));
+    shown.document().focus().go_to({last - 17, last - 20});
+    REQUIRE(shown.document().perform(*flip_crossing(shown.document(), {last - 17, last - 20})));
     REQUIRE(made.wait(patience_ms));
     CHECK(viewer.viewport()->camera().to_json() == before);
     CHECK((viewer.viewport()->shown_box().low - box.low).norm() < 0.5);
