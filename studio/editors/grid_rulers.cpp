@@ -53,10 +53,16 @@ double GridRulers::number_width(const QWidget& widget) const {
     return widget.fontMetrics().horizontalAdvance(QString::number(std::max<std::size_t>(most, 100)));
 }
 
+double GridRulers::column_number_width(const QWidget& widget) const {
+    const std::size_t most = m_columns == 0 ? 0 : m_labels.number_of_column(m_columns - 1) + 1;
+    return widget.fontMetrics().horizontalAdvance(QString::number(most));
+}
+
 QRectF GridRulers::room_in(const QWidget& widget, Corner corner) const {
     const double line = widget.fontMetrics().height(), arrow = triangle(widget);
     const bool goes_left = corner == Corner::bottom_right || corner == Corner::top_right;
-    return QRectF(widget.rect()).adjusted(line * 1.3 + arrow + number_width(widget) + 12, 4, goes_left ? -arrow - 6 : -4, -line * 2 - 6);
+    const double right = std::max(goes_left ? arrow + 6 : 4, column_number_width(widget) / 2);  // the last number is whole
+    return QRectF(widget.rect()).adjusted(line * 1.3 + arrow + number_width(widget) + 12, 4, -right, -line * 2 - 6);
 }
 
 void GridRulers::paint(QPainter& painter, const QWidget& widget, const GridMapping& mapping) const {
@@ -76,8 +82,8 @@ void GridRulers::paint_row_numbers(QPainter& painter, const QWidget& widget, con
     const double right = std::max(mapping.room().left(), mapping.frame().left()) - 6;
     for (std::size_t row = span.first_row; row < span.last_row; ++row) {
         const std::size_t number = m_labels.number_of_row(row % m_rows) + 1;
-        if (!printed.prints(row, number)) continue;
         const double middle = mapping.box({row, 0}).center().y();
+        if (middle < high / 2 || !printed.prints(row, number)) continue;
         painter.drawText(QRectF(right - wide, middle - high / 2, wide, high), Qt::AlignRight | Qt::AlignVCenter, QString::number(number));
     }
     painter.save();
@@ -91,13 +97,12 @@ void GridRulers::paint_row_numbers(QPainter& painter, const QWidget& widget, con
 void GridRulers::paint_column_numbers(QPainter& painter, const QWidget& widget, const GridMapping& mapping) const {
     const GridSpan span = mapping.seen();
     const double high = widget.fontMetrics().height();
-    const std::size_t last = m_columns == 0 ? 0 : m_labels.number_of_column(m_columns - 1) + 1;
-    const PrintedNumbers printed(mapping.cell(), widget.fontMetrics().horizontalAdvance(QString::number(last)) + 8, m_columns, mapping.columns());
+    const PrintedNumbers printed(mapping.cell(), column_number_width(widget) + 8, m_columns, mapping.columns());
     const double top = std::min(mapping.room().bottom(), mapping.frame().bottom()) + 3;
     for (std::size_t column = span.first_column; column < span.last_column; ++column) {
         const std::size_t number = m_labels.number_of_column(column % m_columns) + 1;
         const double middle = mapping.box({0, column}).center().x();
-        if (middle < mapping.room().left() || !printed.prints(column, number)) continue;
+        if (middle < mapping.room().left() || middle > mapping.room().right() || !printed.prints(column, number)) continue;
         painter.drawText(QRectF(middle - 40, top, 80, high), Qt::AlignHCenter | Qt::AlignTop, QString::number(number));
     }
     const QString word = mapping.columns_go_right() ? m_labels.column_word + " →" : "← " + m_labels.column_word;

@@ -50,7 +50,8 @@ class GridRulers {
     [[nodiscard]] QPolygonF origin(const QWidget& widget, const GridMapping& mapping) const;
 
   private:
-    [[nodiscard]] double number_width(const QWidget& widget) const;
+    [[nodiscard]] double number_width(const QWidget& widget) const;  ///< of rows
+    [[nodiscard]] double column_number_width(const QWidget& widget) const;
     void paint_row_numbers(QPainter& painter, const QWidget& widget, const GridMapping& mapping) const;
     void paint_column_numbers(QPainter& painter, const QWidget& widget, const GridMapping& mapping) const;
 

@@ -3,6 +3,7 @@
 #include <QHBoxLayout>
 #include <QPushButton>
 #include <QToolBar>
+#include <QToolButton>
 #include <QVBoxLayout>
 
 namespace weave::studio {
@@ -45,6 +46,11 @@ QWidget* SliceEditor::make_tool_row() {
         }
         bar->addAction(m_canvas->action(name));
         bar->widgetForAction(m_canvas->action(name))->setFocusPolicy(Qt::TabFocus);
+    }
+    if (auto* more = bar->findChild<QToolButton*>("qt_toolbar_ext_button")) {
+        more->setIcon({});  // the style's own is black, which dark palettes swallow
+        more->setText(tr("»"));
+        more->setToolTip(tr("More tools"));
     }
     return bar;
 }

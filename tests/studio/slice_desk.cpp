@@ -191,7 +191,7 @@ TEST_CASE("slice: screens, narrow and dark", "[.screens]") {
         {
             Window open("shoe-adult");
             const auto keep = [&](const QString& name) {
-                QTest::qWait(300);
+                QTest::qWait(1500);
                 open.window.grab().save(QString("/tmp/sl/%1-%2.png").arg(kind, name));
             };
             open.card->show_mode(CardMode::face_floats);
