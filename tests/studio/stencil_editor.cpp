@@ -60,14 +60,15 @@ struct OpenStencil {
         const auto* label = canvas().findChild<QLabel*>("bubble");
         return label->isVisible() ? label->text() : QString();
     }
+    /// The pointer itself stays where it is: the display's own events would come whenever they like.
+    void hover(QPoint stack, Qt::MouseButtons buttons = Qt::NoButton) {
+        const QPoint place = canvas().place_of(stack);
+        QMouseEvent move(QEvent::MouseMove, place, canvas().mapToGlobal(place), Qt::NoButton, buttons, Qt::NoModifier);
+        QApplication::sendEvent(&canvas(), &move);
+    }
     void drag(const std::vector<QPoint>& stacks) {
         QTest::mousePress(&canvas(), Qt::LeftButton, Qt::NoModifier, canvas().place_of(stacks.front()));
-        for (const QPoint stack : stacks) {
-            const QPoint place = canvas().place_of(stack);
-            QMouseEvent move(QEvent::MouseMove, place, canvas().mapToGlobal(place), Qt::NoButton,
-                             Qt::LeftButton, Qt::NoModifier);
-            QApplication::sendEvent(&canvas(), &move);
-        }
+        for (const QPoint stack : stacks) hover(stack, Qt::LeftButton);
         QTest::mouseRelease(&canvas(), Qt::LeftButton, Qt::NoModifier, canvas().place_of(stacks.back()));
     }
     /// Rows from the top, as they are seen.
@@ -287,12 +288,12 @@ TEST_CASE("stencil: beyond the picture there is nothing to pick") {
     open.canvas().setFocus();
     QSignalSpy picked(&open.canvas(), &StencilCanvas::block_picked);
     for (const QPoint stack : {QPoint(-2, 1), QPoint(1, -2), QPoint(4, 1), QPoint(1, 4)}) {
-        QTest::mouseMove(&open.canvas(), open.canvas().place_of(stack));
+        open.hover(stack);
         QTest::keyClick(&open.canvas(), Qt::Key_Return);
         QTest::mouseClick(&open.canvas(), Qt::RightButton, Qt::NoModifier, open.canvas().place_of(stack));
     }
     REQUIRE(picked.isEmpty());
-    QTest::mouseMove(&open.canvas(), open.canvas().place_of({1, 1}));
+    open.hover({1, 1});
     QTest::keyClick(&open.canvas(), Qt::Key_Return);
     REQUIRE(picked.size() == 1);
 }
@@ -300,8 +301,10 @@ TEST_CASE("stencil: beyond the picture there is nothing to pick") {
 TEST_CASE("stencil: after a stroke the status says what lies under the pointer now") {
     OpenStencil open(operation_of(3, 3));
     open.choose(1);
-    open.drag({{1, 1}, {2, 1}});
-    REQUIRE(open.status == "row 2, column 3: twill");
+    open.hover({1, 1});
+    REQUIRE(open.status == "row 2, column 2: plain");
+    open.drag({{1, 1}});
+    REQUIRE(open.status == "row 2, column 2: twill");
 }
 
 TEST_CASE("stencil: rulers stand beside the picture, rows from the bottom") {
