@@ -9,6 +9,7 @@ namespace weave::studio {
 Bubble::Bubble(QWidget* parent) : QLabel(parent) {
     setObjectName("bubble");
     setWordWrap(true);
+    setTextFormat(Qt::PlainText);
     setMargin(fontMetrics().averageCharWidth());
     setAttribute(Qt::WA_TransparentForMouseEvents);
     setStyleSheet("background: #2b2b2b; color: white; border-radius: 4px;");

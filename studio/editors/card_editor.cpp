@@ -14,6 +14,8 @@
 #include <QToolTip>
 
 #include <algorithm>
+#include <studio/editors/float_legend.hpp>
+#include <studio/editors/plain_text.hpp>
 #include <studio/jobs/background.hpp>
 
 namespace weave::studio {
@@ -36,7 +38,7 @@ QSpinBox* times_box(const QString& tip, const QString& prefix) {
 
 }  // namespace
 
-CardEditor::CardEditor(QWidget* parent) : QWidget(parent), m_canvas(new GridCanvas) {
+CardEditor::CardEditor(QWidget* parent) : QWidget(parent), m_canvas(new GridCanvas), m_legend(new FloatLegend) {
     auto* layout = new QVBoxLayout(this);
     layout->setContentsMargins(0, 0, 0, 0);
     layout->setSpacing(2);
@@ -45,6 +47,8 @@ CardEditor::CardEditor(QWidget* parent) : QWidget(parent), m_canvas(new GridCanv
     make_tools(*tools);
     layout->addLayout(tools);
     layout->addWidget(m_canvas, 1);
+    layout->addWidget(m_legend);
+    m_legend->hide();
     m_canvas->setObjectName("card");
     m_canvas->setAccessibleName(tr("Card"));
     m_canvas->set_empty_text(tr("No card yet: start a design, or open one."));
@@ -54,6 +58,12 @@ CardEditor::CardEditor(QWidget* parent) : QWidget(parent), m_canvas(new GridCanv
     connect(m_canvas, &GridCanvas::chosen, this, [this](const GridCell& cell) {
         tell_of(cell);
         if (m_document != nullptr && m_block) m_document->focus().go_to(place_of(cell));
+    });
+    connect(m_canvas, &GridCanvas::too_far, this, [this](const GridCell& cell) {
+        if (m_document == nullptr || !m_block) return;
+        const CardPlace place = place_of(cell);
+        m_document->focus().go_to(place);
+        Q_EMIT told(tr("Pick %1, end %2: come nearer to flip (+, or the wheel)").arg(place.pick + 1).arg(place.end + 1));
     });
 }
 
@@ -88,8 +98,8 @@ void CardEditor::make_tools(QHBoxLayout& tools) {
     tools.addWidget(m_times_columns);
     tools.addWidget(m_times_rows);
     tools.addStretch();
-    button("−", tr("Smaller (−)"), [this] { m_canvas->zoom_by(1 / 1.4); });
-    button("+", tr("Larger (+)"), [this] { m_canvas->zoom_by(1.4); });
+    button("−", tr("Smaller (−)"), [this] { m_canvas->zoom_out(); });
+    button("+", tr("Larger (+)"), [this] { m_canvas->zoom_in(); });
     button(tr("Fit"), tr("Show all of it (F)"), [this] { m_canvas->fit(); });
     list_modes();
 }
@@ -120,10 +130,13 @@ void CardEditor::show_document(Document* document) {
     }
     m_document = document;
     m_block.reset();
+    m_canvas->begin_anew();
     if (document == nullptr) return m_canvas->show_picture({});
     connect(document, &Document::shown_made, this, &CardEditor::show_block);
     connect(&document->focus(), &Focus::place_changed, this, [this] {
-        if (m_block && m_document->focus().place()) m_canvas->set_cursor_cell(cell_of(*m_document->focus().place()));
+        if (!m_block) return;
+        follow_place();
+        m_canvas->set_cursor_cell(m_canvas->cursor_cell());
     });
     show_block();
 }
@@ -152,23 +165,35 @@ void CardEditor::show_block() {
     }
     m_modes->setToolTip(tr("What is shown of the block: %1 picks × %2 ends").arg(m_block->picks()).arg(m_block->ends()));
     const std::uint64_t wanted = ++m_wanted;
-    if (m_mode == CardMode::card) return show_picture(CellPicture(shown.card));
+    if (m_mode == CardMode::card) return show_picture(CellPicture(shown.card), m_mode);
     in_background(
         this, [design = m_document->design(), block = m_block, mode = m_mode, layer = m_layer] { return block_picture(design, *block, mode, layer); },
-        [this, wanted](const QImage& image) {
-            if (wanted == m_wanted) show_picture(CellPicture(image));
+        [this, wanted, mode = m_mode](const QImage& image) {
+            if (wanted == m_wanted) show_picture(CellPicture(image), mode);
         });
 }
 
-void CardEditor::show_picture(CellPicture picture) {
-    m_canvas->set_labels(labels());
-    m_canvas->set_can_stroke(m_mode == CardMode::card);
+void CardEditor::show_picture(CellPicture picture, CardMode mode) {
+    m_shown_mode = mode;
+    m_canvas->set_can_stroke(mode == CardMode::card);
     m_canvas->show_picture(std::move(picture), m_times_rows->value(), m_times_columns->value());
+    m_canvas->set_labels(labels());
+    m_legend->setVisible(mode == CardMode::face_floats || mode == CardMode::back_floats);
+    follow_place();
+}
+
+/// The cursor stays on the same yarns, whatever is shown of them.
+void CardEditor::follow_place() {
+    const auto& place = m_document->focus().place();
+    if (!place) return;
+    const auto& cursor = m_canvas->cursor_cell();
+    if (cursor && cell_of(place_of(*cursor)) == cell_of(*place)) return;  // there already, in one of the repeats
+    m_canvas->set_cursor_cell(cell_of(*place));
 }
 
 GridLabels CardEditor::labels() const {
     const BlockPtr block = m_block;
-    if (m_mode != CardMode::card) {
+    if (m_shown_mode != CardMode::card) {
         const auto every = [](std::size_t) { return false; };
         return {tr("picks"), tr("ends"), [block](std::size_t row) { return block->first_pick(row); },
                 [block](std::size_t column) { return block->first_end(column); }, every, every};
@@ -186,13 +211,13 @@ GridLabels CardEditor::labels() const {
 }
 
 CardPlace CardEditor::place_of(const GridCell& cell) const {
-    if (m_mode == CardMode::card) return {cell.row % m_block->picks(), cell.column % m_block->ends()};
+    if (m_shown_mode == CardMode::card) return {cell.row % m_block->picks(), cell.column % m_block->ends()};
     return {m_block->first_pick(cell.row % m_block->rows()), m_block->first_end(cell.column % m_block->columns())};
 }
 
 GridCell CardEditor::cell_of(const CardPlace& place) const {
     const std::size_t pick = std::min(place.pick, m_block->picks() - 1), end = std::min(place.end, m_block->ends() - 1);
-    if (m_mode == CardMode::card) return {pick, end};
+    if (m_shown_mode == CardMode::card) return {pick, end};
     return {m_block->row_of_pick(pick), m_block->column_of_end(end)};
 }
 
@@ -217,9 +242,10 @@ void CardEditor::explain(std::span<const RefusedCrossing> refused, std::size_t f
     const RefusedCrossing& first = refused.front();
     QString words = QString::fromStdString(first.reason.text());
     if (refused.size() > 1 || flipped > 0) words = tr("%1 of %2 crossings stay as they are. The first: %3").arg(refused.size()).arg(refused.size() + flipped).arg(words);
-    const GridCell cell = cell_of(first.place);
-    m_canvas->mark_refused(cell);
-    QToolTip::showText(m_canvas->mapToGlobal(m_canvas->mapping().box(cell).bottomRight().toPoint()), words, m_canvas, {}, 8000);
+    std::vector<GridCell> cells;
+    for (const RefusedCrossing& one : refused) cells.push_back(cell_of(one.place));
+    m_canvas->mark_refused(cells);
+    QToolTip::showText(m_canvas->mapToGlobal(m_canvas->mapping().box(cells.front()).bottomRight().toPoint()), as_plain(words), m_canvas, {}, 8000);
     Q_EMIT told(words);
 }
 
@@ -230,7 +256,7 @@ void CardEditor::tell_of(const std::optional<GridCell>& cell) {
     const QString side = m_block->weft_over(place.pick, place.end) ? tr("weft over (white)") : tr("end lifted (black)");
     const QString stack = QString::fromStdString(to_text(at.stack, at.first_pick, at.first_end));
     QString words = tr("Pick %1, end %2").arg(place.pick + 1).arg(place.end + 1);
-    if (m_mode == CardMode::card) words += ": " + side;
+    if (m_shown_mode == CardMode::card) words += ": " + side;
     if (at.stack.height() <= 24) words += tr(" · stack from below: %1").arg(stack);
     Q_EMIT told(words);
 }
@@ -238,8 +264,9 @@ void CardEditor::tell_of(const std::optional<GridCell>& cell) {
 void CardEditor::offer(const GridCell& cell, const QPoint& where) {
     if (m_document == nullptr || !m_block) return;
     const CardPlace place = place_of(cell);
+    m_document->focus().go_to(place);
     QMenu menu;
-    menu.addAction(tr("Flip pick %1, end %2").arg(place.pick + 1).arg(place.end + 1), this, [&] { flip({cell_of(place)}); })->setEnabled(m_mode == CardMode::card);
+    menu.addAction(tr("Flip pick %1, end %2").arg(place.pick + 1).arg(place.end + 1), this, [&] { flip({cell_of(place)}); })->setEnabled(m_shown_mode == CardMode::card);
     menu.addSeparator();
     menu.addAction(tr("Section along end %1 (warp slice)").arg(place.end + 1), this, [&] { Q_EMIT slice_wanted(System::weft, place); });
     menu.addAction(tr("Section along pick %1 (weft slice)").arg(place.pick + 1), this, [&] { Q_EMIT slice_wanted(System::warp, place); });

@@ -20,6 +20,8 @@ class QSpinBox;
 
 namespace weave::studio {
 
+class FloatLegend;
+
 /// The card of the block that is shown, crossing by crossing: a click flips, or tells which yarns stand in the way. It also shows the
 /// block's layers, faces and floats, a square a stack.
 class CardEditor : public QWidget {
@@ -41,7 +43,8 @@ class CardEditor : public QWidget {
   private:
     void make_tools(QHBoxLayout& tools);
     void show_block();
-    void show_picture(CellPicture picture);
+    void show_picture(CellPicture picture, CardMode mode);
+    void follow_place();
     void list_modes();
     [[nodiscard]] GridLabels labels() const;
     [[nodiscard]] CardPlace place_of(const GridCell& cell) const;
@@ -53,11 +56,13 @@ class CardEditor : public QWidget {
 
     Document* m_document = nullptr;
     GridCanvas* m_canvas;
+    FloatLegend* m_legend;
     QComboBox* m_modes;
     QSpinBox* m_times_rows;
     QSpinBox* m_times_columns;
     BlockPtr m_block;  ///< that the picture is of
     CardMode m_mode = CardMode::card;
+    CardMode m_shown_mode = CardMode::card;  ///< of the picture, which may come later than it is asked for
     std::size_t m_layer = 0, m_layers = 0;
     std::uint64_t m_wanted = 0;  ///< pictures asked for so far: only the last counts
 };

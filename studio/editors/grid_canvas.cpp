@@ -17,49 +17,48 @@ namespace {
 constexpr double cells_with_lines = 6;  ///< pixels from which each square has its lines
 const QColor cursor_colour(0x00, 0x72, 0xb2), refusal_colour(0xd5, 0x5e, 0x00);
 
-/// The smallest of 1, 2, 5, 10 … that leaves so many pixels between two numbers.
-std::size_t number_step(double cell, double room) {
-    std::size_t step = 1;
-    for (std::size_t ten = 1;; ten *= 10) {
-        for (const std::size_t times : {1, 2, 5}) {
-            step = ten * times;
-            if (static_cast<double>(step) * cell >= room) return step;
-        }
-    }
-}
-
 }  // namespace
 
 GridCanvas::GridCanvas(QWidget* parent) : QWidget(parent) {
     setMouseTracking(true);
     setFocusPolicy(Qt::StrongFocus);
     setMinimumSize(160, 120);
-    const auto same = [](std::size_t number) { return number; };
-    const auto never = [](std::size_t) { return false; };
-    m_labels = {{}, {}, same, same, never, never};
 }
 
 void GridCanvas::show_picture(CellPicture picture, int times_rows, int times_columns) {
     m_picture = std::move(picture);
+    if (m_picture.is_empty()) return update();  // what comes next may be of the same size
     const std::size_t rows = m_picture.rows() * static_cast<std::size_t>(times_rows), columns = m_picture.columns() * static_cast<std::size_t>(times_columns);
     if (rows != m_mapping.rows() || columns != m_mapping.columns()) {
         m_mapping.set_grid(rows, columns);
         m_mapping.fit();
+        m_refused.clear();
     }
     if (m_cursor && (m_cursor->row >= rows || m_cursor->column >= columns)) m_cursor.reset();
-    m_refused.reset();
     update();
 }
 
+void GridCanvas::begin_anew() {
+    m_cursor.reset();
+    m_hovered.reset();
+    m_refused.clear();
+    m_stroke.clear();
+    fit();
+}
+
 void GridCanvas::set_labels(GridLabels labels) {
-    m_labels = std::move(labels);
-    m_mapping.set_room(QRectF(rect()).adjusted(ruler(), 4, -4, -fontMetrics().height() * 2.0));
+    m_rulers.set(std::move(labels), m_picture.rows(), m_picture.columns());
+    lay_out();
+}
+
+void GridCanvas::lay_out() {
+    m_mapping.set_room(m_rulers.room_in(*this, m_mapping.corner()));
     update();
 }
 
 void GridCanvas::set_corner(Corner corner) {
     m_mapping.set_corner(corner);
-    update();
+    lay_out();
 }
 
 void GridCanvas::set_empty_text(const QString& text) {
@@ -73,8 +72,8 @@ void GridCanvas::set_cursor_cell(std::optional<GridCell> cell) {
     update();
 }
 
-void GridCanvas::mark_refused(const GridCell& cell) {
-    m_refused = cell;
+void GridCanvas::mark_refused(std::vector<GridCell> cells) {
+    m_refused = std::move(cells);
     update();
 }
 
@@ -89,11 +88,6 @@ void GridCanvas::fit() {
 }
 
 // ---- Painting ----
-
-double GridCanvas::ruler() const {
-    const std::size_t most = m_mapping.rows() == 0 ? 0 : m_labels.number_of_row(m_mapping.rows() - 1) + 1;
-    return fontMetrics().horizontalAdvance(QString::number(std::max<std::size_t>(most, 100))) + fontMetrics().height() * 1.8;
-}
 
 void GridCanvas::paintEvent(QPaintEvent*) {
     QPainter painter(this);
@@ -110,8 +104,7 @@ void GridCanvas::paintEvent(QPaintEvent*) {
     paint_lines(painter);
     paint_marks(painter);
     painter.restore();
-    paint_rulers(painter);
-    paint_origin(painter);
+    m_rulers.paint(painter, *this, m_mapping);
 }
 
 void GridCanvas::paint_lines(QPainter& painter) const {
@@ -122,10 +115,10 @@ void GridCanvas::paint_lines(QPainter& painter) const {
     const auto lines = [&](bool heavy_ones) {
         painter.setPen(heavy_ones ? heavy : fine);
         for (std::size_t row = span.first_row; row <= span.last_row; ++row) {
-            if (m_labels.row_begins(row) == heavy_ones) painter.drawLine(QPointF(grid.left(), m_mapping.y_of(static_cast<double>(row))), QPointF(grid.right(), m_mapping.y_of(static_cast<double>(row))));
+            if (m_rulers.labels().row_begins(row) == heavy_ones) painter.drawLine(QPointF(grid.left(), m_mapping.y_of(static_cast<double>(row))), QPointF(grid.right(), m_mapping.y_of(static_cast<double>(row))));
         }
         for (std::size_t column = span.first_column; column <= span.last_column; ++column) {
-            if (m_labels.column_begins(column) == heavy_ones) painter.drawLine(QPointF(m_mapping.x_of(static_cast<double>(column)), grid.top()), QPointF(m_mapping.x_of(static_cast<double>(column)), grid.bottom()));
+            if (m_rulers.labels().column_begins(column) == heavy_ones) painter.drawLine(QPointF(m_mapping.x_of(static_cast<double>(column)), grid.top()), QPointF(m_mapping.x_of(static_cast<double>(column)), grid.bottom()));
         }
     };
     if (all) lines(false);
@@ -138,65 +131,6 @@ void GridCanvas::paint_lines(QPainter& painter) const {
         painter.drawLine(QPointF(grid.left(), m_mapping.y_of(static_cast<double>(row))), QPointF(grid.right(), m_mapping.y_of(static_cast<double>(row))));
     for (std::size_t column = m_picture.columns(); column < m_mapping.columns(); column += m_picture.columns())
         painter.drawLine(QPointF(m_mapping.x_of(static_cast<double>(column)), grid.top()), QPointF(m_mapping.x_of(static_cast<double>(column)), grid.bottom()));
-}
-
-void GridCanvas::paint_rulers(QPainter& painter) const {
-    painter.setPen(palette().color(QPalette::WindowText));
-    paint_row_numbers(painter);
-    paint_column_numbers(painter);
-}
-
-void GridCanvas::paint_row_numbers(QPainter& painter) const {
-    const GridSpan span = m_mapping.seen();
-    const double high = fontMetrics().height();
-    const std::size_t step = number_step(m_mapping.cell(), high * 1.3);
-    const double right = std::max(m_mapping.room().left(), m_mapping.frame().left()) - 6;
-    for (std::size_t row = span.first_row; row < span.last_row; ++row) {
-        const std::size_t number = m_labels.number_of_row(row % m_picture.rows()) + 1;
-        if (step > 1 && number != 1 && number % step != 0) continue;
-        const double middle = m_mapping.box({row, 0}).center().y();
-        painter.drawText(QRectF(right - ruler(), middle - high / 2, ruler(), high), Qt::AlignRight | Qt::AlignVCenter, QString::number(number));
-    }
-    painter.save();
-    painter.translate(high * 0.75, m_mapping.room().center().y());
-    painter.rotate(-90);
-    const QString word = m_mapping.rows_go_up() ? m_labels.row_word + " →" : "← " + m_labels.row_word;
-    painter.drawText(QRectF(-200, -high / 2, 400, high), Qt::AlignCenter, word);
-    painter.restore();
-}
-
-void GridCanvas::paint_column_numbers(QPainter& painter) const {
-    const GridSpan span = m_mapping.seen();
-    const double high = fontMetrics().height();
-    const std::size_t last = m_picture.columns() == 0 ? 0 : m_labels.number_of_column(m_picture.columns() - 1) + 1;
-    const std::size_t step = number_step(m_mapping.cell(), fontMetrics().horizontalAdvance(QString::number(last)) + 8);
-    const double top = std::min(m_mapping.room().bottom(), m_mapping.frame().bottom()) + 3;
-    for (std::size_t column = span.first_column; column < span.last_column; ++column) {
-        const std::size_t number = m_labels.number_of_column(column % m_picture.columns()) + 1;
-        if (step > 1 && number != 1 && number % step != 0) continue;
-        const double middle = m_mapping.box({0, column}).center().x();
-        if (middle < m_mapping.room().left()) continue;
-        painter.drawText(QRectF(middle - 40, top, 80, high), Qt::AlignHCenter | Qt::AlignTop, QString::number(number));
-    }
-    const QString word = m_mapping.columns_go_right() ? m_labels.column_word + " →" : "← " + m_labels.column_word;
-    painter.drawText(QRectF(m_mapping.room().left(), height() - high - 1, m_mapping.room().width(), high), Qt::AlignCenter, word);
-}
-
-/// A triangle beside the first pick, so that nobody has to guess which side is the beginning.
-void GridCanvas::paint_origin(QPainter& painter) const {
-    const QRectF first = m_mapping.box({0, 0});
-    const double size = fontMetrics().height() * 0.55;
-    const double y = std::clamp(first.center().y(), m_mapping.room().top(), m_mapping.room().bottom());
-    if (std::abs(y - first.center().y()) > 1) return;
-    const bool from_left = m_mapping.columns_go_right();
-    const double x = from_left ? m_mapping.frame().left() - 2 : m_mapping.frame().right() + 2;
-    if (x < m_mapping.room().left() - 4 || x > m_mapping.room().right() + 8) return;
-    const double back = from_left ? -size : size;
-    painter.setRenderHint(QPainter::Antialiasing);
-    painter.setPen(Qt::NoPen);
-    painter.setBrush(refusal_colour);
-    const double offset = from_left ? -fontMetrics().horizontalAdvance("1") - 8 : 0;
-    painter.drawPolygon(QPolygonF{{x + offset, y}, {x + offset + back, y - size * 0.6}, {x + offset + back, y + size * 0.6}});
 }
 
 void GridCanvas::paint_marks(QPainter& painter) const {
@@ -216,9 +150,9 @@ void GridCanvas::paint_marks(QPainter& painter) const {
     }
     for (const GridCell& cell : m_stroke) painter.fillRect(m_mapping.box(cell), QColor(0x56, 0xb4, 0xe9, 170));
     if (m_cursor) ring(*m_cursor, cursor_colour, 2);
-    if (m_refused) {
-        ring(*m_refused, refusal_colour, 3);
-        const QRectF box = m_mapping.box(*m_refused);
+    for (const GridCell& cell : m_refused) {
+        ring(cell, refusal_colour, 3);
+        const QRectF box = m_mapping.box(cell);
         painter.drawLine(box.topLeft(), box.bottomRight());
         painter.drawLine(box.bottomLeft(), box.topRight());
     }
@@ -227,11 +161,12 @@ void GridCanvas::paint_marks(QPainter& painter) const {
 // ---- Mouse and keys ----
 
 void GridCanvas::resizeEvent(QResizeEvent*) {
-    m_mapping.set_room(QRectF(rect()).adjusted(ruler(), 4, -4, -fontMetrics().height() * 2.0));
+    lay_out();
 }
 
 void GridCanvas::mousePressEvent(QMouseEvent* event) {
-    m_refused.reset();
+    m_refused.clear();
+    update();
     if (event->button() == Qt::MiddleButton || (event->button() == Qt::LeftButton && event->modifiers() & Qt::ShiftModifier)) {
         m_moved_from = event->position();
         setCursor(Qt::ClosedHandCursor);
@@ -244,6 +179,10 @@ void GridCanvas::mousePressEvent(QMouseEvent* event) {
         set_cursor_cell(cell);
         Q_EMIT chosen(*cell);
         return;
+    }
+    if (is_far()) {
+        set_cursor_cell(cell);
+        return too_far(*cell);
     }
     m_stroke = {*cell};
     update();
@@ -330,6 +269,8 @@ void GridCanvas::walk(int rows, int columns) {
 
 void GridCanvas::keyPressEvent(QKeyEvent* event) {
     const int far = event->modifiers() & Qt::ShiftModifier ? 8 : 1;
+    m_refused.clear();
+    update();
     switch (event->key()) {
         case Qt::Key_Up:
             return walk(far, 0);
@@ -345,7 +286,7 @@ void GridCanvas::keyPressEvent(QKeyEvent* event) {
             return;
         case Qt::Key_Return:
         case Qt::Key_Enter:
-            if (m_cursor && m_can_stroke) Q_EMIT stroked({*m_cursor});
+            if (m_cursor && m_can_stroke) is_far() ? too_far(*m_cursor) : stroked({*m_cursor});
             return;
         default:
             QWidget::keyPressEvent(event);

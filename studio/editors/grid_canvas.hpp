@@ -2,23 +2,14 @@
 
 #include <QWidget>
 
-#include <functional>
 #include <optional>
 #include <studio/editors/cell_picture.hpp>
-#include <studio/editors/grid_mapping.hpp>
+#include <studio/editors/grid_rulers.hpp>
 #include <vector>
 
 class QPainter;
 
 namespace weave::studio {
-
-/// What rulers and lines of a grid say. Numbers are those of the first pick (end) of a row (column), from 0.
-struct GridLabels {
-    QString row_word, column_word;  ///< `picks`, `ends`
-    std::function<std::size_t(std::size_t)> number_of_row, number_of_column;
-    /// Whether a heavier line lies before a row or column: where a stack of the block begins.
-    std::function<bool(std::size_t)> row_begins, column_begins;
-};
 
 /// A grid of squares with rulers, which can be moved, zoomed and walked through with mouse and keys. It knows no weave.
 class GridCanvas : public QWidget {
@@ -26,22 +17,30 @@ class GridCanvas : public QWidget {
   public:
     explicit GridCanvas(QWidget* parent = nullptr);
 
-    /// What fills the squares; the grid shows it so many times along rows and columns. The view stays where its size does.
+    /// What fills the squares; the grid shows it so many times along rows and columns. The view stays where its size does, and where
+    /// there is no picture for a while.
     void show_picture(CellPicture picture, int times_rows = 1, int times_columns = 1);
+    /// Of the picture that is shown.
     void set_labels(GridLabels labels);
+    /// Forgets where a person was, for another design.
+    void begin_anew();
     void set_corner(Corner corner);
     /// What it says where there is no picture.
     void set_empty_text(const QString& text);
     /// The cell at which a person is; it is ringed, and brought into view.
     void set_cursor_cell(std::optional<GridCell> cell);
     [[nodiscard]] const std::optional<GridCell>& cursor_cell() const { return m_cursor; }
-    /// Marks a cell that refused, until the next press.
-    void mark_refused(const GridCell& cell);
-    /// Whether pressing and drawing over cells gives strokes.
+    /// Marks cells that refused, until the next press.
+    void mark_refused(std::vector<GridCell> cells);
+    [[nodiscard]] const std::vector<GridCell>& refused() const { return m_refused; }
+    /// Whether pressing and drawing over cells gives strokes. Squares that are too small to be told apart give none.
     void set_can_stroke(bool can) { m_can_stroke = can; }
+    static constexpr double smallest_stroked = 4;  ///< pixels of a square
 
     [[nodiscard]] const GridMapping& mapping() const { return m_mapping; }
     void zoom_by(double factor);
+    void zoom_in() { zoom_by(1.4); }
+    void zoom_out() { zoom_by(1 / 1.4); }
     void fit();
     [[nodiscard]] QSize sizeHint() const override { return {560, 420}; }
 
@@ -50,6 +49,8 @@ class GridCanvas : public QWidget {
     void stroked(const std::vector<weave::studio::GridCell>& cells);
     /// Chosen without being changed: a click with Ctrl, or the keys.
     void chosen(const weave::studio::GridCell& cell);
+    /// Would have been a stroke, were the squares not too small.
+    void too_far(const weave::studio::GridCell& cell);
     void hovered(const std::optional<weave::studio::GridCell>& cell);
     void menu_wanted(const weave::studio::GridCell& cell, const QPoint& where);
 
@@ -65,22 +66,19 @@ class GridCanvas : public QWidget {
     void contextMenuEvent(QContextMenuEvent* event) override;
 
   private:
-    [[nodiscard]] double ruler() const;
+    void lay_out();
+    [[nodiscard]] bool is_far() const { return m_mapping.cell() < smallest_stroked; }
     void paint_lines(QPainter& painter) const;
-    void paint_rulers(QPainter& painter) const;
-    void paint_row_numbers(QPainter& painter) const;
-    void paint_column_numbers(QPainter& painter) const;
-    void paint_origin(QPainter& painter) const;
     void paint_marks(QPainter& painter) const;
     void stroke_to(const GridCell& cell);
     void walk(int rows, int columns);
 
     CellPicture m_picture;
     GridMapping m_mapping;
-    GridLabels m_labels;
+    GridRulers m_rulers;
     QString m_empty_text;
-    std::optional<GridCell> m_cursor, m_refused, m_hovered;
-    std::vector<GridCell> m_stroke;
+    std::optional<GridCell> m_cursor, m_hovered;
+    std::vector<GridCell> m_stroke, m_refused;
     std::optional<QPointF> m_moved_from;
     bool m_can_stroke = true;
 };

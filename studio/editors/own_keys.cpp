@@ -1,5 +1,7 @@
 #include <studio/editors/own_keys.hpp>
 
+#include <algorithm>
+
 namespace weave::studio {
 
 QAction* action_of(const QWidget& widget, const QKeyEvent& event) {
@@ -19,6 +21,15 @@ QAction* action_of(const QWidget& widget, const QKeyEvent& event) {
 bool claims_key(const QWidget& widget, QEvent& event) {
     if (event.type() != QEvent::ShortcutOverride) return false;
     if (action_of(widget, static_cast<QKeyEvent&>(event)) == nullptr) return false;
+    event.accept();
+    return true;
+}
+
+bool claims_key(QEvent& event, std::initializer_list<Qt::Key> keys) {
+    if (event.type() != QEvent::ShortcutOverride) return false;
+    const auto& key = static_cast<const QKeyEvent&>(event);
+    if (key.modifiers() & (Qt::ControlModifier | Qt::AltModifier | Qt::MetaModifier)) return false;
+    if (std::ranges::find(keys, key.key()) == keys.end()) return false;
     event.accept();
     return true;
 }

@@ -66,6 +66,12 @@ void SliceCanvas::go_to(std::size_t position) {
     view_moved();
 }
 
+void SliceCanvas::centre_on(std::size_t position) {
+    if (const auto [first, count] = seen(); first == 0 && count >= m_scene.all_positions) return;
+    m_view.move_by({space().center().x() - m_view.at(static_cast<double>(position), 0).x(), 0});
+    view_moved();
+}
+
 std::pair<std::size_t, std::size_t> SliceCanvas::seen() const {
     if (m_scene.all_positions == 0) return {0, 0};
     const double last = static_cast<double>(m_scene.all_positions) - 1;
@@ -110,11 +116,11 @@ void SliceCanvas::refuse(const QString& why, QPoint place) {
 
 void SliceCanvas::paintEvent(QPaintEvent*) {
     QPainter painter(this);
-    painter.fillRect(rect(), Qt::white);
-    paint_slice(painter, m_view, m_scene, m_marks, space());
-    if (m_scene.all_positions > 0) paint_ruler(painter, m_view, m_scene, m_marks, ruler());
+    painter.fillRect(rect(), palette().color(QPalette::Base));
+    paint_slice(painter, m_view, m_scene, m_marks, space(), palette());
+    if (m_scene.all_positions > 0) paint_ruler(painter, m_view, m_scene, m_marks, ruler(), palette());
     if (const QString words = empty_words(); !words.isEmpty()) {
-        painter.setPen(QColor(0x59, 0x59, 0x59));
+        painter.setPen(palette().color(QPalette::PlaceholderText));
         painter.drawText(space(), Qt::AlignCenter | Qt::TextWordWrap, words);
     }
     if (!hasFocus()) return;

@@ -31,6 +31,8 @@ class SliceCanvas : public QWidget {
     void zoom_out() { zoom_by(0.8); }
     /// Brings a position to the left side.
     void go_to(std::size_t position);
+    /// Brings a position to the middle, unless all of the slice is seen.
+    void centre_on(std::size_t position);
     /// The first position that can be seen, and how many.
     [[nodiscard]] std::pair<std::size_t, std::size_t> seen() const;
 

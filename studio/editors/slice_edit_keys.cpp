@@ -66,6 +66,7 @@ void SliceEditCanvas::make_actions() {
          [this] { edit_place(PositionEdit::lower); });
     make("close_up", tr("Close up empty levels"), Qt::CTRL | Qt::Key_L,
          [this] { apply_at_marks(close_up_levels(m_slice)); });
+    make("turn", {}, Qt::CTRL | Qt::Key_T, [this] { apply_at_marks(turn(m_slice)); });
     make("next_yarn", tr("Next yarn"), Qt::Key_N, [this] { step_yarn(1); });
     make("previous_yarn", tr("Previous yarn"), Qt::Key_P, [this] { step_yarn(-1); });
     make("choose_all", tr("Choose all"), QKeySequence::SelectAll, [this] {
@@ -95,6 +96,10 @@ void SliceEditCanvas::name_tools() {
     name("add_path", tr("Add %1").arg(path),
          tr("Drag from left to right through the dots: a new %1").arg(path));
     name("add_dot", tr("Add %1").arg(dot), tr("Click where a new %1 is to lie").arg(dot));
+    const bool along_warp = m_slice.dots == System::weft;
+    name("turn", along_warp ? tr("Draw along the weft") : tr("Draw along the warp"),
+         along_warp ? tr("A weft slice: the drawing's wefts become warps, its warps wefts that run along it")
+                    : tr("A warp slice: the drawing's warps become wefts, its wefts warps that run along it"));
 }
 
 void SliceEditCanvas::set_tool(SliceTool tool) {
@@ -219,6 +224,7 @@ void SliceEditCanvas::contextMenuEvent(QContextMenuEvent* event) {
                              "position_earlier",
                              "position_later",
                              "close_up",
+                             "turn",
                              "",
                              "select",
                              "draw",

@@ -1,8 +1,8 @@
 #include <studio/editors/slice_editor.hpp>
 
-#include <QFrame>
 #include <QHBoxLayout>
 #include <QPushButton>
+#include <QToolBar>
 #include <QToolButton>
 #include <QVBoxLayout>
 
@@ -35,27 +35,24 @@ SliceEditor::SliceEditor(QWidget* parent)
 }
 
 QWidget* SliceEditor::make_tool_row() {
-    auto* row = new QWidget(this);
-    auto* layout = new QHBoxLayout(row);
-    layout->setContentsMargins(4, 2, 4, 2);
-    layout->setSpacing(2);
+    auto* bar = new QToolBar(this);  // what finds no room goes into a menu at its end
+    bar->setObjectName("slice_tools");
+    bar->setToolButtonStyle(Qt::ToolButtonTextOnly);
     for (const char* name : {"select", "draw", "add_path", "add_dot", "", "duplicate", "remove", "enable", "",
-                             "earlier", "later", "", "insert_position", "", "fit"}) {
+                             "earlier", "later", "", "insert_position", "turn", "", "fit"}) {
         if (*name == 0) {
-            auto* line = new QFrame(row);
-            line->setFrameShape(QFrame::VLine);
-            line->setForegroundRole(QPalette::Mid);
-            layout->addWidget(line);
+            bar->addSeparator();
             continue;
         }
-        auto* button = new QToolButton(row);
-        button->setDefaultAction(m_canvas->action(name));
-        button->setAutoRaise(true);
-        button->setFocusPolicy(Qt::TabFocus);
-        layout->addWidget(button);
+        bar->addAction(m_canvas->action(name));
+        bar->widgetForAction(m_canvas->action(name))->setFocusPolicy(Qt::TabFocus);
     }
-    layout->addStretch(1);
-    return row;
+    if (auto* more = bar->findChild<QToolButton*>("qt_toolbar_ext_button")) {
+        more->setIcon({});  // the style's own is black, which dark palettes swallow
+        more->setText(tr("»"));
+        more->setToolTip(tr("More tools"));
+    }
+    return bar;
 }
 
 QWidget* SliceEditor::make_begin_row() {
@@ -94,6 +91,11 @@ void SliceEditor::show_slice(const Slice& slice) {
     m_tool_row->setDisabled(slice.positions.empty());
     if (slice == m_canvas->slice() && !slice.positions.empty()) return;
     m_canvas->show_slice(slice);
+}
+
+SliceCanvas& SliceEditor::canvas_in_sight() {
+    if (m_pages->currentIndex() == 0) return *m_canvas;
+    return m_reader->canvas();
 }
 
 void SliceEditor::set_design(const Design& design) {

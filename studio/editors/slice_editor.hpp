@@ -15,6 +15,8 @@ class SliceEditor : public QWidget {
     explicit SliceEditor(QWidget* parent = nullptr);
     [[nodiscard]] SliceEditCanvas& canvas() { return *m_canvas; }
     [[nodiscard]] SliceReader& reader() { return *m_reader; }
+    /// That of the page that is shown.
+    [[nodiscard]] SliceCanvas& canvas_in_sight();
 
   public Q_SLOTS:
     /// Shows a drawn slice to edit. One that is shown already keeps view and choice, so the owner may answer

@@ -222,4 +222,19 @@ Result<SliceEdit> close_up_levels(const Slice& slice) {
     return edited(std::move(closed), tr("Close up empty levels"), {});
 }
 
+Result<SliceEdit> turn(const Slice& slice) {
+    Slice turned = slice;
+    turned.dots = slice.dots == System::weft ? System::warp : System::weft;
+    for (std::vector<SliceYarn>& position : turned.positions) {
+        for (SliceYarn& place : position) {
+            const Slot yarn = place.yarn;
+            if (yarn.is_empty()) continue;
+            place.yarn = yarn.is_weft() ? Slot::warp(yarn.index(), yarn.is_loose()) : Slot::weft(yarn.index(), yarn.is_loose());
+        }
+    }
+    if (const Result<Block> block = to_block(turned); !block) return block.error();
+    const QString what = turned.dots == System::weft ? tr("Draw along the warp") : tr("Draw along the weft");
+    return SliceEdit{std::move(turned), what, {}};
+}
+
 }  // namespace weave::studio

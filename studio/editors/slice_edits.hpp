@@ -46,5 +46,7 @@ enum class PositionEdit { insert, duplicate, remove, earlier, later, raise, lowe
 Result<SliceEdit> edit_position(const Slice& slice, PositionEdit edit, std::size_t position,
                                 std::size_t level);
 Result<SliceEdit> close_up_levels(const Slice& slice);
+/// The same drawing along the other system: what were wefts are warps. A disabled weft stands in the way, as warps cannot be disabled.
+Result<SliceEdit> turn(const Slice& slice);
 
 }  // namespace weave::studio

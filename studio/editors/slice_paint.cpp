@@ -22,6 +22,10 @@ QColor mixed(const QColor& a, const QColor& b, double share) {
     };
     return {part(a.red(), b.red()), part(a.green(), b.green()), part(a.blue(), b.blue())};
 }
+QColor see_through(QColor colour, int alpha) {
+    colour.setAlpha(alpha);
+    return colour;
+}
 Colour from_qt(const QColor& colour) {
     return {static_cast<std::uint8_t>(colour.red()), static_cast<std::uint8_t>(colour.green()),
             static_cast<std::uint8_t>(colour.blue())};
@@ -31,8 +35,15 @@ Colour from_qt(const QColor& colour) {
 class SlicePainter {
   public:
     SlicePainter(QPainter& painter, const SliceView& view, const SliceScene& scene, const SliceMarks& marks,
-                 const QRectF& space)
-        : m_painter(painter), m_view(view), m_scene(scene), m_marks(marks), m_space(space) {
+                 const QRectF& space, const QPalette& palette)
+        : m_painter(painter),
+          m_view(view),
+          m_scene(scene),
+          m_marks(marks),
+          m_space(space),
+          m_paper(palette.color(QPalette::Base)),
+          m_ink(palette.color(QPalette::Text)),
+          m_is_dark(m_paper.lightness() < m_ink.lightness()) {
         m_first = std::max<double>(std::floor(view.position_at(space.left())) - 1,
                                    static_cast<double>(scene.begin));
         m_last = std::min<double>(std::ceil(view.position_at(space.right())) + 1,
@@ -60,11 +71,16 @@ class SlicePainter {
     }
     [[nodiscard]] QColor halo_of(const SliceYarnId& yarn) const {
         if (marked(yarn)) return is_crossing(yarn) ? QColor(wished_ink) : QColor(chosen_ink);
-        return mixed(QColor(chosen_ink), Qt::white, 0.55);
+        return mixed(QColor(chosen_ink), m_paper, 0.55);
+    }
+
+    /// A yarn's colour for letters on the paper.
+    [[nodiscard]] QColor legible(const QColor& colour) const {
+        return m_is_dark ? mixed(colour, Qt::white, 0.45) : to_qt(readable(from_qt(colour)));
     }
 
     void draw_rows() {
-        const QColor faint(0xe3, 0xe6, 0xe9);
+        const QColor faint = mixed(m_paper, m_ink, 0.12);
         m_painter.setPen(QPen(faint, 1));
         const double left = m_view.at(m_first - 0.45, 0).x(), right = m_view.at(m_last + 0.45, 0).x();
         for (std::size_t level = 0; level < m_scene.levels; ++level) {
@@ -112,7 +128,7 @@ class SlicePainter {
         const bool whole = path.woven_first == path.first && path.woven_last == path.last();
         if (!whole) {  // what is drawn but not in the cloth
             if (const auto rest = seen(path))
-                stroke(*rest, mixed(path.colour, Qt::white, 0.35), width * 0.55, Qt::CustomDashLine);
+                stroke(*rest, mixed(path.colour, m_paper, 0.35), width * 0.55, Qt::CustomDashLine);
         }
         if (path.woven_first > path.woven_last) return;
         double from = woven_first;
@@ -137,7 +153,7 @@ class SlicePainter {
         const QPointF side(-ahead.y(), ahead.x());
         const QPointF back = tip - ahead * length;
         const QPolygonF head({tip, back + side * length * 0.48, back - side * length * 0.48});
-        m_painter.setPen(QPen(Qt::white, 1.5));
+        m_painter.setPen(QPen(m_paper, 1.5));
         m_painter.setBrush(colour);
         m_painter.drawPolygon(head);
     }
@@ -194,7 +210,7 @@ class SlicePainter {
             outermost + out * m_view.across() * std::min(0.75 + 0.38 * static_cast<double>(inside), 1.9);
         QPainterPath arc(a);
         arc.cubicTo({reach, a.y()}, {reach, b.y()}, b);
-        const QColor colour = turn.caught ? from.colour : QColor(0x11, 0x11, 0x11);
+        const QColor colour = turn.caught ? from.colour : m_ink;
         const double width = m_view.path_width();
         if (turn.caught) {
             stroke(arc, mixed(colour, Qt::black, 0.45), width + std::max(1.2, width * 0.28));
@@ -214,7 +230,7 @@ class SlicePainter {
         if (path.woven_first > path.woven_last) return;
         const double out = turn.right ? 1 : -1;
         const QPointF end = end_of(path, turn.right), tip = end + QPointF(out * m_view.across() * 0.62, 0);
-        const QColor colour = turn.caught ? mixed(path.colour, Qt::black, 0.3) : QColor(0x11, 0x11, 0x11);
+        const QColor colour = turn.caught ? legible(path.colour) : m_ink;
         m_painter.setPen(QPen(colour, 2, Qt::DotLine));
         m_painter.drawLine(end, tip);
         if (!is_fine()) return;
@@ -223,7 +239,7 @@ class SlicePainter {
         QString words = (turn.from ? word("to %1") : word("from %1")).arg(turn.other_pick + 1);
         if (!turn.caught) words += " " + word("(not caught)");
         write(words, tip + QPointF(out * 6, turn.from ? -m_view.radius() : m_view.radius()),
-              turn.right ? Qt::AlignLeft : Qt::AlignRight, QColor(0x59, 0x59, 0x59), 0.72, false);
+              turn.right ? Qt::AlignLeft : Qt::AlignRight, mixed(m_ink, m_paper, 0.3), 0.72, false);
     }
 
     void draw_dot(const SceneDot& dot) {
@@ -237,10 +253,10 @@ class SlicePainter {
             m_painter.drawEllipse(centre, radius + 4.5, radius + 4.5);
         }
         const bool off = !dot.number;
-        const QColor fill = off         ? QColor(Qt::white)
-                            : dot.loose ? mixed(dot.colour, Qt::white, 0.7)
+        const QColor fill = off         ? m_paper
+                            : dot.loose ? mixed(dot.colour, m_paper, 0.7)
                                         : dot.colour;
-        QPen rim(off ? mixed(dot.colour, Qt::white, 0.1) : mixed(dot.colour, Qt::black, 0.45),
+        QPen rim(off ? mixed(dot.colour, m_ink, 0.3) : mixed(dot.colour, m_is_dark ? Qt::white : Qt::black, 0.45),
                  is_fine() ? 1.4 : 0.7);
         if (off || dot.loose) rim.setDashPattern({2.5, 2});
         m_painter.setPen(rim);
@@ -271,7 +287,7 @@ class SlicePainter {
         if (side == Qt::AlignRight) left -= width;
         if (ground) {
             m_painter.setPen(Qt::NoPen);
-            m_painter.setBrush(QColor(255, 255, 255, 225));
+            m_painter.setBrush(see_through(m_paper, 225));
             m_painter.drawRoundedRect(
                 QRectF(left - 3, place.y() - metrics.height() / 2, width + 6, metrics.height()), 3, 3);
         }
@@ -290,7 +306,7 @@ class SlicePainter {
     /// way.
     void draw_name(const ScenePath& path) {
         if (!is_fine()) return;
-        const QColor colour = to_qt(readable(from_qt(path.colour)));
+        const QColor colour = legible(path.colour);
         const auto level = [&](std::size_t position) {
             return static_cast<double>(path.levels[position - path.first]);
         };
@@ -327,7 +343,7 @@ class SlicePainter {
             const bool left = preview.first == 0,
                        right = preview.first + preview.levels.size() == m_scene.all_positions;
             const QPainterPath curve = curve_of(m_view, preview.first, preview.levels, {}, left, right);
-            stroke(curve, QColor(255, 255, 255, 220), m_view.path_width() + 6);
+            stroke(curve, see_through(m_paper, 220), m_view.path_width() + 6);
             stroke(curve, QColor(wished_ink), m_view.path_width() + 1);
         }
         if (m_marks.dot_preview) {
@@ -344,7 +360,7 @@ class SlicePainter {
             const QPointF place =
                 m_view.at(static_cast<double>(*m_marks.path_place), static_cast<double>(*level));
             m_painter.setPen(QPen(QColor(chosen_ink), 2));
-            m_painter.setBrush(Qt::white);
+            m_painter.setBrush(m_paper);
             m_painter.drawEllipse(place, m_view.radius() * 0.6, m_view.radius() * 0.6);
         }
     }
@@ -354,26 +370,28 @@ class SlicePainter {
     const SliceScene& m_scene;
     const SliceMarks& m_marks;
     QRectF m_space;
+    QColor m_paper, m_ink;
+    bool m_is_dark;
     double m_first = 0, m_last = 0;
 };
 
 }  // namespace
 
 void paint_slice(QPainter& painter, const SliceView& view, const SliceScene& scene, const SliceMarks& marks,
-                 const QRectF& space) {
+                 const QRectF& space, const QPalette& palette) {
     painter.save();
     painter.setClipRect(space);
     painter.setRenderHint(QPainter::Antialiasing);
-    SlicePainter(painter, view, scene, marks, space).draw();
+    SlicePainter(painter, view, scene, marks, space, palette).draw();
     painter.restore();
 }
 
 void paint_ruler(QPainter& painter, const SliceView& view, const SliceScene& scene, const SliceMarks& marks,
-                 const QRectF& ruler) {
+                 const QRectF& ruler, const QPalette& palette) {
     painter.save();
     painter.setClipRect(ruler);
-    painter.fillRect(ruler, QColor(0xf6, 0xf7, 0xf8));
-    painter.setPen(QColor(0xd4, 0xd8, 0xdc));
+    painter.fillRect(ruler, palette.color(QPalette::Window));
+    painter.setPen(palette.color(QPalette::Mid));
     painter.drawLine(ruler.topLeft(), ruler.topRight());
     const QFontMetricsF metrics(painter.font());
     const double widest =
@@ -388,6 +406,7 @@ void paint_ruler(QPainter& painter, const SliceView& view, const SliceScene& sce
         if (!yarn.path) chosen.insert(yarn.position);
     }
     if (marks.path_place) chosen.insert(*marks.path_place);
+    const QColor ink = palette.color(QPalette::WindowText);
     const double baseline = ruler.top() + metrics.height() * 1.05;
     for (std::size_t position = scene.begin; position < scene.begin + scene.positions; ++position) {
         const double x = view.at(static_cast<double>(position), 0).x();
@@ -395,16 +414,18 @@ void paint_ruler(QPainter& painter, const SliceView& view, const SliceScene& sce
         const bool is_chosen = chosen.contains(position);
         if (!is_chosen && (position + 1) % step != 0 && position != 0) continue;
         const QString number = QString::number(position + 1);
-        painter.setPen(is_chosen ? QColor(chosen_ink) : QColor(0x59, 0x59, 0x59));
+        painter.setPen(is_chosen ? mixed(QColor(chosen_ink), ink, 0.35) : ink);
         painter.drawLine(QPointF(x, ruler.top()), QPointF(x, ruler.top() + 3));
         painter.drawText(QPointF(x - metrics.horizontalAdvance(number) / 2, baseline), number);
     }
     const bool rows = scene.dots == System::weft;
-    painter.setPen(QColor(chosen_ink));
-    painter.drawText(
-        QPointF(ruler.left() + metrics.averageCharWidth(), ruler.bottom() - metrics.descent() - 2),
-        rows ? word("Along the warp → position = row of wefts (picks one above the other)")
-             : word("Along the weft → position = column of warps (ends one above the other)"));
+    painter.setPen(palette.color(QPalette::WindowText));
+    const double margin = metrics.averageCharWidth();
+    const QString words[] = {rows ? word("Along the warp → position = row of wefts (picks one above the other)")
+                                  : word("Along the weft → position = column of warps (ends one above the other)"),
+                             rows ? word("Along the warp → rows") : word("Along the weft → columns")};
+    const bool fits = metrics.horizontalAdvance(words[0]) + 2 * margin <= ruler.width();
+    painter.drawText(QPointF(ruler.left() + margin, ruler.bottom() - metrics.descent() - 2), words[fits ? 0 : 1]);
     painter.restore();
 }
 

@@ -29,12 +29,12 @@ struct SliceMarks {
 
 /// Draws a slice as the pictures of the product do: dots with their numbers, paths as round lines with a dark
 /// rim, levels as faint rows, the weft's way as arrows. `space` is the part of the widget for it; the ruler
-/// stands below.
+/// stands below. The palette's base is the paper, its text the ink.
 void paint_slice(QPainter& painter, const SliceView& view, const SliceScene& scene, const SliceMarks& marks,
-                 const QRectF& space);
+                 const QRectF& space, const QPalette& palette);
 /// The numbers of the positions below `space`, in weavers' words.
 void paint_ruler(QPainter& painter, const SliceView& view, const SliceScene& scene, const SliceMarks& marks,
-                 const QRectF& ruler);
+                 const QRectF& ruler, const QPalette& palette);
 
 /// The blue that marks what is chosen, the vermilion that marks what is to be (Okabe-Ito).
 inline constexpr QRgb chosen_ink = 0xff0072b2, wished_ink = 0xffd55e00;

@@ -1,5 +1,7 @@
 #include <studio/editors/slice_read_canvas.hpp>
 
+#include <studio/editors/own_keys.hpp>
+
 #include <weave/block/flip.hpp>
 
 #include <QApplication>
@@ -20,7 +22,7 @@ void SliceReadCanvas::show_slices(std::shared_ptr<const BlockSlices> slices, Sys
     const bool other =
         !m_slices || !slices || dots != m_dots || m_slices->positions(dots) != slices->positions(dots);
     m_slices = std::move(slices);
-    m_marks = {};
+    if (other || line != m_line) m_marks = {};
     m_dots = dots;
     m_line = line;
     lay_out();
@@ -30,6 +32,17 @@ void SliceReadCanvas::show_slices(std::shared_ptr<const BlockSlices> slices, Sys
 
 void SliceReadCanvas::set_line(System dots, std::size_t line) {
     show_slices(m_slices, dots, line);
+}
+
+void SliceReadCanvas::show_crossing(std::size_t pick, std::size_t end) {
+    if (!m_slices || pick >= m_slices->block().picks() || end >= m_slices->block().ends()) return;
+    const bool weft_dots = m_dots == System::weft;
+    centre_on(weft_dots ? m_slices->block().row_of_pick(pick) : m_slices->block().column_of_end(end));
+    const auto dot = std::ranges::find(scene().dot_list, weft_dots ? pick : end, &SceneDot::number);
+    const auto path = std::ranges::find(scene().paths, weft_dots ? end : pick, &ScenePath::number);
+    if (dot == scene().dot_list.end() || path == scene().paths.end()) return;
+    m_marks.crossing = {dot->yarn, path->yarn};
+    update();
 }
 
 QString SliceReadCanvas::empty_words() const {
@@ -160,6 +173,10 @@ void SliceReadCanvas::step(int along, int up) {
     if (new_dot == nullptr || new_path == nullptr) return;
     if (const auto crossing = crossing_of(*new_dot, *new_path)) Q_EMIT status(words_of(*crossing));
     update();
+}
+
+bool SliceReadCanvas::event(QEvent* event) {
+    return claims_key(*event, {Qt::Key_F, Qt::Key_Plus, Qt::Key_Minus, Qt::Key_Space}) || SliceCanvas::event(event);
 }
 
 void SliceReadCanvas::keyPressEvent(QKeyEvent* event) {

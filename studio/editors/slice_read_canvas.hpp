@@ -15,6 +15,8 @@ class SliceReadCanvas : public SliceCanvas {
     /// Null while the block is read.
     void show_slices(std::shared_ptr<const BlockSlices> slices, System dots, std::size_t line);
     void set_line(System dots, std::size_t line);
+    /// Brings a crossing of the line to the middle, and marks it.
+    void show_crossing(std::size_t pick, std::size_t end);
     [[nodiscard]] System dots() const { return m_dots; }
     [[nodiscard]] std::size_t line() const { return m_line; }
     [[nodiscard]] const BlockSlices* slices() const { return m_slices.get(); }
@@ -24,6 +26,7 @@ class SliceReadCanvas : public SliceCanvas {
     void flip_wanted(std::size_t pick, std::size_t end);
 
   protected:
+    bool event(QEvent* event) override;
     void lay_out() override;
     void hover(QPointF place, std::optional<SliceYarnId> yarn) override;
     void mousePressEvent(QMouseEvent* event) override;

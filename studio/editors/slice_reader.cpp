@@ -8,6 +8,7 @@
 #include <QVBoxLayout>
 
 #include <algorithm>
+#include <utility>
 
 namespace weave::studio {
 
@@ -47,12 +48,13 @@ SliceReader::SliceReader(QWidget* parent)
     auto* row = new QHBoxLayout;
     for (QWidget* widget : std::initializer_list<QWidget*>{m_direction, m_kind, m_number, m_count})
         row->addWidget(widget);
-    row->addWidget(m_slider, 1);
     row->addWidget(m_yarns);
+    row->addStretch(1);
     row->addWidget(fit);
     auto* rows = new QVBoxLayout(this);
     rows->setContentsMargins(0, 0, 0, 0);
     rows->addLayout(row);
+    rows->addWidget(m_slider);  // a row of its own, so that it is long where the editor is narrow
     rows->addWidget(m_canvas, 1);
     rows->addWidget(m_along);
     connect(fit, &QToolButton::clicked, m_canvas, &SliceCanvas::fit);
@@ -72,9 +74,16 @@ void SliceReader::show_block(const Design& design, BlockPtr block, System dots, 
     m_dots = dots;
     m_line = line;
     const std::size_t reading = ++m_reading;
+    const BlockSlices* shown = m_canvas->slices();
+    const auto looks_alike = [&](const Design& other) {
+        return other.warp == design.warp && other.weft == design.weft && other.scene == design.scene;
+    };
+    if (shown != nullptr && &shown->block() == block.get() && looks_alike(shown->design())) return show_line();
     const auto read = [design, block] { return std::make_shared<const BlockSlices>(design, block); };
     if (block->picks() * block->ends() <= most_at_once) return take(read(), reading);
-    m_canvas->show_slices(nullptr, dots, line);
+    // After an edit the slice stays until the new one is there; a block with other counts is another one.
+    if (shown != nullptr && (shown->block().t() != block->t() || shown->block().p() != block->p()))
+        m_canvas->show_slices(nullptr, dots, line);
     in_background(this, read, [this, reading](std::shared_ptr<const BlockSlices> slices) {
         take(std::move(slices), reading);
     });
@@ -84,24 +93,31 @@ void SliceReader::take(std::shared_ptr<const BlockSlices> slices, std::size_t re
     if (reading != m_reading) return;
     m_line = std::min(m_line, slices->lines(m_dots) - 1);
     m_canvas->show_slices(std::move(slices), m_dots, m_line);
+    show_line();
+}
+
+void SliceReader::show_line() {
+    m_line = std::min(m_line, m_canvas->slices()->lines(m_dots) - 1);
+    m_canvas->set_line(m_dots, m_line);
+    if (const auto place = std::exchange(m_wanted, {})) m_canvas->show_crossing(place->first, place->second);
     name_line();
     follow_canvas();
+}
+
+void SliceReader::go_to(std::size_t pick, std::size_t end) {
+    m_wanted = {pick, end};
 }
 
 void SliceReader::set_direction(System dots) {
     if (m_canvas->slices() == nullptr || dots == m_dots) return;
     m_dots = dots;
-    m_line = std::min(m_line, m_canvas->slices()->lines(dots) - 1);
-    m_canvas->set_line(m_dots, m_line);
-    name_line();
-    follow_canvas();
+    show_line();
 }
 
 void SliceReader::set_line(int line) {
     if (m_canvas->slices() == nullptr || line < 0) return;
-    m_line = std::min(static_cast<std::size_t>(line), m_canvas->slices()->lines(m_dots) - 1);
-    m_canvas->set_line(m_dots, m_line);
-    name_line();
+    m_line = static_cast<std::size_t>(line);
+    show_line();
 }
 
 void SliceReader::name_line() {

@@ -18,6 +18,8 @@ class SliceReader : public QWidget {
     explicit SliceReader(QWidget* parent = nullptr);
     /// The column `line` where the dots are wefts, or the row where they are warps.
     void show_block(const Design& design, BlockPtr block, System dots, std::size_t line);
+    /// Brings this crossing to the middle as soon as the block that is shown next is there. From 0.
+    void go_to(std::size_t pick, std::size_t end);
     [[nodiscard]] SliceReadCanvas& canvas() { return *m_canvas; }
 
   Q_SIGNALS:
@@ -26,6 +28,7 @@ class SliceReader : public QWidget {
 
   private:
     void take(std::shared_ptr<const BlockSlices> slices, std::size_t reading);
+    void show_line();
     void set_direction(System dots);
     void set_line(int line);
     void name_line();
@@ -39,6 +42,7 @@ class SliceReader : public QWidget {
     QScrollBar* m_along;
     System m_dots = System::weft;
     std::size_t m_line = 0;
+    std::optional<std::pair<std::size_t, std::size_t>> m_wanted;  ///< pick and end to go to
     std::size_t m_reading = 0;  ///< counts the blocks shown, so that one read too late is let go
 };
 

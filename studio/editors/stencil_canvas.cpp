@@ -12,12 +12,6 @@
 
 namespace weave::studio {
 
-namespace {
-
-constexpr double least_zoom = 0.05, most_zoom = 96;
-
-}  // namespace
-
 StencilCanvas::StencilCanvas(QWidget* parent)
     : QWidget(parent), m_map(std::make_shared<StencilMap>()), m_before(m_map), m_bubble(this) {
     setObjectName("stencil_canvas");
@@ -47,7 +41,9 @@ void StencilCanvas::show_map(std::shared_ptr<const StencilMap> map, const std::v
     changed(QRect(0, 0, m_image.width(), m_image.height()));
     if (!same_size) {
         m_cursor.reset();
-        m_fitted = false;
+        m_rulers.set(plain_labels(tr("rows of stacks"), tr("columns of stacks")), map->rows, map->columns);
+        m_mapping.set_room(m_rulers.room_in(*this, m_mapping.corner()));
+        m_mapping.set_grid(map->rows, map->columns);
         fit();
     }
 }
@@ -85,32 +81,25 @@ void StencilCanvas::changed(const QRect& stacks) {
 }
 
 void StencilCanvas::fit() {
-    m_fitted = m_fitted || isVisible();
-    if (m_image.isNull()) return;
-    const double room = fontMetrics().height();
-    const double wide = (width() - 2 * room) / m_image.width(),
-                 high = (height() - 2 * room) / m_image.height();
-    m_zoom = std::clamp(std::min({wide, high, 48.0}), least_zoom, most_zoom);
-    if (m_zoom > 1) m_zoom = std::floor(m_zoom);  // whole pixels, so that all stacks are equally large
-    m_origin = {std::floor((width() - m_zoom * m_image.width()) / 2),
-                std::floor((height() - m_zoom * m_image.height()) / 2)};
+    m_mapping.fit();
     update();
 }
 
 void StencilCanvas::resizeEvent(QResizeEvent*) {
-    if (!m_fitted) fit();
+    m_mapping.set_room(m_rulers.room_in(*this, m_mapping.corner()));
 }
 
 QPoint StencilCanvas::stack_at(QPointF place) const {
-    const QPointF inside = (place - m_origin) / m_zoom;
-    return {static_cast<int>(std::floor(inside.x())),
-            m_image.height() - 1 - static_cast<int>(std::floor(inside.y()))};
+    const QRectF frame = m_mapping.frame();
+    return {static_cast<int>(std::floor((place.x() - frame.left()) / m_mapping.cell())),
+            static_cast<int>(std::floor((frame.bottom() - place.y()) / m_mapping.cell()))};
 }
 
 QRectF StencilCanvas::square_of(const QRect& stacks) const {
-    return {m_origin.x() + stacks.left() * m_zoom,
-            m_origin.y() + (m_image.height() - 1 - stacks.bottom()) * m_zoom, stacks.width() * m_zoom,
-            stacks.height() * m_zoom};
+    const QRectF frame = m_mapping.frame();
+    const double cell = m_mapping.cell();
+    return {frame.left() + stacks.left() * cell, frame.bottom() - (stacks.bottom() + 1) * cell, stacks.width() * cell,
+            stacks.height() * cell};
 }
 
 QPoint StencilCanvas::place_of(QPoint stack) const {
@@ -118,16 +107,14 @@ QPoint StencilCanvas::place_of(QPoint stack) const {
 }
 
 void StencilCanvas::zoom_by(double factor, QPointF fixed) {
-    const double zoom = std::clamp(m_zoom * factor, least_zoom, most_zoom);
-    m_origin = fixed - (fixed - m_origin) * (zoom / m_zoom);
-    m_zoom = zoom;
+    m_mapping.zoom(factor, fixed);
     update();
 }
 
 void StencilCanvas::wheelEvent(QWheelEvent* event) {
     const QPoint turn = event->angleDelta();
     if (event->modifiers().testFlag(Qt::ShiftModifier) || turn.x() != 0) {
-        m_origin.rx() += turn.x() != 0 ? turn.x() : turn.y();
+        m_mapping.move(QPointF(turn.x() != 0 ? turn.x() : turn.y(), 0));
         update();
     } else {
         zoom_by(std::pow(1.0015, turn.y()), event->position());
@@ -146,45 +133,48 @@ void StencilCanvas::refuse(const QString& why, QPoint place) {
 
 void StencilCanvas::paintEvent(QPaintEvent* event) {
     QPainter painter(this);
-    const QRectF part = event->rect();
-    painter.fillRect(part, QColor(0xec, 0xee, 0xf0));
+    painter.fillRect(rect(), palette().color(QPalette::Window));
     if (m_image.isNull()) return;
-    // Only the pixels that are seen are scaled: a large picture costs no more than a small one.
-    const QRectF seen = part.adjusted(-m_zoom, -m_zoom, m_zoom, m_zoom);
-    const QPointF low = (seen.topLeft() - m_origin) / m_zoom, high = (seen.bottomRight() - m_origin) / m_zoom;
-    const QRect pixels =
-        QRect(QPoint(static_cast<int>(std::floor(low.x())), static_cast<int>(std::floor(low.y()))),
-              QPoint(static_cast<int>(std::ceil(high.x())), static_cast<int>(std::ceil(high.y()))))
-            .intersected(m_image.rect());
-    if (!pixels.isEmpty()) {
-        const QRectF target(m_origin + QPointF(pixels.topLeft()) * m_zoom, QSizeF(pixels.size()) * m_zoom);
-        painter.setRenderHint(QPainter::SmoothPixmapTransform, m_zoom < 1);
-        painter.drawImage(target, m_image, pixels);
-    }
-    draw_grid(painter, part);
+    painter.save();
+    painter.setClipRect(m_mapping.room());
+    draw_picture(painter, event->rect());
+    draw_grid(painter);
     draw_wish(painter);
-    painter.setPen(QColor(0x59, 0x59, 0x59));
+    painter.setPen(palette().color(QPalette::WindowText));
     painter.setBrush(Qt::NoBrush);
-    painter.drawRect(square_of(QRect(0, 0, m_image.width(), m_image.height())).adjusted(-1, -1, 0, 0));
+    painter.drawRect(m_mapping.frame().adjusted(-1, -1, 0, 0));
+    painter.restore();
+    m_rulers.paint(painter, *this, m_mapping);
 }
 
-void StencilCanvas::draw_grid(QPainter& painter, const QRectF& part) const {
-    if (m_zoom < 6) return;
-    const QRectF all = square_of(QRect(0, 0, m_image.width(), m_image.height())).intersected(part);
-    if (all.isEmpty()) return;
-    const auto lines = [&](bool upright) {
-        const double begin = upright ? m_origin.x() : m_origin.y(), from = upright ? all.left() : all.top(),
-                     to = upright ? all.right() : all.bottom();
-        for (double k = std::ceil((from - begin) / m_zoom); begin + k * m_zoom <= to; ++k) {
-            const double at = begin + k * m_zoom;
-            const int count = upright ? static_cast<int>(k) : m_image.height() - static_cast<int>(k);
-            painter.setPen(count % 10 == 0 ? QColor(0, 0, 0, 110) : QColor(0, 0, 0, 45));
-            upright ? painter.drawLine(QPointF(at, all.top()), QPointF(at, all.bottom()))
-                    : painter.drawLine(QPointF(all.left(), at), QPointF(all.right(), at));
-        }
-    };
-    lines(true);
-    lines(false);
+/// Only the pixels that are seen are scaled: a large picture costs no more than a small one.
+void StencilCanvas::draw_picture(QPainter& painter, const QRect& part) const {
+    const GridSpan span = m_mapping.seen();
+    const QRect seen(QPoint(static_cast<int>(span.first_column), static_cast<int>(span.first_row)),
+                     QPoint(static_cast<int>(span.last_column) - 1, static_cast<int>(span.last_row) - 1));
+    const QRect stacks =
+        seen.intersected(QRect(stack_at(part.bottomLeft()), stack_at(part.topRight())).adjusted(-1, -1, 1, 1));
+    if (stacks.isEmpty()) return;
+    painter.setRenderHint(QPainter::SmoothPixmapTransform, m_mapping.cell() < 1);
+    painter.drawImage(square_of(stacks), m_image,
+                      QRect(stacks.left(), m_image.height() - 1 - stacks.bottom(), stacks.width(), stacks.height()));
+}
+
+void StencilCanvas::draw_grid(QPainter& painter) const {
+    if (m_mapping.cell() < 6) return;
+    const GridSpan span = m_mapping.seen();
+    const QRectF frame = m_mapping.frame();
+    const auto ink = [](std::size_t line) { return QColor(0, 0, 0, line % 10 == 0 ? 110 : 45); };
+    for (std::size_t column = span.first_column; column <= span.last_column; ++column) {
+        const double x = m_mapping.x_of(static_cast<double>(column));
+        painter.setPen(ink(column));
+        painter.drawLine(QPointF(x, frame.top()), QPointF(x, frame.bottom()));
+    }
+    for (std::size_t row = span.first_row; row <= span.last_row; ++row) {
+        const double y = m_mapping.y_of(static_cast<double>(row));
+        painter.setPen(ink(row));
+        painter.drawLine(QPointF(frame.left(), y), QPointF(frame.right(), y));
+    }
 }
 
 /// The line or rectangle that a release would paint, and the stack that is pointed at.
@@ -196,11 +186,11 @@ void StencilCanvas::draw_wish(QPainter& painter) const {
         if (m_tool == StencilTool::rectangle) {
             painter.drawRect(square_of(QRect(*m_begin, *m_last).normalized()));
         } else {
-            painter.setPen(QPen(ink, std::max(2.0, m_zoom), Qt::SolidLine, Qt::SquareCap));
+            painter.setPen(QPen(ink, std::max(2.0, m_mapping.cell()), Qt::SolidLine, Qt::SquareCap));
             painter.drawLine(place_of(*m_begin), place_of(*m_last));
         }
     }
-    if (!m_cursor || !holds(*m_map, *m_cursor) || m_zoom < 3) return;
+    if (!m_cursor || !holds(*m_map, *m_cursor) || m_mapping.cell() < 3) return;
     painter.setBrush(Qt::NoBrush);
     painter.setPen(QPen(Qt::white, 3));
     painter.drawRect(square_of(QRect(*m_cursor, QSize(1, 1))));
@@ -219,6 +209,11 @@ void StencilCanvas::tell(QPoint stack) {
     if (!holds(*m_map, stack)) return Q_EMIT status({});
     Q_EMIT status(
         tr("row %1, column %2: %3").arg(stack.y() + 1).arg(stack.x() + 1).arg(name_of(at(*m_map, stack))));
+}
+
+/// The pointer goes beyond the picture too, where there is nothing to pick.
+void StencilCanvas::pick(QPoint stack) {
+    if (holds(*m_map, stack)) Q_EMIT block_picked(at(*m_map, stack));
 }
 
 void StencilCanvas::begin_stroke(QPoint stack) {
@@ -253,6 +248,7 @@ void StencilCanvas::end_stroke() {
     m_last.reset();
     changed(part);
     update();
+    if (m_cursor) tell(*m_cursor);  // which may be of another block now
     if ((!m_stroke_changed && part.isEmpty()) || m_map->blocks == m_before->blocks) return;
     const QString words[] = {tr("Paint with %1"), tr("Line of %1"), tr("Rectangle of %1"), tr("Fill with %1"),
                              QString()};
@@ -265,6 +261,7 @@ void StencilCanvas::give_up_stroke() {
     m_begin.reset();
     m_last.reset();
     take_rows(*m_before);
+    if (m_cursor) tell(*m_cursor);
     update();
 }
 
@@ -273,17 +270,17 @@ void StencilCanvas::mousePressEvent(QMouseEvent* event) {
     if (event->button() == Qt::MiddleButton) {
         m_panning = event->position();
     } else if (event->button() == Qt::LeftButton && m_tool == StencilTool::pick) {
-        if (holds(*m_map, stack)) Q_EMIT block_picked(at(*m_map, stack));
+        pick(stack);
     } else if (event->button() == Qt::LeftButton && !m_image.isNull()) {
         begin_stroke(stack);
-    } else if (event->button() == Qt::RightButton && holds(*m_map, stack)) {
-        Q_EMIT block_picked(at(*m_map, stack));
+    } else if (event->button() == Qt::RightButton) {
+        pick(stack);
     }
 }
 
 void StencilCanvas::mouseMoveEvent(QMouseEvent* event) {
     if (m_panning) {
-        m_origin += event->position() - *m_panning;
+        m_mapping.move(event->position() - *m_panning);
         m_panning = event->position();
         return update();
     }
@@ -310,7 +307,7 @@ void StencilCanvas::leaveEvent(QEvent*) {
 }
 
 bool StencilCanvas::event(QEvent* event) {
-    return claims_key(*this, *event) || QWidget::event(event);
+    return claims_key(*this, *event) || claims_key(*event, {Qt::Key_Space}) || QWidget::event(event);
 }
 
 /// Arrows lead the cursor, Space or Enter paints at it: a line or rectangle begins with one and ends with the
@@ -336,7 +333,7 @@ void StencilCanvas::keyPressEvent(QKeyEvent* event) {
         case Qt::Key_Space:
         case Qt::Key_Return:
         case Qt::Key_Enter: {
-            if (m_tool == StencilTool::pick) return Q_EMIT block_picked(at(*m_map, cursor));
+            if (m_tool == StencilTool::pick) return pick(cursor);
             const bool two = m_tool == StencilTool::line || m_tool == StencilTool::rectangle;
             if (!m_begin)
                 begin_stroke(cursor);

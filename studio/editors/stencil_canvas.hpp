@@ -1,6 +1,7 @@
 #pragma once
 
 #include <studio/editors/bubble.hpp>
+#include <studio/editors/grid_rulers.hpp>
 #include <studio/editors/stencil_raster.hpp>
 
 #include <QColor>
@@ -30,13 +31,14 @@ class StencilCanvas : public QWidget {
     /// A reason why nothing may be painted now; empty where it may.
     void set_obstacle(const QString& why) { m_obstacle = why; }
     [[nodiscard]] const StencilMap& map() const { return *m_map; }
+    [[nodiscard]] const GridMapping& mapping() const { return m_mapping; }
     [[nodiscard]] StencilTool tool() const { return m_tool; }
     /// The middle of a stack's square in the widget; x its column, y its row.
     [[nodiscard]] QPoint place_of(QPoint stack) const;
     [[nodiscard]] QSize sizeHint() const override;
     void fit();
-    void zoom_in() { zoom_by(1.5, QPointF(rect().center())); }
-    void zoom_out() { zoom_by(1 / 1.5, QPointF(rect().center())); }
+    void zoom_in() { zoom_by(1.5, m_mapping.room().center()); }
+    void zoom_out() { zoom_by(1 / 1.5, m_mapping.room().center()); }
     void refuse(const QString& why, QPoint place);
 
   Q_SIGNALS:
@@ -66,8 +68,10 @@ class StencilCanvas : public QWidget {
     void lead_stroke(QPoint stack);
     void end_stroke();
     void give_up_stroke();
-    void draw_grid(QPainter& painter, const QRectF& part) const;
+    void draw_picture(QPainter& painter, const QRect& part) const;
+    void draw_grid(QPainter& painter) const;
     void draw_wish(QPainter& painter) const;
+    void pick(QPoint stack);
     void tell(QPoint stack);
     [[nodiscard]] QString name_of(std::uint16_t block) const;
 
@@ -79,9 +83,8 @@ class StencilCanvas : public QWidget {
     QString m_obstacle;
     StencilTool m_tool = StencilTool::pencil;
     std::uint16_t m_block = 0;
-    double m_zoom = 16;  ///< pixels of a stack
-    QPointF m_origin;    ///< of the picture's top left corner
-    bool m_fitted = false;
+    GridMapping m_mapping;
+    GridRulers m_rulers;
     std::optional<QPoint> m_begin, m_last;  ///< of the stroke, as stacks
     std::optional<QPoint> m_cursor;         ///< the stack under the pointer, or that keys lead
     std::optional<QPointF> m_panning;

@@ -111,6 +111,7 @@ PictureMapDialog::PictureMapDialog(const std::vector<CountedColour>& colours,
     area->setMinimumWidth(table->sizeHint().width() + area->verticalScrollBar()->sizeHint().width());
     m_trouble->setObjectName("trouble");
     m_trouble->setWordWrap(true);
+    m_trouble->setTextFormat(Qt::PlainText);
     auto* buttons = new QDialogButtonBox(QDialogButtonBox::Ok | QDialogButtonBox::Cancel, this);
     m_accept = buttons->button(QDialogButtonBox::Ok);
     m_accept->setText(tr("Use the picture"));

@@ -59,6 +59,7 @@ StencilEditor::StencilEditor(QWidget* parent)
     split->setSizes({600, 200});
     m_trouble->setObjectName("stencil_trouble");
     m_trouble->setWordWrap(true);
+    m_trouble->setTextFormat(Qt::PlainText);
     m_trouble->setMargin(4);
     m_trouble->setStyleSheet("background: #fdf0e6; color: #7a3300;");
     auto* rows = new QVBoxLayout(this);
@@ -327,9 +328,15 @@ void StencilEditor::ask_size() {
 }
 
 void StencilEditor::choose_picture() {
+    const std::size_t asked = ++m_reading;
     const QString path = QFileDialog::getOpenFileName(this, tr("Picture for the stencil"), {},
                                                       tr("Pictures (*.png *.tif *.tiff *.bmp)"));
-    if (!path.isEmpty()) load_picture(path);
+    if (!path.isEmpty() && asked == m_reading) load_picture(path);
+}
+
+void StencilEditor::drop_questions() {
+    ++m_reading;
+    for (QDialog* dialog : findChildren<QDialog*>(Qt::FindDirectChildrenOnly)) dialog->reject();
 }
 
 void StencilEditor::make_beside(std::function<std::function<void()>()> work) {

@@ -34,6 +34,8 @@ class StencilEditor : public QWidget {
     /// Reads a picture, then asks for the blocks of its colours. What is wrong with it is told in words.
     void load_picture(const QString& path);
     void ask_size();
+    /// Another stencil is shown, or none: a picture that is being read, and the dialogs, were about the last one.
+    void drop_questions();
 
   Q_SIGNALS:
     void edited(const weave::StencilOperation& operation, const QString& what);

@@ -1,5 +1,7 @@
 #include <studio/editors/stencil_palette.hpp>
 
+#include <studio/editors/plain_text.hpp>
+
 #include <QHBoxLayout>
 #include <QLabel>
 #include <QPainter>
@@ -106,7 +108,7 @@ void StencilPalette::show_entries(const std::vector<PaletteEntry>& entries) {
         if (!entry.reason.isEmpty()) words = entry.name + "\n" + entry.reason;
         auto* item = new QListWidgetItem(icon_of(entry, fontMetrics().height() * 2, devicePixelRatioF()),
                                          words, m_list);
-        item->setToolTip(entry.reason.isEmpty() ? entry.name : entry.reason);
+        item->setToolTip(as_plain(entry.reason.isEmpty() ? entry.name : entry.reason));
         if (!entry.reason.isEmpty()) item->setForeground(palette().color(QPalette::Disabled, QPalette::Text));
     }
     m_list->setCurrentRow(std::min(was, m_list->count() - 1));
@@ -125,7 +127,7 @@ void StencilPalette::show_choices(const std::vector<BlockChoice>& choices) {
                                             [this, name = choice.name] { Q_EMIT add_wanted(name); });
         action->setEnabled(choice.reason.isEmpty());
         action->setObjectName(choice.name);
-        action->setToolTip(words);
+        action->setToolTip(as_plain(words));
     }
     if (choices.empty()) m_menu->addAction(tr("The design has no block to add"))->setEnabled(false);
 }

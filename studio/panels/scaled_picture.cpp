@@ -68,6 +68,13 @@ void ScaledPicture::mouseReleaseEvent(QMouseEvent* event) {
         Q_EMIT large_wanted();
 }
 
+/// Space is its own while it has the focus, and no command of the window.
+bool ScaledPicture::event(QEvent* event) {
+    if (event->type() != QEvent::ShortcutOverride || static_cast<QKeyEvent*>(event)->key() != Qt::Key_Space) return QWidget::event(event);
+    event->accept();
+    return true;
+}
+
 void ScaledPicture::keyPressEvent(QKeyEvent* event) {
     if (event->key() == Qt::Key_Return || event->key() == Qt::Key_Enter || event->key() == Qt::Key_Space)
         return Q_EMIT large_wanted();

@@ -11,6 +11,8 @@
 
 #include <functional>
 #include <studio/editors/card_editor.hpp>
+#include <studio/editors/slice_editor.hpp>
+#include <studio/editors/stencil_editor.hpp>
 #include <studio/panels/simulation_panel.hpp>
 #include <studio/viewport/viewer_panel.hpp>
 #include <studio/window/block_actions.hpp>
@@ -97,15 +99,18 @@ void MainWindow::make_edit_menu() {
 void MainWindow::make_view_menu() {
     QMenu& menu = *menuBar()->addMenu(tr("&View"));
     // One key for the editor in which the person is: the viewer has its own.
-    const auto in_sight = [this](auto viewer, auto card) {
-        return [this, viewer, card] {
+    const auto in_sight = [this](auto viewer, auto canvas) {
+        return [this, viewer, canvas] {
             Viewport* viewport = m_viewer->viewport();
-            viewport != nullptr && viewport->hasFocus() ? viewer(*viewport) : card(m_card->canvas());
+            if (viewport != nullptr && viewport->hasFocus()) return viewer(*viewport);
+            if (m_stencil->isVisible()) return canvas(m_stencil->canvas());
+            if (m_slice->isVisible()) return canvas(m_slice->canvas_in_sight());
+            canvas(m_card->canvas());
         };
     };
-    add(menu, tr("&Larger"), QKeySequence("+"), in_sight([](Viewport& view) { view.zoom(1.25); }, [](GridCanvas& card) { card.zoom_by(1.4); }));
-    add(menu, tr("&Smaller"), QKeySequence("-"), in_sight([](Viewport& view) { view.zoom(0.8); }, [](GridCanvas& card) { card.zoom_by(1 / 1.4); }));
-    add(menu, tr("&Fit"), QKeySequence("F"), in_sight([](Viewport& view) { view.fit(); }, [](GridCanvas& card) { card.fit(); }));
+    add(menu, tr("&Larger"), QKeySequence("+"), in_sight([](Viewport& view) { view.zoom(1.25); }, [](auto& canvas) { canvas.zoom_in(); }));
+    add(menu, tr("&Smaller"), QKeySequence("-"), in_sight([](Viewport& view) { view.zoom(0.8); }, [](auto& canvas) { canvas.zoom_out(); }));
+    add(menu, tr("&Fit"), QKeySequence("F"), in_sight([](Viewport& view) { view.fit(); }, [](auto& canvas) { canvas.fit(); }));
     menu.addSeparator();
     const std::vector<std::pair<StandardView, QString>> views{{StandardView::face, tr("Face")}, {StandardView::back, tr("Back")},
                                                               {StandardView::warp_side, tr("Along the picks (warp side)")}, {StandardView::weft_side, tr("Along the ends (weft side)")},

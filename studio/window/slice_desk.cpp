@@ -4,6 +4,7 @@
 
 #include <algorithm>
 #include <studio/commands/change_block.hpp>
+#include <utility>
 
 namespace weave::studio {
 
@@ -36,6 +37,7 @@ void SliceDesk::show_document(Document* document) {
 
 void SliceDesk::show_section(System dots, const CardPlace& place) {
     m_dots = dots;
+    m_goes_there = true;
     if (m_document != nullptr) m_document->focus().go_to(place);
 }
 
@@ -50,6 +52,7 @@ void SliceDesk::show_block() {
     const auto found = design.blocks.find(m_document->shown_block());
     if (found == design.blocks.end()) return;
     if (const auto* leaf = std::get_if<SliceLeaf>(&found->second->source)) {
+        m_goes_there = false;  // a drawing is shown whole
         m_editor.set_design(design);
         return m_editor.show_slice(leaf->slice);
     }
@@ -60,6 +63,7 @@ void SliceDesk::show_read(const BlockPtr& block) {
     const CardPlace place = m_document->focus().place().value_or(CardPlace{});
     const std::size_t line = m_dots == System::weft ? block->column_of_end(std::min(place.end, block->ends() - 1))
                                                     : block->row_of_pick(std::min(place.pick, block->picks() - 1));
+    if (std::exchange(m_goes_there, false)) m_editor.reader().go_to(place.pick, place.end);
     m_editor.show_block(m_document->design(), block, m_dots, line);
 }
 

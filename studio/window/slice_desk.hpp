@@ -35,6 +35,7 @@ class SliceDesk : public QObject {
     SliceEditor& m_editor;
     Document* m_document = nullptr;
     System m_dots = System::weft;
+    bool m_goes_there = false;  ///< the section was asked for at the place of the focus
 };
 
 }  // namespace weave::studio

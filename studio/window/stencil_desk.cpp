@@ -9,8 +9,8 @@ namespace weave::studio {
 
 StencilDesk::StencilDesk(StencilEditor& editor, QObject* parent) : QObject(parent), m_editor(editor) {
     connect(&editor, &StencilEditor::edited, this, [this](const StencilOperation& operation, const QString& what) {
-        if (m_document == nullptr) return;
-        const Status made = m_document->perform(change_block(m_document->design(), m_document->shown_block(), operation, what));
+        if (m_document == nullptr || m_shown_block.empty()) return;
+        const Status made = m_document->perform(change_block(m_document->design(), m_shown_block, operation, what));
         if (!made) Q_EMIT failed(QString::fromStdString(made.error().text()));
     });
 }
@@ -22,6 +22,7 @@ void StencilDesk::show_document(Document* document) {
     }
     m_document = document;
     m_shown_block.clear();
+    m_editor.drop_questions();
     if (document == nullptr) return;
     connect(document, &Document::edited, this, &StencilDesk::show_block);
     connect(document, &Document::block_made, this, &StencilDesk::note_made);
@@ -34,10 +35,13 @@ void StencilDesk::show_block() {
     const auto found = design.blocks.find(m_document->shown_block());
     const auto* stencil = found == design.blocks.end() ? nullptr : std::get_if<StencilOperation>(&found->second->source);
     Q_EMIT is_stencil(stencil != nullptr);
-    if (stencil == nullptr) return m_shown_block.clear();
+    const std::string shown = stencil == nullptr ? std::string() : found->first;
+    const bool is_other = shown != m_shown_block;
+    m_shown_block = shown;
+    if (is_other) m_editor.drop_questions();
+    if (stencil == nullptr) return;
     // Most edits, such as flips, leave the stencil as it is.
-    if (m_shown_block == found->first && m_shown.map == stencil->map && m_shown.of == stencil->of) return;
-    m_shown_block = found->first;
+    if (!is_other && m_shown.map == stencil->map && m_shown.of == stencil->of) return;
     m_shown = *stencil;
     list_blocks();
     m_editor.show_operation(*stencil);

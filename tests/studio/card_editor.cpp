@@ -1,11 +1,17 @@
 #include <weave/samples/samples.hpp>
 
+#include <weave/picture/float_map.hpp>
+
+#include <studio/commands/change_block.hpp>
 #include <studio/editors/card_editor.hpp>
+#include <studio/editors/float_legend.hpp>
+#include <studio/editors/plain_text.hpp>
 
 #include <QtTest>
 
 #include <QComboBox>
 #include <QSpinBox>
+#include <QTextDocumentFragment>
 #include <QToolTip>
 
 #include <catch2/catch.hpp>
@@ -195,4 +201,166 @@ TEST_CASE("squares and places of a grid find one another in every corner") {
             }
         }
     }
+}
+
+TEST_CASE("a card seen from afar is pointed at but not flipped: nobody would see it") {
+    Desk desk("shoe-adult");
+    GridCanvas& canvas = desk.editor.canvas();
+    const GridMapping& mapping = canvas.mapping();
+    REQUIRE(mapping.cell() < GridCanvas::smallest_stroked);
+    QString said;
+    QObject::connect(&desk.editor, &CardEditor::told, &desk.editor, [&](const QString& words) { said = words; });
+    const QPoint middle = mapping.frame().center().toPoint();
+    QTest::mouseClick(&canvas, Qt::LeftButton, {}, middle);
+    CHECK(said.contains("come nearer to flip"));
+    REQUIRE(canvas.cursor_cell());
+    REQUIRE(desk.document.focus().place());
+    CHECK(desk.document.focus().place()->pick == canvas.cursor_cell()->row);
+    CHECK(desk.document.focus().place()->end == canvas.cursor_cell()->column);
+    QTest::mousePress(&canvas, Qt::LeftButton, {}, middle);
+    QTest::mouseMove(&canvas, middle + QPoint(30, 30));
+    QTest::mouseRelease(&canvas, Qt::LeftButton, {}, middle + QPoint(30, 30));
+    QTest::keyClick(&canvas, Qt::Key_Return);
+    CHECK(desk.document.undo_stack().count() == 0);
+    // Near enough, the same click flips.
+    canvas.zoom_by(1.01 * GridCanvas::smallest_stroked / mapping.cell());
+    const GridCell at = *canvas.cursor_cell();
+    for (std::size_t end = at.column; desk.document.undo_stack().count() == 0 && end < at.column + 20; ++end) desk.click(at.row, end);
+    CHECK(desk.document.undo_stack().count() == 1);
+}
+
+TEST_CASE("the cursor stays on the same yarns in every view of the block") {
+    Desk desk("pocket");
+    const Block& block = *desk.document.shown().block;
+    const CardPlace place{29, 20};
+    const GridCell crossing{place.pick, place.end}, stack{block.row_of_pick(place.pick), block.column_of_end(place.end)};
+    REQUIRE(stack != crossing);
+    desk.document.focus().go_to(place);
+    for (const CardMode mode : {CardMode::face_floats, CardMode::layer, CardMode::card, CardMode::back}) {
+        desk.editor.show_mode(mode);
+        const bool is_card = mode == CardMode::card;
+        REQUIRE(QTest::qWaitFor([&] { return desk.editor.canvas().mapping().rows() == (is_card ? block.picks() : block.rows()); }, 20000));
+        CHECK(desk.editor.canvas().cursor_cell() == (is_card ? crossing : stack));
+    }
+    CHECK(desk.document.focus().place()->pick == place.pick);
+    CHECK(desk.document.focus().place()->end == place.end);
+}
+
+TEST_CASE("a click in a repeat leaves the cursor in that repeat") {
+    Desk desk("twill-2-2");
+    for (QSpinBox* box : desk.editor.findChildren<QSpinBox*>()) box->setValue(2);
+    QCoreApplication::processEvents();
+    desk.click(5, 6);
+    desk.settle();
+    CHECK(desk.editor.canvas().cursor_cell() == GridCell{5, 6});
+}
+
+TEST_CASE("all crossings of a stroke that refused are marked until the next press, and the first says why") {
+    Desk desk("pocket");
+    GridCanvas& canvas = desk.editor.canvas();
+    const Block& block = *desk.document.shown().block;
+    std::vector<CardPlace> line;
+    std::vector<GridCell> refused;
+    for (std::size_t pick = 0; refused.size() < 2 && pick < block.picks(); ++pick) {
+        line.clear();
+        refused.clear();
+        for (std::size_t end = 0; end < block.ends(); ++end) line.push_back({pick, end});
+        const FlippedStroke tried = flip_stroke(desk.document, line);
+        if (tried.flipped == 0) continue;
+        for (const RefusedCrossing& one : tried.refused) refused.push_back({one.place.pick, one.place.end});
+    }
+    REQUIRE(refused.size() >= 2);
+    const std::string reason = flip_stroke(desk.document, line).refused.front().reason.message;
+    const QPoint from = desk.at(line.front().pick, line.front().end), to = desk.at(line.back().pick, line.back().end);
+    QTest::mousePress(&canvas, Qt::LeftButton, {}, from);
+    QTest::mouseMove(&canvas, to);
+    QTest::mouseRelease(&canvas, Qt::LeftButton, {}, to);
+    desk.settle();  // the crossings that did flip are shown by now
+    CHECK(desk.document.undo_stack().count() == 1);
+    CHECK(canvas.refused() == refused);
+    CHECK(QToolTip::text().toStdString().find(reason) != std::string::npos);
+    QTest::keyClick(&canvas, Qt::Key_Right);
+    CHECK(canvas.refused().empty());
+    QToolTip::hideText();
+}
+
+TEST_CASE("a block that cannot be made for a while leaves the view where it was") {
+    Desk desk("twill-2-2");
+    const GridMapping& mapping = desk.editor.canvas().mapping();
+    desk.editor.canvas().zoom_by(2.3);
+    const QRectF frame = mapping.frame();
+    const std::string& block = desk.document.shown_block();
+    REQUIRE(desk.document.perform(change_block(desk.document.design(), block, SliceLeaf{}, "empty")));
+    REQUIRE(QTest::qWaitFor([&] { return !desk.document.shown().block; }, 20000));
+    desk.document.undo();
+    REQUIRE(QTest::qWaitFor([&] { return desk.document.shown().block != nullptr; }, 20000));
+    CHECK(mapping.frame() == frame);
+    CHECK_FALSE(mapping.is_fitted());
+}
+
+TEST_CASE("a float map says what its colours mean, in steps that differ in lightness too") {
+    Desk desk("pocket");
+    auto* legend = desk.editor.findChild<FloatLegend*>();
+    REQUIRE(legend != nullptr);
+    CHECK_FALSE(legend->isVisible());
+    desk.editor.show_mode(CardMode::back_floats);
+    REQUIRE(QTest::qWaitFor([&] { return legend->isVisible(); }, 20000));
+    const auto& steps = legend->steps();
+    REQUIRE(steps.size() == 8);
+    CHECK(steps[0].words == "1");
+    CHECK(steps[4].words == "5–6");
+    CHECK(steps[7].words == "≥ 16");
+    const auto is = [](const QColor& colour, Colour other) { return colour == QColor(other.red, other.green, other.blue); };
+    CHECK(is(steps[4].weft, float_colour(6)));
+    CHECK(is(steps[4].warp, float_colour(-5)));
+    CHECK(is(steps[7].weft, float_colour(400)));
+    for (std::size_t k = 1; k < steps.size(); ++k) {
+        CHECK(qGray(steps[k].weft.rgb()) + 12 < qGray(steps[k - 1].weft.rgb()));
+        CHECK(qGray(steps[k].warp.rgb()) + 12 < qGray(steps[k - 1].warp.rgb()));
+    }
+    desk.editor.show_mode(CardMode::card);
+    CHECK_FALSE(legend->isVisible());
+}
+
+TEST_CASE("numbers of a ruler never meet, at the seam of repeats neither") {
+    for (const double cell : {0.3, 1.7, 4.0, 9.0, 40.0}) {
+        for (const std::size_t repeat : {std::size_t{4}, std::size_t{7}, std::size_t{83}, std::size_t{1001}}) {
+            const double room = 21;
+            const PrintedNumbers numbers(cell, room, repeat, 3 * repeat);
+            std::optional<std::size_t> last;
+            for (std::size_t line = 0; line < 3 * repeat; ++line) {
+                if (!numbers.prints(line, line % repeat + 1)) continue;
+                if (last) REQUIRE(static_cast<double>(line - *last) * cell >= room);
+                last = line;
+            }
+            CHECK(numbers.prints(0, 1));
+        }
+    }
+}
+
+TEST_CASE("the triangle at pick 1 is in sight wherever one is on the card, and words stand clear of numbers") {
+    Desk desk("twill-2-2");
+    GridCanvas& canvas = desk.editor.canvas();
+    GridRulers rulers;
+    rulers.set(plain_labels("picks", "ends"), 80, 80);
+    for (const Corner corner : {Corner::bottom_left, Corner::bottom_right, Corner::top_left, Corner::top_right}) {
+        GridMapping mapping;
+        mapping.set_corner(corner);
+        mapping.set_grid(80, 80);
+        mapping.set_room(rulers.room_in(canvas, corner));
+        const int line = canvas.fontMetrics().height();
+        CHECK(mapping.room().bottom() + 3 + line <= canvas.height() - line - 1);
+        for (const QPointF& by : {QPointF(0, 0), QPointF(-900, 900), QPointF(900, -900)}) {
+            mapping.zoom(8, mapping.room().center());
+            mapping.move(by);
+            const QRectF triangle = rulers.origin(canvas, mapping).boundingRect();
+            CHECK(QRectF(canvas.rect()).contains(triangle));
+            CHECK_FALSE(mapping.room().intersects(triangle));
+        }
+    }
+}
+
+TEST_CASE("a tooltip shows a name that looks like markup letter by letter") {
+    for (const QString& words : {QString("plain"), QString("<b>bold</b> & <img src='x'>"), QString("a < b")})
+        CHECK((Qt::mightBeRichText(as_plain(words)) ? QTextDocumentFragment::fromHtml(as_plain(words)).toPlainText() : as_plain(words)) == words);
 }

@@ -113,3 +113,33 @@ TEST_CASE("slice: a flip that cannot be made is not asked for; it says which yar
     REQUIRE(bubble->text().contains("pick 2"));
     REQUIRE(open.status == bubble->text());
 }
+
+TEST_CASE("slice: an edit of a large block leaves the place, and the slice is there all the time") {
+    OpenReader open("shoe-adult", System::weft, 150);
+    open.canvas().go_to(400);
+    const auto place = open.canvas().seen();
+    REQUIRE(place.first > 300);
+    const auto again = std::make_shared<const Block>(*open.block);  // as an edit brings it
+    const BlockSlices* before = open.canvas().slices();
+    open.editor.show_block(open.design, again, System::weft, 150);
+    REQUIRE(open.canvas().slices() == before);
+    REQUIRE(open.canvas().scene().all_positions == open.block->rows());
+    REQUIRE(QTest::qWaitFor([&] { return &open.canvas().slices()->block() == again.get(); }, 60000));
+    REQUIRE(open.canvas().seen() == place);
+    REQUIRE(open.canvas().line() == 150);
+}
+
+TEST_CASE("slice: the same block is not read again, and a mark stays where the line does") {
+    OpenReader open("shoe-adult", System::weft, 150);
+    open.canvas().setFocus();
+    QTest::keyClick(&open.canvas(), Qt::Key_Right);
+    const auto mark = open.canvas().marks().crossing;
+    REQUIRE(mark);
+    const BlockSlices* before = open.canvas().slices();
+    open.editor.show_block(open.design, open.block, System::weft, 150);
+    REQUIRE(open.canvas().marks().crossing == mark);
+    open.editor.show_block(open.design, open.block, System::weft, 151);
+    REQUIRE(open.canvas().slices() == before);
+    REQUIRE(open.canvas().line() == 151);
+    REQUIRE_FALSE(open.canvas().marks().crossing);
+}

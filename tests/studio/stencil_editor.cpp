@@ -60,14 +60,15 @@ struct OpenStencil {
         const auto* label = canvas().findChild<QLabel*>("bubble");
         return label->isVisible() ? label->text() : QString();
     }
+    /// The pointer itself stays where it is: the display's own events would come whenever they like.
+    void hover(QPoint stack, Qt::MouseButtons buttons = Qt::NoButton) {
+        const QPoint place = canvas().place_of(stack);
+        QMouseEvent move(QEvent::MouseMove, place, canvas().mapToGlobal(place), Qt::NoButton, buttons, Qt::NoModifier);
+        QApplication::sendEvent(&canvas(), &move);
+    }
     void drag(const std::vector<QPoint>& stacks) {
         QTest::mousePress(&canvas(), Qt::LeftButton, Qt::NoModifier, canvas().place_of(stacks.front()));
-        for (const QPoint stack : stacks) {
-            const QPoint place = canvas().place_of(stack);
-            QMouseEvent move(QEvent::MouseMove, place, canvas().mapToGlobal(place), Qt::NoButton,
-                             Qt::LeftButton, Qt::NoModifier);
-            QApplication::sendEvent(&canvas(), &move);
-        }
+        for (const QPoint stack : stacks) hover(stack, Qt::LeftButton);
         QTest::mouseRelease(&canvas(), Qt::LeftButton, Qt::NoModifier, canvas().place_of(stacks.back()));
     }
     /// Rows from the top, as they are seen.
@@ -279,6 +280,73 @@ TEST_CASE("stencil: a large map is painted in part") {
     // Shown again as before (undo), then anew.
     open.editor.show_operation(open.edits[0]);
     REQUIRE(open.canvas().map() == *open.edits[0].map);
+}
+
+TEST_CASE("stencil: beyond the picture there is nothing to pick") {
+    OpenStencil open(operation_of(3, 3));
+    open.tool("pick");
+    open.canvas().setFocus();
+    QSignalSpy picked(&open.canvas(), &StencilCanvas::block_picked);
+    for (const QPoint stack : {QPoint(-2, 1), QPoint(1, -2), QPoint(4, 1), QPoint(1, 4)}) {
+        open.hover(stack);
+        QTest::keyClick(&open.canvas(), Qt::Key_Return);
+        QTest::mouseClick(&open.canvas(), Qt::RightButton, Qt::NoModifier, open.canvas().place_of(stack));
+    }
+    REQUIRE(picked.isEmpty());
+    open.hover({1, 1});
+    QTest::keyClick(&open.canvas(), Qt::Key_Return);
+    REQUIRE(picked.size() == 1);
+}
+
+TEST_CASE("stencil: after a stroke the status says what lies under the pointer now") {
+    OpenStencil open(operation_of(3, 3));
+    open.choose(1);
+    open.hover({1, 1});
+    REQUIRE(open.status == "row 2, column 2: plain");
+    open.drag({{1, 1}});
+    REQUIRE(open.status == "row 2, column 2: twill");
+}
+
+TEST_CASE("stencil: rulers stand beside the picture, rows from the bottom") {
+    OpenStencil open(operation_of(12, 12));
+    const QRectF room = open.canvas().mapping().room();
+    const int line = open.canvas().fontMetrics().height();
+    REQUIRE(room.left() > 2 * line);
+    REQUIRE(room.bottom() < open.canvas().height() - 2 * line);
+    const QImage seen = open.canvas().grab().toImage();
+    const auto has_ink = [&](const QRectF& part) {
+        const double ratio = seen.devicePixelRatio();
+        const QRect pixels = QRectF(part.topLeft() * ratio, part.size() * ratio).toRect().intersected(seen.rect());
+        const QRgb ground = seen.pixel(1, 1);
+        for (int y = pixels.top(); y <= pixels.bottom(); ++y) {
+            for (int x = pixels.left(); x <= pixels.right(); ++x)
+                if (seen.pixel(x, y) != ground) return true;
+        }
+        return false;
+    };
+    const QRectF frame = open.canvas().mapping().frame();
+    REQUIRE(has_ink({frame.left() - 2.0 * line, frame.bottom() - line, 1.5 * line, 1.0 * line}));
+    REQUIRE(has_ink({frame.left(), frame.bottom() + 3, frame.width(), 1.0 * line}));
+}
+
+TEST_CASE("stencil: a picture's question is dropped when another stencil is shown") {
+    const Colour red{200, 0, 0};
+    const weave::testing::TemporaryFolder folder;
+    const QString path = QString::fromStdString(picture_file(folder, {2, 2, {red, red, red, red}}));
+    OpenStencil open(operation_of(2, 2));
+    open.editor.load_picture(path);
+    open.editor.drop_questions();  // while it is read
+    QThreadPool::globalInstance()->waitForDone();
+    QCoreApplication::processEvents();
+    REQUIRE(open.editor.findChild<PictureMapDialog*>() == nullptr);
+    open.editor.load_picture(path);
+    REQUIRE(QTest::qWaitFor([&] { return open.editor.findChild<PictureMapDialog*>() != nullptr; }, 60000));
+    const QPointer<QDialog> asks = open.editor.findChild<PictureMapDialog*>();
+    open.editor.ask_size();
+    const QPointer<QDialog> sizes = open.editor.findChild<StencilSizeDialog*>();
+    open.editor.drop_questions();
+    REQUIRE(QTest::qWaitFor([&] { return !asks && !sizes; }, 60000));
+    REQUIRE(open.edits.empty());
 }
 
 TEST_CASE("stencil: screens", "[.screens]") {
