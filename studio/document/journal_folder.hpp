@@ -8,6 +8,7 @@
 #include <optional>
 #include <string>
 #include <string_view>
+#include <utility>
 
 namespace weave::studio {
 
@@ -56,9 +57,9 @@ class JournalFolder {
 
     std::filesystem::path m_path;
     int m_lock = -1, m_journal = -1;
-    std::string m_base;            ///< name of the base that `now` names, and of its journal
-    std::uint64_t m_bytes = 0;     ///< of the journal's whole lines
-    bool m_may_be_torn = false;    ///< something may lie behind them
+    std::string m_base;          ///< name of the base that `now` names, and of its journal
+    std::uint64_t m_bytes = 0;   ///< of the journal's whole lines
+    bool m_may_be_torn = false;  ///< something may lie behind them
 };
 
 }  // namespace weave::studio

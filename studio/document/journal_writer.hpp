@@ -11,6 +11,7 @@
 #include <string>
 #include <studio/document/journal.hpp>
 #include <studio/document/journal_folder.hpp>
+#include <utility>
 
 namespace weave::studio {
 
