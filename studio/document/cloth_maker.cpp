@@ -64,41 +64,41 @@ void ClothMaker::serve(const Wish& wish) {
 
 void ClothMaker::tell(const Wish& wish, const std::string& block, bool always) {
     if (!wish.design.blocks.contains(block)) return;
-    Cloth cloth = made_of(wish, block);
-    const auto before = m_told.find(block);
-    if (before != m_told.end() && before->second && before->second == cloth.block) {
-        if (!always) return;
-        cloth.changed_cells.emplace();
-    } else if (before != m_told.end() && before->second && cloth.block) {
-        cloth.changed_cells = changed_cells(*before->second, *cloth.block);
+    Cloth cloth;
+    try {
+        cloth = made_of(wish, block);
+        if (!always && cloth.block && cloth.block == m_told[block]) return;
+        if (cloth.block) see(cloth, wish, block);
+    } catch (const std::bad_alloc&) {
+        cloth = Cloth();
+        cloth.revision = wish.revision;
+        cloth.error = system_fault("there is not enough memory to make this block", "blocks." + block);
     }
-    if (cloth.block) cloth.thumbnail = thumbnail(wish.design, *cloth.block, thumbnail_side);
-    if (cloth.block && block == wish.first) picture(cloth, block);
     m_told[block] = cloth.block;
     Q_EMIT made(QString::fromStdString(block), cloth);
 }
 
-void ClothMaker::picture(Cloth& cloth, const std::string& block) {
-    // m_picture is of the block of this name that was told last: that one was shown, too.
-    const bool continues = m_pictured == block && m_picture && cloth.changed_cells;
+/// What is shown of a block that was made, and where it differs from the one of this name that was told before.
+void ClothMaker::see(Cloth& cloth, const Wish& wish, const std::string& block) {
+    const BlockPtr before = m_told[block];
+    if (before) cloth.changed_cells = before == cloth.block ? std::vector<std::size_t>() : changed_cells(*before, *cloth.block);
+    cloth.thumbnail = thumbnail(wish.design, *cloth.block, thumbnail_side);
+    if (block != wish.first) return;
+    const bool continues = before && before == m_pictured && cloth.changed_cells;
     cloth.card = continues ? card_picture(*cloth.block, *m_picture, *cloth.changed_cells) : card_picture(*cloth.block);
     m_picture = cloth.card;
-    m_pictured = block;
+    m_pictured = cloth.block;
 }
 
 Cloth ClothMaker::made_of(const Wish& wish, const std::string& block) {
     Cloth cloth;
     cloth.revision = wish.revision;
-    try {
-        auto made = m_evaluator.evaluate(wish.design, block);
-        if (made) {
-            cloth.block = made->block;
-            cloth.lost_flips = std::move(made->lost_flips);
-        } else {
-            cloth.error = std::move(made).error();
-        }
-    } catch (const std::bad_alloc&) {
-        cloth.error = system_fault("there is not enough memory to make this block", "blocks." + block);
+    auto made = m_evaluator.evaluate(wish.design, block);
+    if (made) {
+        cloth.block = made->block;
+        cloth.lost_flips = std::move(made->lost_flips);
+    } else {
+        cloth.error = std::move(made).error();
     }
     return cloth;
 }

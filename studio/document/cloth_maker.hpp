@@ -44,7 +44,7 @@ class ClothMaker : public QObject {
     void work();
     void serve(const Wish& wish);
     void tell(const Wish& wish, const std::string& block, bool always);
-    void picture(Cloth& cloth, const std::string& block);
+    void see(Cloth& cloth, const Wish& wish, const std::string& block);
     [[nodiscard]] Cloth made_of(const Wish& wish, const std::string& block);
     [[nodiscard]] bool is_outdated();
 
@@ -58,7 +58,7 @@ class ClothMaker : public QObject {
     std::map<std::string, BlockPtr> m_told;
     WarpPlan m_warp;
     WeftPlan m_weft;
-    std::string m_pictured;  ///< block that m_picture is of
+    BlockPtr m_pictured;  ///< that m_picture is of
     std::shared_ptr<const CardPicture> m_picture;
     bool m_colours_changed = true;  ///< since all blocks were told
 

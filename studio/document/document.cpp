@@ -14,22 +14,32 @@ class Document::StepCommand : public QUndoCommand {
   public:
     StepCommand(Document& document, const EditStep& step, std::vector<Edit> inverses)
         : QUndoCommand(step.text), m_document(document), m_step(step), m_inverses(std::move(inverses)),
-          m_generation(document.m_generation) {}
+          m_shown(document.shown_block()), m_generation(document.m_generation), m_stroke(document.m_stroke),
+          m_state(++document.m_last_state) {}
 
     /// As the journal has it when it is undone or redone: by itself, unless its step is in the journal as one.
     [[nodiscard]] JournalEntry undo_entry() const { return entry<Undone>(m_inverses); }
     [[nodiscard]] JournalEntry redo_entry() const { return entry<Redone>(m_step.edits); }
+    [[nodiscard]] std::uint64_t state() const { return m_state; }
+    [[nodiscard]] bool is_stroke() const { return !m_step.key.isEmpty() && m_stroke == m_document.m_stroke; }
 
-    void undo() override { make(m_inverses); }
+    void undo() override {
+        const std::string left = m_document.shown_block();
+        make(m_inverses);
+        if (!m_document.design().blocks.contains(left)) m_made = left;
+        m_document.note_change(m_shown);
+    }
     void redo() override {
         if (!std::exchange(m_is_made, true)) return;
         make(m_step.edits);
+        m_document.note_change(m_made.empty() ? m_shown : m_made);
     }
     [[nodiscard]] int id() const override { return m_step.key.isEmpty() ? -1 : 1; }
     bool mergeWith(const QUndoCommand* other) override {
         const auto* later = dynamic_cast<const StepCommand*>(other);
-        if (later == nullptr || later->m_step.key != m_step.key) return false;
+        if (later == nullptr || later->m_step.key != m_step.key || later->m_stroke != m_stroke) return false;
         m_step = later->m_step;
+        m_state = later->m_state;
         return true;
     }
 
@@ -42,19 +52,21 @@ class Document::StepCommand : public QUndoCommand {
     void make(const std::vector<Edit>& edits) {
         std::vector<Edit> ignored;
         if (Status made = m_document.make(edits, ignored); !made) log(LogLevel::warning, "a step cannot be repeated: " + made.error().text());
-        m_document.note_change();
     }
 
     Document& m_document;
     EditStep m_step;
     std::vector<Edit> m_inverses;  ///< in the order in which they undo the step
+    std::string m_shown;           ///< block in which it was made: undone or redone, it is seen there
+    std::string m_made;            ///< block that it made and that was shown then
     bool m_is_made = false;
     std::uint64_t m_generation;  ///< of the document's journal when it was made
+    std::uint64_t m_stroke, m_state;
 };
 
 Document::Document(Design design, const QString& path, bool is_saved, const std::filesystem::path& recoveries)
     : m_design(std::move(design)), m_path(path), m_keeper(recoveries) {
-    if (!is_saved) m_undo.resetClean();
+    if (!is_saved) m_saved_state.reset();
     m_keeper.begin(m_design, m_path, is_saved);
     m_focus.show_block(m_design.root);
     connect_parts();
@@ -63,10 +75,12 @@ Document::Document(Design design, const QString& path, bool is_saved, const std:
 
 Document::Document(Recovery recovery, const std::filesystem::path& recoveries)
     : m_design(std::move(recovery.base)), m_path(recovery.path), m_keeper(recoveries) {
-    if (!recovery.base_was_saved) m_undo.resetClean();
+    if (!recovery.base_was_saved) m_saved_state.reset();
+    recovery.base = m_design;  // the keeper asks what the file held
     m_focus.show_block(m_design.root);
     replay(recovery.entries);
     m_keeper.resume(recovery);
+    end_stroke();  // nobody draws on what another program began
     connect_parts();
     ask_for_cloth();
 }
@@ -78,12 +92,15 @@ Document::~Document() {
 void Document::connect_parts() {
     connect(&m_maker, &ClothMaker::made, this, &Document::take);
     connect(&m_focus, &Focus::block_changed, this, &Document::ask_for_cloth);
+    connect(&m_focus, &Focus::block_changed, this, [this] { m_keeper.record(BlockShown{m_focus.block()}); });
     connect(&m_keeper, &Keeper::saved, this, [this](const QString& path) {
+        end_save(true);
         if (path == m_path) return;
         m_path = path;
         Q_EMIT path_changed();
     });
-    connect(&m_keeper, &Keeper::not_saved, &m_undo, &QUndoStack::resetClean);
+    connect(&m_keeper, &Keeper::not_saved, this, [this] { end_save(false); });
+    connect(&m_keeper, &Keeper::changed_outside, this, [this] { end_save(false); });
 }
 
 QString Document::name() const {
@@ -120,6 +137,7 @@ Status Document::perform(const EditStep& step) {
     WEAVE_CHECK_OK(push(step));
     m_keeper.record(step);
     note_change();
+    Q_EMIT modified_changed();
     return {};
 }
 
@@ -133,27 +151,49 @@ void Document::redo() {
 
 /// A journal that begins anew at a save knows nothing of earlier steps. Undoing one of those is told to it as a step, and from
 /// then on the stack that replaying it would make is another one than this: all steps so far are told to it so.
-void Document::go(int command, JournalEntry (StepCommand::*entry)() const, void (QUndoStack::*move)()) {
-    const JournalEntry told = (static_cast<const StepCommand*>(m_undo.command(command))->*entry)();
+void Document::go(int index, JournalEntry (StepCommand::*entry)() const, void (QUndoStack::*move)()) {
+    end_stroke();
+    const JournalEntry told = (command(index)->*entry)();
     if (std::holds_alternative<EditStep>(told)) ++m_generation;
     m_keeper.record(told);
     (m_undo.*move)();
+    ++m_stroke;  // what was undone or redone is not drawn on
+    Q_EMIT modified_changed();
+}
+
+void Document::end_stroke() {
+    if (m_undo.index() == 0 || !command(m_undo.index() - 1)->is_stroke()) return;
+    ++m_stroke;
+    m_keeper.record(StrokeEnd{});
+}
+
+const Document::StepCommand* Document::command(int index) const {
+    return static_cast<const StepCommand*>(m_undo.command(index));
+}
+
+std::uint64_t Document::state() const {
+    return m_undo.index() == 0 ? 0 : command(m_undo.index() - 1)->state();
 }
 
 void Document::replay(const std::vector<JournalEntry>& entries) {
     for (const JournalEntry& entry : entries) {
-        if (std::holds_alternative<Undone>(entry)) {
-            m_undo.undo();
-        } else if (std::holds_alternative<Redone>(entry)) {
-            m_undo.redo();
-        } else if (Status made = push(std::get<EditStep>(entry)); !made) {
-            log(LogLevel::warning, "a step of unsaved work does not apply: " + made.error().text());
+        if (const auto* step = std::get_if<EditStep>(&entry)) {
+            if (Status made = push(*step); !made) log(LogLevel::warning, "a step of unsaved work does not apply: " + made.error().text());
+        } else if (const auto* shown = std::get_if<BlockShown>(&entry)) {
+            if (m_design.blocks.contains(shown->block)) m_focus.show_block(shown->block);
+        } else {
+            if (std::holds_alternative<Undone>(entry)) m_undo.undo();
+            if (std::holds_alternative<Redone>(entry)) m_undo.redo();
+            ++m_stroke;
         }
     }
+    if (!m_design.blocks.contains(m_focus.block())) m_focus.show_block(m_design.root);
 }
 
-void Document::note_change() {
+/// `shown`: block to be shown, where there is one of this name.
+void Document::note_change(const std::string& shown) {
     ++m_revision;
+    if (m_design.blocks.contains(shown)) m_focus.show_block(shown);
     if (!m_design.blocks.contains(m_focus.block())) m_focus.show_block(m_design.root);
     ask_for_cloth();
     Q_EMIT edited();
@@ -196,10 +236,20 @@ const BlockGrid* Document::grid_of(const std::string& block) const {
 
 // ---- The file ----
 
-void Document::save(const QString& path) {
-    m_undo.setClean();
+void Document::save(const QString& path, Keeper::Overwrite what) {
+    end_stroke();  // what is saved can be come back to
+    m_saving.push_back(state());
     ++m_generation;
-    m_keeper.save(m_design, path);
+    m_keeper.save(m_design, path, m_focus.block(), what);
+    Q_EMIT modified_changed();
+}
+
+/// Not saved: nobody knows what the file holds now.
+void Document::end_save(bool is_saved) {
+    m_saved_state.reset();
+    if (is_saved) m_saved_state = m_saving.front();
+    m_saving.pop_front();
+    Q_EMIT modified_changed();
 }
 
 }  // namespace weave::studio

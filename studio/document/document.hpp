@@ -8,9 +8,11 @@
 #include <QUndoStack>
 
 #include <cstdint>
+#include <deque>
 #include <filesystem>
 #include <map>
 #include <memory>
+#include <optional>
 #include <string>
 #include <studio/document/cloth.hpp>
 #include <studio/document/cloth_maker.hpp>
@@ -35,7 +37,9 @@ class Document : public QObject {
     [[nodiscard]] const QString& path() const { return m_path; }
     /// As window titles have it: the design's title, else its file's name.
     [[nodiscard]] QString name() const;
-    [[nodiscard]] bool is_modified() const { return !m_undo.isClean(); }
+    /// Whether its file holds something else than the design as it stands; until a save has ended, what it held before.
+    [[nodiscard]] bool is_modified() const { return m_saved_state != state(); }
+    [[nodiscard]] bool is_saving() const { return !m_saving.empty(); }
     /// Grows with each change of the design.
     [[nodiscard]] std::uint64_t revision() const { return m_revision; }
 
@@ -43,9 +47,10 @@ class Document : public QObject {
     Status perform(const EditStep& step);
     void undo();
     void redo();
+    /// What is drawn or typed came to its end: no later step takes the place of the last one.
+    void end_stroke();
     /// For texts and states of actions; undo and redo go through this document.
     [[nodiscard]] const QUndoStack& undo_stack() const { return m_undo; }
-    [[nodiscard]] QUndoStack& undo_stack() { return m_undo; }
 
     Focus& focus() { return m_focus; }
     /// Name of the block that editors show.
@@ -60,8 +65,8 @@ class Document : public QObject {
     /// Picks of the rows and ends of the columns of a block, as it was made last; null where it was not.
     [[nodiscard]] const BlockGrid* grid_of(const std::string& block) const;
 
-    /// Writes the file in the background; saved() or not_saved() follows.
-    void save(const QString& path);
+    /// Writes the file in the background; a signal of the keeper tells what came of it.
+    void save(const QString& path, Keeper::Overwrite what = Keeper::Overwrite::what_is_known);
     /// Nothing of it is to be recovered: it was closed, saved or not.
     void discard() { m_keeper.discard(); }
     Keeper& keeper() { return m_keeper; }
@@ -69,6 +74,8 @@ class Document : public QObject {
   Q_SIGNALS:
     /// The design changed.
     void edited();
+    /// is_modified() or is_saving() may have changed.
+    void modified_changed();
     /// The block that is shown was made anew, or another one is shown.
     void shown_made();
     /// The design's own cloth was made anew.
@@ -79,11 +86,14 @@ class Document : public QObject {
   private:
     class StepCommand;
     void connect_parts();
-    void go(int command, JournalEntry (StepCommand::*entry)() const, void (QUndoStack::*move)());
+    void end_save(bool is_saved);
+    [[nodiscard]] std::uint64_t state() const;
+    [[nodiscard]] const StepCommand* command(int index) const;
+    void go(int index, JournalEntry (StepCommand::*entry)() const, void (QUndoStack::*move)());
     void replay(const std::vector<JournalEntry>& entries);
     Status push(const EditStep& step);
     Status make(const std::vector<Edit>& edits, std::vector<Edit>& inverses);
-    void note_change();
+    void note_change(const std::string& shown = {});
     void ask_for_cloth();
     void take(const QString& block, const Cloth& cloth);
 
@@ -91,6 +101,10 @@ class Document : public QObject {
     QString m_path;
     std::uint64_t m_revision = 1;
     std::uint64_t m_generation = 0;  ///< of the journal: steps of an earlier one are not in it as they stand on the stack
+    std::uint64_t m_last_state = 0;  ///< each step has a number of its own, also one that took another's place
+    std::optional<std::uint64_t> m_saved_state = 0;  ///< that the file holds; none: no state that there is
+    std::deque<std::uint64_t> m_saving;              ///< states that are being saved
+    std::uint64_t m_stroke = 0;
     QUndoStack m_undo;
     Focus m_focus;
     Cloth m_shown, m_whole;

@@ -10,8 +10,8 @@
 
 namespace weave::studio {
 
-/// What a person looks at: the block that all editors show, and a place in it. No edit changes it by itself, so that
-/// nothing jumps when something is undone.
+/// What a person looks at: the block that all editors show, and a place in it. No edit changes it by itself; what is undone or
+/// redone is seen in the block in which it was done.
 class Focus : public QObject {
     Q_OBJECT
   public:

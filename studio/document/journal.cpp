@@ -14,6 +14,10 @@ Json form_of(const EditStep& step) {
     return {{"text", step.text.toStdString()}, {"key", step.key.toStdString()}, {"edits", std::move(edits)}};
 }
 
+std::string text_of(const Json& form) {
+    return form.dump(-1, ' ', false, Json::error_handler_t::replace);
+}
+
 std::optional<QString> text_in(const Json& form, const char* name) {
     const auto found = form.find(name);
     if (found == form.end() || !found->is_string()) return std::nullopt;
@@ -39,9 +43,11 @@ std::optional<JournalEntry> entry_of(std::string_view line) {
     if (form->is_string()) {
         if (*form == "undone") return Undone{};
         if (*form == "redone") return Redone{};
+        if (*form == "stroke ended") return StrokeEnd{};
         return std::nullopt;
     }
     if (!form->is_object()) return std::nullopt;
+    if (const auto shown = text_in(*form, "shown")) return BlockShown{shown->toStdString()};
     auto step = step_of(*form);
     if (!step) return std::nullopt;
     return JournalEntry(std::move(*step));
@@ -52,7 +58,13 @@ std::optional<JournalEntry> entry_of(std::string_view line) {
 std::string journal_line(const JournalEntry& entry) {
     if (std::holds_alternative<Undone>(entry)) return "\"undone\"\n";
     if (std::holds_alternative<Redone>(entry)) return "\"redone\"\n";
-    return form_of(std::get<EditStep>(entry)).dump(-1, ' ', false, Json::error_handler_t::replace) + "\n";
+    if (std::holds_alternative<StrokeEnd>(entry)) return "\"stroke ended\"\n";
+    if (const auto* shown = std::get_if<BlockShown>(&entry)) return text_of({{"shown", shown->block}}) + "\n";
+    return text_of(form_of(std::get<EditStep>(entry))) + "\n";
+}
+
+bool is_of_design(const JournalEntry& entry) {
+    return !std::holds_alternative<StrokeEnd>(entry) && !std::holds_alternative<BlockShown>(entry);
 }
 
 ReadJournal read_journal(std::string_view text) {
@@ -61,7 +73,10 @@ ReadJournal read_journal(std::string_view text) {
         const std::size_t end = text.find('\n');
         std::optional<JournalEntry> entry;
         if (end != std::string_view::npos) entry = entry_of(text.substr(0, end));
-        if (!entry) return read;
+        if (!entry) {
+            read.is_understood = end == std::string_view::npos;
+            return read;
+        }
         read.entries.push_back(std::move(*entry));
         read.bytes += end + 1;
         text.remove_prefix(end + 1);

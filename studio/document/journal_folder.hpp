@@ -3,10 +3,12 @@
 #include <weave/core/result.hpp>
 #include <weave/design/design.hpp>
 
+#include <cstdint>
 #include <filesystem>
 #include <optional>
 #include <string>
 #include <string_view>
+#include <utility>
 
 namespace weave::studio {
 
@@ -23,11 +25,12 @@ class JournalFolder {
     JournalFolder& operator=(JournalFolder&& other) noexcept;
     ~JournalFolder();
 
-    /// Writes the base, and empties the journal behind it. `path`: of the design's file, or empty.
-    Status begin(const Design& design, const std::string& path, bool is_saved);
+    /// Puts a new base and the lines behind it in the place of what was there. After an error that is as it was, and goes on.
+    /// `path`: of the design's file, or empty.
+    Status begin(const Design& design, const std::string& path, bool is_saved, std::string_view lines = {});
     /// Goes on behind so many bytes of the journal that is there; what lies beyond is torn and goes.
-    Status resume(std::size_t bytes);
-    /// Adds a line of the journal.
+    Status resume(std::uint64_t bytes);
+    /// Adds a line of the journal, whole or not at all.
     Status add(std::string_view line);
     /// Brings what was added onto the disk.
     Status sync();
@@ -46,12 +49,17 @@ class JournalFolder {
 
   private:
     JournalFolder(std::filesystem::path path, int lock) : m_path(std::move(path)), m_lock(lock) {}
-    Status open_journal();
+    [[nodiscard]] std::filesystem::path file(const std::string& base, const char* kind) const { return m_path / (base + kind); }
+    [[nodiscard]] Result<int> opened_journal(const std::string& base) const;
+    void use_journal(std::string base, int journal, std::uint64_t bytes);
+    Status cut_torn_line();
     void close_files();
 
     std::filesystem::path m_path;
     int m_lock = -1, m_journal = -1;
-    std::string m_base;  ///< name of the base's file: each has its own journal
+    std::string m_base;          ///< name of the base that `now` names, and of its journal
+    std::uint64_t m_bytes = 0;   ///< of the journal's whole lines
+    bool m_may_be_torn = false;  ///< something may lie behind them
 };
 
 }  // namespace weave::studio

@@ -1,51 +1,21 @@
 #include <studio/document/keeper.hpp>
 
 #include <weave/core/log.hpp>
-#include <weave/design/document.hpp>
 
 #include <QStandardPaths>
+#include <QTimer>
 
+#include <algorithm>
 #include <chrono>
+#include <new>
+#include <optional>
+#include <studio/document/design_file.hpp>
+#include <studio/document/journal_writer.hpp>
 #include <utility>
 
 namespace weave::studio {
 
 using namespace std::chrono_literals;
-
-/// The journal of the thread, and whether it can be written.
-class Keeper::Folder {
-  public:
-    explicit Folder(std::filesystem::path parent) : m_parent(std::move(parent)) {}
-
-    Status begin(const Design& design, const std::string& path, bool is_saved) {
-        if (!m_folder) {
-            auto made = JournalFolder::make(m_parent);
-            if (!made) return std::move(made).error();
-            m_folder = std::make_shared<JournalFolder>(std::move(*made));
-        }
-        return m_folder->begin(design, path, is_saved);
-    }
-    Status resume(const Recovery& recovery) {
-        m_folder = recovery.folder;
-        return m_folder->resume(recovery.journal_bytes);
-    }
-    Status add(const JournalEntry& entry) {
-        if (!m_folder) return {};  // told when it could not be made
-        m_is_dirty = true;
-        return m_folder->add(journal_line(entry));
-    }
-    Status sync() { return m_folder && std::exchange(m_is_dirty, false) ? m_folder->sync() : Status(); }
-    void remove() {
-        if (m_folder) m_folder->remove();
-        m_folder.reset();
-    }
-    [[nodiscard]] bool is_dirty() const { return m_is_dirty; }
-
-  private:
-    std::filesystem::path m_parent;
-    std::shared_ptr<JournalFolder> m_folder;
-    bool m_is_dirty = false;
-};
 
 namespace {
 
@@ -53,132 +23,187 @@ QString words(const Error& error) {
     return QString::fromStdString(error.text());
 }
 
+/// What `deed` comes to, where memory may end within it.
+template <class Deed>
+Status tried(const Deed& deed) {
+    try {
+        return deed();
+    } catch (const std::bad_alloc&) {
+        return system_fault("there is not enough memory to keep the design");
+    }
+}
+
+Status all_written(JournalWriter& journal) {
+    WEAVE_CHECK_OK(journal.catch_up());
+    return journal.sync();
+}
+
 }  // namespace
 
 Keeper::Keeper(std::filesystem::path recoveries, QObject* parent)
-    : QObject(parent), m_folder(std::make_unique<Folder>(std::move(recoveries))) {
-    m_thread = std::thread([this] { work(); });
+    : QObject(parent), m_journal(std::make_unique<JournalWriter>(std::move(recoveries))), m_file(std::make_unique<DesignFile>()) {
+    m_journal_thread.ask([this] {
+        m_soon = std::make_unique<QTimer>();
+        m_soon->setSingleShot(true);
+        m_soon->setInterval(500ms);
+        QObject::connect(m_soon.get(), &QTimer::timeout, m_soon.get(), [this] { come_back(); });
+    });
 }
 
 Keeper::~Keeper() {
-    {
-        const std::lock_guard lock(m_mutex);
-        m_ends = true;
-    }
-    m_came.notify_all();
-    m_thread.join();
+    m_file_thread.flush();  // what it comes to is for the journal
+    m_journal_thread.ask([this] {
+        m_soon.reset();
+        const Status kept = tried([&] { return all_written(*m_journal); });
+        if (!kept) log(LogLevel::warning, kept.error().text());
+    });
+    m_journal_thread.flush();
 }
 
-void Keeper::ask(std::function<void()> task) {
-    {
-        const std::lock_guard lock(m_mutex);
-        m_tasks.push_back(std::move(task));
+/// Does something with the journal, in its thread.
+void Keeper::keep(std::function<Status(JournalWriter&)> deed) {
+    m_journal_thread.ask([this, deed = std::move(deed)] {
+        tell(tried([&] { return deed(*m_journal); }));
+        if (m_journal->has_work() && !m_soon->isActive()) m_soon->start();
+    });
+}
+
+void Keeper::come_back() {
+    const bool was_in_trouble = m_is_in_trouble;
+    const Status kept = tried([&] { return all_written(*m_journal); });
+    if (kept || !was_in_trouble) tell(kept);  // the same trouble is not told twice a second
+    if (m_journal->has_work()) m_soon->start();
+}
+
+void Keeper::tell(const Status& kept) {
+    if (!kept) {
+        m_is_in_trouble = true;
+        Q_EMIT trouble(words(kept.error()));
+    } else if (m_is_in_trouble && !m_journal->is_behind()) {
+        m_is_in_trouble = false;
+        Q_EMIT kept_again();
     }
-    m_came.notify_all();
 }
 
 void Keeper::begin(const Design& design, const QString& path, bool is_saved) {
-    ask([this, design, path = path.toStdString(), is_saved] {
-        if (Status kept = m_folder->begin(design, path, is_saved); !kept) Q_EMIT trouble(words(kept.error()));
-    });
+    keep([design, path = path.toStdString(), is_saved](JournalWriter& journal) { return journal.begin(design, path, is_saved); });
+    if (is_saved && !path.isEmpty()) m_file_thread.ask([this, design, path = path.toStdString()] { m_file->note(path, design); });
 }
 
 void Keeper::resume(const Recovery& recovery) {
-    ask([this, recovery] {
-        if (Status kept = m_folder->resume(recovery); !kept) Q_EMIT trouble(words(kept.error()));
-    });
+    keep([folder = recovery.folder, bytes = recovery.journal_bytes](JournalWriter& journal) { return journal.resume(folder, bytes); });
+    if (recovery.base_was_saved && !recovery.path.isEmpty())
+        m_file_thread.ask([this, base = recovery.base, path = recovery.path.toStdString()] { m_file->note(path, base); });
 }
 
 void Keeper::record(const JournalEntry& entry) {
-    ask([this, entry] {
-        if (Status kept = m_folder->add(entry); !kept) Q_EMIT trouble(words(kept.error()));
-    });
+    keep([entry](JournalWriter& journal) { return journal.add(entry); });
 }
 
-void Keeper::save(const Design& design, const QString& path) {
-    ask([this, design, path] {
-        if (Status done = save_design(design, path.toStdString()); !done) {
-            Q_EMIT not_saved(path, words(done.error()));
-            return;
+void Keeper::save(const Design& design, const QString& path, const std::string& shown, Overwrite what) {
+    keep([shown](JournalWriter& journal) -> Status {
+        journal.begin_save(BlockShown{shown});
+        return {};
+    });
+    m_file_thread.ask([this, design, path, what] {
+        bool was_changed = false;
+        const Status done = tried([&]() -> Status {
+            was_changed = what == Overwrite::what_is_known && m_file->was_changed(path.toStdString());
+            return was_changed ? Status() : m_file->save(path.toStdString(), design);
+        });
+        if (done && !was_changed) {
+            keep([design, path](JournalWriter& journal) { return journal.end_save(design, path.toStdString()); });
+            return Q_EMIT saved(path);
         }
-        if (Status kept = m_folder->begin(design, path.toStdString(), true); !kept) Q_EMIT trouble(words(kept.error()));
-        Q_EMIT saved(path);
+        keep([](JournalWriter& journal) -> Status {
+            journal.fail_save();
+            return {};
+        });
+        if (was_changed) return Q_EMIT changed_outside(path);
+        Q_EMIT not_saved(path, words(done.error()));
     });
 }
 
 void Keeper::discard() {
-    ask([this] { m_folder->remove(); });
-    flush();
+    keep([](JournalWriter& journal) -> Status {
+        journal.remove();
+        return {};
+    });
 }
 
 void Keeper::flush() {
-    std::unique_lock lock(m_mutex);
-    m_done.wait(lock, [this] { return m_tasks.empty() && !m_is_busy; });
+    m_file_thread.flush();
+    m_journal_thread.flush();
 }
 
-void Keeper::work() {
-    auto next_sync = std::chrono::steady_clock::now();
-    for (;;) {
-        std::function<void()> task;
-        {
-            std::unique_lock lock(m_mutex);
-            const auto has_work = [this] { return m_ends || !m_tasks.empty(); };
-            if (m_folder->is_dirty()) {
-                m_came.wait_until(lock, next_sync, has_work);
-            } else {
-                m_came.wait(lock, has_work);
-                next_sync = std::chrono::steady_clock::now() + 500ms;
-            }
-            if (m_tasks.empty() && m_ends) break;
-            if (!m_tasks.empty()) {
-                task = std::move(m_tasks.front());
-                m_tasks.pop_front();
-                m_is_busy = true;
-            }
-        }
-        if (task) task();
-        if (m_folder->is_dirty() && std::chrono::steady_clock::now() >= next_sync) {
-            if (Status kept = m_folder->sync(); !kept) Q_EMIT trouble(words(kept.error()));
-            next_sync = std::chrono::steady_clock::now() + 500ms;
-        }
-        {
-            const std::lock_guard lock(m_mutex);
-            m_is_busy = false;
-        }
-        m_done.notify_all();
-    }
-    if (Status kept = m_folder->sync(); !kept) log(LogLevel::warning, kept.error().text());
-}
+// ---- What ended programs left ----
 
-std::filesystem::path Keeper::usual_folder() {
-    return QStandardPaths::writableLocation(QStandardPaths::AppLocalDataLocation).toStdString() + "/unsaved";
-}
+namespace {
 
-std::vector<Recovery> Keeper::take_recoveries(const std::filesystem::path& recoveries) {
-    std::vector<Recovery> found;
+std::vector<std::filesystem::path> folders_in(const std::filesystem::path& recoveries) {
     std::error_code trouble;
     std::vector<std::filesystem::path> folders;
     for (std::filesystem::directory_iterator each(recoveries, trouble), end; !trouble && each != end; each.increment(trouble)) {
         if (each->is_directory(trouble) && each->path().extension() != ".broken") folders.push_back(each->path());
     }
-    for (const std::filesystem::path& path : folders) {
+    return folders;
+}
+
+std::filesystem::path beside(const std::filesystem::path& folder) {
+    return folder.string() + ".broken";
+}
+
+QString moved_aside(const std::filesystem::path& folder) {
+    std::error_code trouble;
+    std::filesystem::rename(folder, beside(folder), trouble);
+    return QString::fromStdString((trouble ? folder : beside(folder)).string());
+}
+
+/// Whether a copy of a folder as it was found is beside it.
+bool is_copied_aside(const std::filesystem::path& folder) {
+    std::error_code trouble, ignored;
+    std::filesystem::copy(folder, beside(folder), std::filesystem::copy_options::recursive | std::filesystem::copy_options::overwrite_existing, trouble);
+    if (trouble) std::filesystem::remove_all(beside(folder), ignored);
+    return !trouble;
+}
+
+/// What there is to recover in a folder, if anything.
+std::optional<Recovery> recovery_in(std::shared_ptr<JournalFolder> folder, QStringList& aside) {
+    const std::filesystem::path place = folder->path();
+    auto content = folder->read();
+    if (!content) {
+        log(LogLevel::warning, "unsaved work could not be read: " + content.error().text());
+        aside.push_back(moved_aside(place));
+        return std::nullopt;
+    }
+    ReadJournal read = read_journal(content->journal);
+    if (!read.is_understood) {
+        const bool is_copied = is_copied_aside(place);
+        aside.push_back(is_copied ? QString::fromStdString(beside(place).string()) : moved_aside(place));
+        if (!is_copied) return std::nullopt;
+    }
+    if (content->base_was_saved && std::none_of(read.entries.begin(), read.entries.end(), is_of_design)) {
+        folder->remove();
+        return std::nullopt;
+    }
+    return Recovery{QString::fromStdString(content->path), std::move(content->base), content->base_was_saved, std::move(read.entries), read.bytes, std::move(folder)};
+}
+
+}  // namespace
+
+std::filesystem::path Keeper::usual_folder() {
+    return QStandardPaths::writableLocation(QStandardPaths::AppLocalDataLocation).toStdString() + "/unsaved";
+}
+
+Recoveries Keeper::take_recoveries(const std::filesystem::path& recoveries) {
+    Recoveries taken;
+    for (const std::filesystem::path& path : folders_in(recoveries)) {
         auto folder = JournalFolder::take(path);
         if (!folder) continue;
-        auto content = folder->read();
-        if (!content) {
-            log(LogLevel::warning, "unsaved work could not be read: " + content.error().text());
-            std::filesystem::rename(path, path.string() + ".broken", trouble);
-            continue;
-        }
-        ReadJournal read = read_journal(content->journal);
-        if (read.entries.empty() && content->base_was_saved) {
-            folder->remove();
-            continue;
-        }
-        found.push_back({QString::fromStdString(content->path), std::move(content->base), content->base_was_saved, std::move(read.entries), read.bytes,
-                         std::make_shared<JournalFolder>(std::move(*folder))});
+        auto recovery = recovery_in(std::make_shared<JournalFolder>(std::move(*folder)), taken.set_aside);
+        if (recovery) taken.found.push_back(std::move(*recovery));
     }
-    return found;
+    return taken;
 }
 
 }  // namespace weave::studio

@@ -5,18 +5,24 @@
 
 #include <QObject>
 #include <QString>
+#include <QStringList>
 
-#include <condition_variable>
-#include <deque>
+#include <cstdint>
 #include <filesystem>
 #include <functional>
 #include <memory>
-#include <mutex>
+#include <string>
 #include <studio/document/journal.hpp>
 #include <studio/document/journal_folder.hpp>
-#include <thread>
+#include <studio/document/task_thread.hpp>
+#include <vector>
+
+class QTimer;
 
 namespace weave::studio {
+
+class DesignFile;
+class JournalWriter;
 
 /// What a program that was ended left of a document that was not saved.
 struct Recovery {
@@ -28,12 +34,20 @@ struct Recovery {
     std::shared_ptr<JournalFolder> folder;  ///< where it lies until it is closed as its person wants it
 };
 
-/// Keeps a document on the disk, in a thread of its own, so that no window waits for a disk: its journal, which outlives
-/// the program however it ends, and its file when it is saved. What is recorded reaches the system at once and the disk
-/// within half a second.
+/// All that ended programs left.
+struct Recoveries {
+    std::vector<Recovery> found;
+    QStringList set_aside;  ///< folders of what could not be read, or not to its end
+};
+
+/// Keeps a document on the disk, so that no window waits for a disk: its journal, which outlives the program however it ends,
+/// and its file when it is saved. Each has a thread of its own: however long a share takes to save, the journal goes on. What is
+/// recorded reaches the system at once and the disk within half a second.
 class Keeper : public QObject {
     Q_OBJECT
   public:
+    enum class Overwrite : std::uint8_t { what_is_known, anything };
+
     /// Keeps its journal in a new folder within `recoveries`. A folder that cannot be made is told by trouble().
     explicit Keeper(std::filesystem::path recoveries, QObject* parent = nullptr);
     /// Finishes what is asked for. Of a document that was not discarded the journal stays.
@@ -45,36 +59,40 @@ class Keeper : public QObject {
     void resume(const Recovery& recovery);
     void record(const JournalEntry& entry);
     /// Writes the file, whole or not at all; once it is written the journal begins anew behind it. `design` has all that was
-    /// recorded. Ends with saved() or not_saved().
-    void save(const Design& design, const QString& path);
+    /// recorded; `shown` is the block that is shown. Ends with saved(), changed_outside() or not_saved(), in the order asked for.
+    void save(const Design& design, const QString& path, const std::string& shown, Overwrite what = Overwrite::what_is_known);
     /// The document was closed as its person wants it: nothing is to be recovered.
     void discard();
-    /// Waits until all that was asked for is done.
+    /// Waits until all that was asked for is done; for tests, as a window must not.
     void flush();
 
     /// Where this person's journals are.
     static std::filesystem::path usual_folder();
-    /// Takes over what ended programs left there; what running ones have is left alone. What cannot be read is moved aside
-    /// (`.broken`) and logged.
-    static std::vector<Recovery> take_recoveries(const std::filesystem::path& recoveries);
+    /// Takes over what ended programs left there; what running ones have is left alone. Of what cannot be read a copy is set
+    /// aside (`.broken`).
+    static Recoveries take_recoveries(const std::filesystem::path& recoveries);
 
   Q_SIGNALS:
     void saved(const QString& path);
     void not_saved(const QString& path, const QString& reason);
-    /// The journal cannot be written: edits would be lost with the program.
+    /// It was not saved: the file is not as it was when this document read or wrote it.
+    void changed_outside(const QString& path);
+    /// The journal cannot be written: edits would be lost with the program. It is tried again until kept_again().
     void trouble(const QString& reason);
+    void kept_again();
 
   private:
-    class Folder;
-    void ask(std::function<void()> task);
-    void work();
+    void keep(std::function<Status(JournalWriter&)> deed);
+    void come_back();
+    void tell(const Status& kept);
 
-    std::unique_ptr<Folder> m_folder;  ///< of the thread
-    std::mutex m_mutex;
-    std::condition_variable m_came, m_done;
-    std::deque<std::function<void()>> m_tasks;
-    bool m_is_busy = false, m_ends = false;
-    std::thread m_thread;
+    // Of the journal's thread alone.
+    std::unique_ptr<JournalWriter> m_journal;
+    std::unique_ptr<QTimer> m_soon;  ///< to what is not on the disk yet
+    bool m_is_in_trouble = false;
+
+    std::unique_ptr<DesignFile> m_file;  ///< of the file's thread alone
+    TaskThread m_journal_thread, m_file_thread;
 };
 
 }  // namespace weave::studio

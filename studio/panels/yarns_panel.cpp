@@ -2,6 +2,7 @@
 
 #include <weave/design/plan_json.hpp>
 
+#include <QApplication>
 #include <QDoubleSpinBox>
 #include <QFormLayout>
 #include <QGroupBox>
@@ -12,6 +13,7 @@
 #include <QPushButton>
 #include <QScopedValueRollback>
 #include <QScrollArea>
+#include <QTimer>
 #include <QVBoxLayout>
 
 #include <studio/commands/set_title.hpp>
@@ -46,7 +48,7 @@ Json feeders_of(const QString& yarns, const WeftPlan& before) {
 
 }  // namespace
 
-YarnsPanel::YarnsPanel(QWidget* parent) : QWidget(parent), m_title(new QLineEdit), m_notes(new QPlainTextEdit), m_trouble(new QLabel) {
+YarnsPanel::YarnsPanel(QWidget* parent) : QWidget(parent), m_pause(new QTimer(this)), m_title(new QLineEdit), m_notes(new QPlainTextEdit), m_trouble(new QLabel) {
     auto* form = new QFormLayout;
     m_title->setObjectName("title");
     m_notes->setObjectName("notes");
@@ -73,6 +75,15 @@ YarnsPanel::YarnsPanel(QWidget* parent) : QWidget(parent), m_title(new QLineEdit
     m_trouble->hide();
     connect(m_title, &QLineEdit::editingFinished, this, &YarnsPanel::take_title);
     connect(m_notes, &QPlainTextEdit::textChanged, this, &YarnsPanel::take_title);
+    m_pause->setSingleShot(true);
+    m_pause->setInterval(2000);
+    const auto end_typing = [this] {
+        if (m_document != nullptr) m_document->end_stroke();
+    };
+    connect(m_pause, &QTimer::timeout, this, end_typing);
+    connect(qApp, &QApplication::focusChanged, this, [this, end_typing](const QWidget* left) {
+        if (left == m_notes) end_typing();
+    });
 }
 
 QWidget* YarnsPanel::make_side(Side& side, bool is_warp) {
@@ -179,9 +190,12 @@ void YarnsPanel::take_weft() {
 void YarnsPanel::take_title() {
     if (m_is_filling || m_document == nullptr) return;
     EditStep step = set_title(m_title->text().toStdString(), m_notes->toPlainText().toStdString());
-    step.key = "title";  // while somebody types
     const Design& design = m_document->design();
-    if (design.title != m_title->text().toStdString() || design.notes != m_notes->toPlainText().toStdString()) tell(m_document->perform(step));
+    const bool has_notes = design.notes != m_notes->toPlainText().toStdString();
+    if (!has_notes && design.title == m_title->text().toStdString()) return;
+    if (has_notes) step.key = "notes";  // each letter comes by itself; the title comes whole
+    tell(m_document->perform(step));
+    m_pause->start();
 }
 
 }  // namespace weave::studio

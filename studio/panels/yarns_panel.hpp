@@ -11,6 +11,7 @@ class QDoubleSpinBox;
 class QLabel;
 class QLineEdit;
 class QPlainTextEdit;
+class QTimer;
 
 namespace weave::studio {
 
@@ -40,6 +41,7 @@ class YarnsPanel : public QWidget {
     void tell(const Status& status);
 
     Document* m_document = nullptr;
+    QTimer* m_pause;  ///< of the typing; what is typed after one is a step of its own
     QLineEdit* m_title;
     QPlainTextEdit* m_notes;
     Side m_warp, m_weft;

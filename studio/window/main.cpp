@@ -1,4 +1,4 @@
-#include <studio/window/main_window.hpp>
+#include <studio/window/windows.hpp>
 
 #include <weave/core/log.hpp>
 
@@ -11,8 +11,6 @@
 
 #include <clocale>
 #include <cstdio>
-#include <memory>
-#include <vector>
 
 int main(int argc, char* argv[]) {
     using namespace weave::studio;
@@ -37,16 +35,8 @@ int main(int argc, char* argv[]) {
     words.addPositionalArgument("design", QApplication::translate("main", "Designs or cards to open"), "[FILE ...]");
     words.process(application);
 
-    std::vector<std::unique_ptr<MainWindow>> windows;
-    for (Recovery& recovery : Keeper::take_recoveries(Keeper::usual_folder())) {
-        windows.push_back(std::make_unique<MainWindow>());
-        windows.back()->recover(std::move(recovery));
-    }
-    for (const QString& path : words.positionalArguments()) {
-        windows.push_back(std::make_unique<MainWindow>());
-        windows.back()->open_file(path);
-    }
-    if (windows.empty()) windows.push_back(std::make_unique<MainWindow>());
-    for (const auto& window : windows) window->show();
+    Windows windows;
+    windows.open(words.positionalArguments());
+    windows.recover(Keeper::usual_folder());
     return QApplication::exec();
 }

@@ -286,9 +286,13 @@ void MainWindow::follow_document() {
     connect(document, &Document::edited, this, &MainWindow::show_title);
     connect(&document->undo_stack(), &QUndoStack::indexChanged, this, &MainWindow::show_undo);
     connect(document, &Document::path_changed, this, &MainWindow::show_title);
-    connect(&document->undo_stack(), &QUndoStack::cleanChanged, this, &MainWindow::show_title);
+    connect(document, &Document::modified_changed, this, &MainWindow::show_title);
     connect(&document->keeper(), &Keeper::saved, this, [this](const QString& path) { tell(tr("Saved as %1").arg(path)); });
     connect(&document->keeper(), &Keeper::not_saved, this, [this](const QString& path, const QString& reason) { warn(tr("%1 was not saved: %2").arg(path, reason)); });
+    connect(&document->keeper(), &Keeper::changed_outside, this, [this, document](const QString& path) {
+        if (m_document.get() == document) ask_to_save_over(path);
+    });
+    connect(&document->keeper(), &Keeper::kept_again, this, [this] { tell(tr("Unsaved work is kept on the disk again")); });
     connect(&document->keeper(), &Keeper::trouble, this, [this](const QString& reason) { warn(tr("Unsaved work is not safe: %1").arg(reason)); });
 }
 
@@ -298,9 +302,15 @@ void MainWindow::show_design(Design design, const QString& path, bool is_saved) 
 }
 
 void MainWindow::recover(Recovery recovery) {
-    const std::size_t steps = recovery.entries.size();
     take(std::make_unique<Document>(std::move(recovery)));
-    m_messages->tell(MessageBar::Kind::note, tr("The studio was ended before this design was saved. All of it is here again, with its last %n step(s); undo takes them back.", nullptr, static_cast<int>(steps)));
+    const int steps = m_document->undo_stack().index();
+    m_messages->tell(MessageBar::Kind::note, tr("The studio was ended before this design was saved. All of it is here again, with its last %n step(s); undo takes them back.", nullptr, steps));
+}
+
+void MainWindow::tell_set_aside(const QStringList& folders) {
+    QStringList words{m_messages->words(), tr("Unsaved work could not be read, or not to its end. As it was found it lies in:")};
+    words.removeAll(QString());
+    m_messages->tell(MessageBar::Kind::warning, (words + folders).join('\n'));
 }
 
 void MainWindow::open_file(const QString& path) {
@@ -328,18 +338,40 @@ void MainWindow::show_sample(const QString& name) {
 }
 
 bool MainWindow::may_close() {
-    if (!m_document || !m_document->is_modified()) return true;
-    QMessageBox box(QMessageBox::Question, tr("Save the design?"), tr("%1 has changes that are not saved.").arg(m_document->name()), QMessageBox::NoButton, this);
-    auto* save = box.addButton(tr("Save"), QMessageBox::AcceptRole);
-    auto* drop = box.addButton(tr("Close without saving"), QMessageBox::DestructiveRole);
-    box.addButton(tr("Stay"), QMessageBox::RejectRole);
-    box.setDefaultButton(save);
+    for (;;) {
+        wait_for_saving();
+        if (!m_document || !m_document->is_modified()) return true;
+        QMessageBox box(QMessageBox::Question, tr("Save the design?"), tr("%1 has changes that are not saved.").arg(m_document->name()), QMessageBox::NoButton, this);
+        box.setTextFormat(Qt::PlainText);
+        auto* save = box.addButton(tr("Save"), QMessageBox::AcceptRole);
+        auto* drop = box.addButton(tr("Close without saving"), QMessageBox::DestructiveRole);
+        box.addButton(tr("Stay"), QMessageBox::RejectRole);
+        box.setDefaultButton(save);
+        box.exec();
+        if (box.clickedButton() == drop) return true;
+        if (box.clickedButton() != save || !m_document || !m_files->save(*m_document)) return false;
+    }
+}
+
+/// The window lives on meanwhile: a share may take its time.
+void MainWindow::wait_for_saving() {
+    if (!m_document || !m_document->is_saving()) return;
+    tell(tr("Saving %1 …").arg(m_document->name()));
+    while (m_document && m_document->is_saving()) QCoreApplication::processEvents(QEventLoop::WaitForMoreEvents);
+}
+
+void MainWindow::ask_to_save_over(const QString& path) {
+    QMessageBox box(QMessageBox::Warning, tr("Save over another's changes?"), tr("%1 was changed by another program or window since it was opened or saved here.").arg(path), QMessageBox::NoButton, this);
+    box.setTextFormat(Qt::PlainText);
+    box.setInformativeText(tr("To save over it loses what was changed there."));
+    auto* over = box.addButton(tr("Save over it"), QMessageBox::DestructiveRole);
+    auto* other = box.addButton(tr("Save under another name …"), QMessageBox::AcceptRole);
+    box.addButton(tr("Do not save"), QMessageBox::RejectRole);
+    box.setDefaultButton(other);
     box.exec();
-    if (box.clickedButton() == drop) return true;
-    if (box.clickedButton() != save || !m_files->save(*m_document)) return false;
-    m_document->keeper().flush();
-    QCoreApplication::sendPostedEvents(nullptr, QEvent::MetaCall);  // what came of it
-    return !m_document->is_modified();
+    if (!m_document) return;
+    if (box.clickedButton() == over) m_document->save(path, Keeper::Overwrite::anything);
+    if (box.clickedButton() == other) m_files->save_as(*m_document);
 }
 
 void MainWindow::closeEvent(QCloseEvent* event) {

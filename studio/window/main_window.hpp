@@ -51,6 +51,8 @@ class MainWindow : public QMainWindow {
     void show_design(Design design, const QString& path, bool is_saved);
     /// Goes on where a program was ended.
     void recover(Recovery recovery);
+    /// Tells where unsaved work lies that could not be read.
+    void tell_set_aside(const QStringList& folders);
     void open_file(const QString& path);
     /// Opens a sample as a new design.
     void show_sample(const QString& name);
@@ -86,6 +88,8 @@ class MainWindow : public QMainWindow {
     void flip(const CardPlace& place);
     void go_to(const CardPlace& place);
     void flip_at_once(const CardPlace& place);
+    void wait_for_saving();
+    void ask_to_save_over(const QString& path);
     void opened(const Design& design, const QString& path, const QStringList& warnings);
     QAction* add(QMenu& menu, const QString& text, const QKeySequence& keys, std::function<void()> deed, bool needs_design = true);
     [[nodiscard]] std::string chosen_block() const;

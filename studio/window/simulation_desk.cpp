@@ -48,7 +48,11 @@ std::shared_ptr<const Yarns> yarns_of(const YarnLayout& layout, const Frame& fra
 
 SimulationDesk::SimulationDesk(SimulationPanel& panel, ViewerPanel& viewer, QObject* parent) : QObject(parent), m_panel(panel), m_viewer(viewer) {
     connect(&panel, &SimulationPanel::scene_edited, this, [this](const Scene& scene, bool is_dragging) {
-        if (m_document == nullptr || scene == m_document->design().scene) return;
+        if (m_document == nullptr) return;
+        if (scene == m_document->design().scene) {
+            if (!is_dragging) m_document->end_stroke();
+            return;
+        }
         const Status made = m_document->perform(set_scene(scene, is_dragging));
         if (!made) Q_EMIT failed(QString::fromStdString(made.error().text()));
     });

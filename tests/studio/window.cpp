@@ -21,6 +21,7 @@
 #include <studio/window/main_window.hpp>
 #include <studio/window/tutorial.hpp>
 #include <studio/window/viewer_desk.hpp>
+#include <studio/window/windows.hpp>
 
 #include <QtTest>
 
@@ -28,6 +29,7 @@
 
 #include <support/temporary_folder.hpp>
 #include "support/hands.hpp"
+#include "support/slow_share.hpp"
 
 using namespace weave;
 using namespace weave::studio;
@@ -61,6 +63,14 @@ struct Desk {
 
     MainWindow window;
 };
+
+/// Presses the button of a question that says this.
+void press(QDialog& dialog, const QString& text) {
+    for (QAbstractButton* button : dialog.findChildren<QAbstractButton*>()) {
+        if (button->text().remove('&') == text) return QTest::mouseClick(button, Qt::LeftButton);
+    }
+    FAIL("no button " << text.toStdString());
+}
 
 std::string file_of(const weave::testing::TemporaryFolder& folder, const char* name, const std::string& bytes) {
     const std::filesystem::path path = folder.path / name;
@@ -121,17 +131,119 @@ TEST_CASE("closing with unsaved changes asks, and to stay is to stay") {
     REQUIRE(shown.document().perform({"title", {SetTitle{"changed", ""}}}));
     const auto answer = [&](const QString& text, bool closes) {
         bool went = false;
-        with_dialog([&] { went = shown.window.may_close(); },
-                    [&](QDialog& dialog) {
-                        for (QAbstractButton* button : dialog.findChildren<QAbstractButton*>()) {
-                            if (button->text().remove('&') == text) return QTest::mouseClick(button, Qt::LeftButton);
-                        }
-                        FAIL("no button " << text.toStdString());
-                    });
+        with_dialog([&] { went = shown.window.may_close(); }, [&](QDialog& dialog) { press(dialog, text); });
         CHECK(went == closes);
     };
     answer("Stay", false);
     answer("Close without saving", true);
+}
+
+TEST_CASE("closing waits for a save that is under way, and asks again where it failed") {
+    const weave::testing::TemporaryFolder folder;
+    Desk shown("twill-2-2");
+    SlowShare share(folder.path);
+    REQUIRE(shown.document().perform({"title", {SetTitle{"changed", ""}}}));
+    shown.document().save(QString::fromStdString(share.path().string()));  // nothing goes on before it answers
+    REQUIRE(shown.document().perform({"title", {SetTitle{"changed again", ""}}}));
+    shown.document().save("/nowhere/at/all.weave");
+    QTimer::singleShot(0, &shown.window, [&] { share.answer(); });
+    bool went = true;
+    with_dialog([&] { went = shown.window.may_close(); }, [&](QDialog& dialog) {
+        CHECK(shown.said().contains("/nowhere/at/all.weave"));
+        press(dialog, "Stay");
+    });
+    CHECK_FALSE(went);
+    CHECK(shown.document().design().title == "changed again");
+}
+
+TEST_CASE("closing waits for a save that is under way, and needs no answer where it came to pass") {
+    const weave::testing::TemporaryFolder folder;
+    Desk shown("twill-2-2");
+    SlowShare share(folder.path);
+    REQUIRE(shown.document().perform({"title", {SetTitle{"changed", ""}}}));
+    shown.document().save(QString::fromStdString(share.path().string()));
+    QTimer::singleShot(0, &shown.window, [&] { share.answer(); });
+    CHECK(shown.window.may_close());
+    CHECK_FALSE(shown.document().is_saving());
+}
+
+TEST_CASE("a file that somebody else changed is saved over only by one who says so") {
+    const weave::testing::TemporaryFolder folder;
+    const std::string path = file_of(folder, "mine.weave", write_document(find_sample("twill-2-2")->make()));
+    Desk shown;
+    shown.window.open_file(QString::fromStdString(path));
+    REQUIRE(until([&] { return shown.window.document() != nullptr; }));
+    REQUIRE(shown.document().perform({"title", {SetTitle{"mine", ""}}}));
+    file_of(folder, "mine.weave", write_document(find_sample("pocket")->make()));
+    const auto answer = [&](const QString& text) {
+        with_dialog([&] { choose(shown.window, {"File", "Save"}); until([&] { return !shown.document().is_saving(); }); }, [&](QDialog& dialog) { press(dialog, text); });
+        REQUIRE(until([&] { return !shown.document().is_saving(); }));
+    };
+    answer("Do not save");
+    CHECK(shown.document().is_modified());
+    CHECK(*load_design(path) == find_sample("pocket")->make());
+    answer("Save over it");
+    CHECK_FALSE(shown.document().is_modified());
+    CHECK(load_design(path)->title == "mine");
+}
+
+TEST_CASE("the window is there before unsaved work is read, which then comes with what could not be read") {
+    const weave::testing::TemporaryFolder folder;
+    const Design pocket = find_sample("pocket")->make();
+    {
+        Document first(pocket, {}, true, folder.path), second(pocket, {}, false, folder.path);
+        REQUIRE(first.perform({"title", {SetTitle{"unsaved", ""}}}));
+        second.keeper().flush();
+        for (const auto& each : std::filesystem::directory_iterator(folder.path)) {
+            const auto now = read_file(each.path() / "now");
+            if (now && now->find("\"is_saved\":false") != std::string::npos) std::filesystem::resize_file(each.path() / "now", 3);
+        }
+    }
+    Windows windows;
+    windows.open({});
+    REQUIRE(windows.all().size() == 1);
+    MainWindow& window = *windows.all().front();
+    CHECK(window.isVisible());
+    windows.recover(folder.path);
+    CHECK(window.document() == nullptr);
+    REQUIRE(until([&] { return window.document() != nullptr; }));
+    CHECK(window.document()->design().title == "unsaved");
+    CHECK(window.document()->is_modified());
+    CHECK(windows.all().size() == 1);
+    CHECK(window.findChild<MessageBar*>("messages")->words().contains(".broken"));
+    window.document()->discard();
+}
+
+TEST_CASE("what is drawn or typed after a release, or in another field, is undone by itself") {
+    Desk shown("twill-2-2");
+    auto& panel = shown.find<SimulationPanel>();
+    Scene scene = shown.document().design().scene;
+    const auto draw = [&](double friction, bool is_dragging) {
+        scene.friction = friction;
+        Q_EMIT panel.scene_edited(scene, is_dragging);
+    };
+    draw(0.11, true);
+    draw(0.12, true);
+    draw(0.12, false);  // released
+    draw(0.13, true);
+    CHECK(shown.document().undo_stack().count() == 2);
+    shown.find<YarnsPanel>().parentWidget()->raise();
+    auto& notes = shown.find<QPlainTextEdit>("notes");
+    auto& title = shown.find<QLineEdit>("title");
+    const auto type = [](QWidget& field, const QString& text) {
+        field.setFocus();
+        QTest::keyClicks(&field, text);
+    };
+    type(notes, "soft");
+    CHECK(shown.document().undo_stack().count() == 3);
+    title.setFocus();
+    type(notes, "er");
+    CHECK(shown.document().undo_stack().count() == 4);
+    type(title, "x");
+    QTest::keyClick(&title, Qt::Key_Return);
+    CHECK(shown.document().undo_stack().count() == 5);
+    shown.document().undo();
+    CHECK(notes.toPlainText().contains("softer"));
 }
 
 TEST_CASE("undo and redo are in the menu, by name, and on their keys") {

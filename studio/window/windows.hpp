@@ -1,0 +1,32 @@
+#pragma once
+
+#include <QObject>
+#include <QStringList>
+
+#include <filesystem>
+#include <memory>
+#include <studio/window/main_window.hpp>
+#include <vector>
+
+namespace weave::studio {
+
+/// The windows of a program.
+class Windows : public QObject {
+  public:
+    /// Shows one for each file, or one with the start page.
+    void open(const QStringList& paths);
+    /// Reads in the background what ended programs left there, and shows each design as it comes.
+    void recover(const std::filesystem::path& recoveries);
+
+    [[nodiscard]] const std::vector<std::unique_ptr<MainWindow>>& all() const { return m_windows; }
+
+  private:
+    MainWindow& add();
+    MainWindow& free_one();
+    void show(Recoveries recoveries);
+
+    std::vector<std::unique_ptr<MainWindow>> m_windows;
+    bool m_has_start_page = false;  ///< in the first window, until there is a design in it
+};
+
+}  // namespace weave::studio
