@@ -1,5 +1,6 @@
 #include <studio/jobs/local_work.hpp>
 
+#include <weave/design/evaluate.hpp>
 #include <weave/sim/forecast.hpp>
 #include <weave/wire/shown.hpp>
 
@@ -32,6 +33,7 @@ void LocalWork::run() {
 
 Status LocalWork::begin() {
     if (!m_means.memory_bytes) m_means.memory_bytes = free_memory();
+    WEAVE_CHECK_OK(foresee_room());
     auto run = sim::Run::begin(m_design, m_request, m_means.threads);
     if (!run) return std::move(run).error();
     m_run = std::move(*run);
@@ -43,11 +45,19 @@ Status LocalWork::begin() {
 Status LocalWork::check_room(std::size_t times) const {
     const std::uint64_t needed = sim::expected_bytes(sim::points_of(m_run->now().plan()) * times);
     if (!m_means.memory_bytes || needed <= *m_means.memory_bytes) return {};
-    return Error{ErrorCode::refused,
-                 "this takes about " + sim::memory_text(needed) + " of memory, and " +
-                     sim::memory_text(*m_means.memory_bytes) +
-                     " are free; simulate a part of the cloth, or as draft, or on a server",
-                 {}};
+    return lack_of_memory(needed, *m_means.memory_bytes, m_request.plan.fidelity);
+}
+
+/// Laying out a cloth that has no room takes half a minute and gigabytes: only what is well beyond doubt is refused
+/// before, as the guess is rough.
+Status LocalWork::foresee_room() const {
+    constexpr std::uint64_t doubt = 4;
+    if (!m_means.memory_bytes) return {};
+    WEAVE_TRY(const Evaluation evaluation, evaluate(m_design));
+    const auto points = foreseen_points(m_design, *evaluation.block, m_request.plan);
+    const std::uint64_t needed = points ? sim::expected_bytes(*points) : 0;
+    if (needed / doubt <= *m_means.memory_bytes) return {};
+    return lack_of_memory(needed, *m_means.memory_bytes, m_request.plan.fidelity);
 }
 
 Status LocalWork::loop() {

@@ -295,23 +295,26 @@ void MillDesk::poll() {
 
 void MillDesk::compare(const Design& design, std::uint64_t edition, std::int64_t number) {
     const std::uint64_t wanted = ++m_wanted_comparison;
-    if (m_before.design == m_design && m_before.number == number) return compare_now(design, edition);
-    download_before(m_design, number, [this, wanted, design, edition] {
+    const bool is_here = m_before.origin == m_access.origin && m_before.design == m_design && m_before.number == number;
+    if (is_here) return compare_now(design, edition);
+    download_before(m_design, number, wanted, [this, wanted, design, edition] {
         if (wanted == m_wanted_comparison) compare_now(design, edition);
     });
 }
 
-void MillDesk::download_before(const QString& name, std::int64_t number, std::function<void()> then) {
-    send(MillTask::compare, [this, name, number, then = std::move(then)](MillLine& line) -> Status {
+/// Two mills may each have a revision of this name and number: what was had is kept with the place that it is from.
+void MillDesk::download_before(const QString& name, std::int64_t number, std::uint64_t wanted, std::function<void()> then) {
+    send(MillTask::compare, [this, name, number, wanted, then = std::move(then)](MillLine& line) -> Status {
         WEAVE_TRY(wire::MillClient * client, line.client());
         WEAVE_TRY(std::string document, wire::document_of(*client, name.toStdString(), number));
-        here([this, name, number, then, document = std::move(document)] {
+        here([this, origin = words(line.session().origin), name, number, wanted, then, document = std::move(document)] {
             in_background(
                 this, [document] { return woven_document(document); },
-                [this, name, number, then](Result<WovenPtr> woven) {
+                [this, origin, name, number, wanted, then](Result<WovenPtr> woven) {
+                    if (wanted != m_wanted_comparison) return;
                     if (!woven)
                         return Q_EMIT failed({MillTask::compare, in_words(woven.error()), false, false});
-                    m_before = {name, number, *std::move(woven)};
+                    m_before = {origin, name, number, *std::move(woven)};
                     then();
                 });
         });

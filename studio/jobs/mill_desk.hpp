@@ -95,7 +95,7 @@ class MillDesk : public QObject {
     void poll();
     void ask_history();
     void ask_review();
-    void download_before(const QString& name, std::int64_t number, std::function<void()> then);
+    void download_before(const QString& name, std::int64_t number, std::uint64_t wanted, std::function<void()> then);
     void compare_now(const Design& design, std::uint64_t edition);
     Status save(wire::MillClient& client, MillHandIn& wish);
     Status file(wire::MillClient& client, const MillHandIn& wish, std::int64_t number);
@@ -108,7 +108,7 @@ class MillDesk : public QObject {
     std::optional<wire::MillHistory> m_history;
     std::optional<wire::MillReview> m_review;
     struct Before {
-        QString design;
+        QString origin, design;
         std::int64_t number = 0;
         std::shared_ptr<const WovenDesign> woven;
     };

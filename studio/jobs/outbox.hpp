@@ -10,8 +10,8 @@ class QObject;
 namespace weave::studio {
 
 /// What a computing thread has to tell, until the window's thread has time for it. Of frames, progress and
-/// yarns the newest alone waits, in its place among what else happened: who is slow misses some, and nothing
-/// piles up.
+/// yarns the newest alone waits, behind all that happened before it: who is slow misses some, and nothing piles
+/// up.
 class Outbox {
   public:
     /// From here on `deliver` is called in the thread of `receiver`, once for all that has come since the

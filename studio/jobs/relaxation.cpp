@@ -42,8 +42,7 @@ void Relaxation::start(const Design& design, const sim::RunRequest& request) {
             work(line->inbox, line->outbox);
         } catch (const std::bad_alloc&) {
             line->outbox.tell(
-                system_fault("the memory of this computer is not enough for it; simulate a part of the "
-                             "cloth, or as draft"));
+                system_fault("the memory of this computer is not enough for it; simulate a part of the cloth"));
         } catch (const std::exception& fault) {
             line->outbox.tell(system_fault(fault.what()));
         }
@@ -67,7 +66,9 @@ void Relaxation::step(std::uint64_t steps) {
     if (steps > 0) order(StepOrder{steps});
 }
 
+/// Laying out cannot be broken off, and there is nothing to see of it: its thread ends by itself.
 void Relaxation::stop() {
+    if (m_phase == RunPhase::planning) return enter(RunPhase::stopped);
     if (m_line) m_line->inbox.finish(Finish::report);
 }
 

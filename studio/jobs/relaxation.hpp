@@ -34,7 +34,7 @@ class Relaxation : public QObject {
     void pause();
     /// So many steps, then paused.
     void step(std::uint64_t steps);
-    /// Ends it with the yarns as they lie.
+    /// Ends it with the yarns as they lie; at once where they are not laid out yet.
     void stop();
 
     /// Leads strain, stiffness and radii to these values, as a scene has them; what is absent stays.

@@ -18,9 +18,10 @@ using namespace std::chrono_literals;
 using Clock = std::chrono::steady_clock;
 
 /// How long a session may take to be planned and admitted; how soon the window's wishes are looked at; how
-/// long one question waits before the window is looked at again; what a run that is left may take to say so.
+/// long one question waits before the window is looked at again; what a run that is left may take to say so, and to
+/// come to a stand.
 constexpr std::chrono::minutes creation{5};
-constexpr std::chrono::milliseconds look{15}, question{500}, farewell{2000};
+constexpr std::chrono::milliseconds look{15}, question{500}, farewell{2000}, standstill{10'000};
 /// A refusal that says so is waited for, when it is short.
 constexpr double longest_wait_s = 30;
 constexpr std::uint64_t most_yarns_bytes = std::uint64_t{8} << 30;
@@ -112,11 +113,9 @@ void RemoteWork::finish() {
     if (m_session == 0) return;
     const bool wants_yarns = m_inbox.finish() == Finish::report;
     if (wants_yarns && !m_is_over) {
-        static_cast<void>(m_follower->ask(wire::Pause{wire::new_request_id(), m_session}, farewell));
-        while (take_news(look) && m_phase == wire::Phase::running && !m_follower->trouble()) {
-        }
+        const bool stands = bring_to_stand();
         m_outbox.tell(m_meter.take());
-        if (m_meter.step() > 0) static_cast<void>(fetch_yarns_now());
+        if (stands && m_meter.step() > 0) static_cast<void>(fetch_yarns_now());
     }
     if (!m_is_over && !m_follower->trouble())
         static_cast<void>(m_follower->ask(wire::Close{wire::new_request_id(), m_session}, farewell));
@@ -126,6 +125,22 @@ void RemoteWork::finish() {
     static_cast<void>(m_follower->acknowledge());
     m_follower->close();
     if (wants_yarns) m_outbox.tell(RunPhase::stopped);
+}
+
+/// Within a step, where the server does as it is asked; one that does not is not waited for.
+bool RemoteWork::bring_to_stand() {
+    const auto end = Clock::now() + standstill;
+    const auto answer = m_follower->ask(wire::Pause{wire::new_request_id(), m_session}, farewell);
+    const bool is_taken = answer && !std::holds_alternative<wire::Refused>(*answer);
+    while (is_taken && is_heard() && m_phase == wire::Phase::running && Clock::now() < end) {
+        if (!take_news(look)) return false;
+    }
+    return is_heard() && m_phase != wire::Phase::running;
+}
+
+/// Whether there is somebody to listen, and somebody who wants to know.
+bool RemoteWork::is_heard() const {
+    return !m_is_over && m_inbox.finish() != Finish::leave && !m_follower->trouble();
 }
 
 // ---- What is asked ----

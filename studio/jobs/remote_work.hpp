@@ -27,6 +27,8 @@ class RemoteWork {
     Status begin(std::chrono::milliseconds patience);
     Status loop();
     void finish();
+    bool bring_to_stand();
+    [[nodiscard]] bool is_heard() const;
 
     // What is asked.
     Status send_orders();

@@ -251,6 +251,11 @@ QString state_words(const RunState& state) {
         .arg(steps(state.progress.step), small(state.progress.residual));
 }
 
+QString dated_words(const RunState& state) {
+    const bool shows_cloth = state.phase == RunPhase::running || state.phase == RunPhase::paused || state.phase == RunPhase::at_rest;
+    return shows_cloth ? Words::tr("The design before the change: %1").arg(state_words(state)) : state_words(state);
+}
+
 std::vector<StateLine> inspection_words(const Inspection& inspection) {
     Lines lines;
     add_crossings(lines, inspection);

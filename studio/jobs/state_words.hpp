@@ -35,6 +35,9 @@ struct StateLine {
 /// One plain sentence on the state of a run.
 QString state_words(const RunState& state);
 
+/// The same of a run that shows the design before a change.
+QString dated_words(const RunState& state);
+
 /// What a weaver wants to know of cloth at rest, the gravest first.
 std::vector<StateLine> inspection_words(const Inspection& inspection);
 

@@ -86,13 +86,15 @@ void YarnsFiles::write(std::shared_ptr<const Yarns> yarns, const QString& file) 
 }
 
 void YarnsFiles::read(const QString& file) {
-    begin([file]() -> std::function<void(YarnsFiles&)> {
+    begin([file, wanted = m_wanted]() -> std::function<void(YarnsFiles&)> {
         auto yarns = studio::read(path_of(file));
         if (!yarns) return [error = yarns.error()](YarnsFiles& files) { Q_EMIT files.failed(error); };
         auto inspection = inspect(*yarns);
         const auto shared = std::make_shared<const Yarns>(std::move(*yarns));
         const auto seen = inspection ? std::make_shared<const Inspection>(std::move(*inspection)) : nullptr;
-        return [shared, seen](YarnsFiles& files) { Q_EMIT files.was_read(shared, seen); };
+        return [shared, seen, wanted](YarnsFiles& files) {
+            if (wanted == files.m_wanted) Q_EMIT files.was_read(shared, seen);
+        };
     });
 }
 

@@ -7,6 +7,7 @@
 #include <QObject>
 #include <QString>
 
+#include <cstdint>
 #include <functional>
 #include <memory>
 
@@ -21,6 +22,8 @@ class YarnsFiles : public QObject {
     /// Writes what the file's name ends in: .yarns, .vtp (ParaView) or .obj.
     void write(std::shared_ptr<const Yarns> yarns, const QString& file);
     void read(const QString& file);
+    /// Nobody wants what is being read any more.
+    void forget() { ++m_wanted; }
 
   Q_SIGNALS:
     void written(const QString& file);
@@ -30,6 +33,8 @@ class YarnsFiles : public QObject {
 
   private:
     void begin(std::function<std::function<void(YarnsFiles&)>()> work);
+
+    std::uint64_t m_wanted = 0;
 };
 
 }  // namespace weave::studio

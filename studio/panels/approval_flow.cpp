@@ -1,5 +1,7 @@
 #include <studio/panels/approval_flow.hpp>
 
+#include <studio/panels/plain_tip.hpp>
+
 #include <QCoreApplication>
 #include <QPainter>
 
@@ -39,7 +41,7 @@ ApprovalFlow::ApprovalFlow(QWidget* parent) : QWidget(parent) {
 void ApprovalFlow::show_state(const QString& state) {
     m_state = state;
     setAccessibleName(tr("State of the revision: %1").arg(words()));
-    setToolTip(words());
+    setToolTip(plain_tip(words()));
     update();
 }
 

@@ -1,10 +1,13 @@
 #include <studio/panels/attach_menu.hpp>
 
 #include <QCoreApplication>
+#include <QLabel>
+#include <QWidgetAction>
 
 #include <algorithm>
 #include <array>
 #include <studio/commands/attach_block.hpp>
+#include <studio/panels/plain_tip.hpp>
 
 namespace weave::studio {
 
@@ -24,15 +27,24 @@ QString hindrance(const Design& design, const std::string& block, const std::str
     return step ? QString() : QString::fromStdString(step.error().message);
 }
 
-/// Menus do not wrap: a long reason is cut, and whole in the tooltip.
-QString in_short(const QString& text) {
-    return text.size() <= 90 ? text : text.left(88) + "…";
+/// Whole, below what it is the reason of: entries of menus do not wrap, and are pale where they cannot be chosen.
+void add_reason(QMenu& menu, const QString& reason) {
+    auto* label = new QLabel(Words::tr("cannot: %1").arg(reason));
+    label->setTextFormat(Qt::PlainText);
+    label->setWordWrap(true);
+    label->setIndent(2 * label->fontMetrics().height());
+    label->setMinimumWidth(60 * label->fontMetrics().averageCharWidth());
+    auto* line = new QWidgetAction(&menu);
+    line->setDefaultWidget(label);
+    line->setText(reason);
+    menu.addAction(line);
 }
 
 void add(QMenu& menu, const QString& name, const QString& reason, std::function<void()> chosen) {
-    QAction* action = menu.addAction(reason.isEmpty() ? name : Words::tr("%1 — cannot: %2").arg(name, in_short(reason)), std::move(chosen));
+    QAction* action = menu.addAction(name, std::move(chosen));
     action->setEnabled(reason.isEmpty());
-    action->setToolTip(reason.isEmpty() ? name : reason);
+    if (!reason.isEmpty()) add_reason(menu, reason);
+    action->setToolTip(plain_tip(reason.isEmpty() ? name : reason));
 }
 
 }  // namespace

@@ -7,6 +7,7 @@
 #include <QScopedValueRollback>
 
 #include <set>
+#include <studio/panels/plain_tip.hpp>
 
 namespace weave::studio {
 
@@ -154,7 +155,7 @@ void DesignTree::dress(QTreeWidgetItem& item, const std::string& block) {
     item.setFont(0, font);
     const QImage image = m_document->thumbnail_of(block);
     if (!image.isNull()) item.setIcon(0, QIcon(QPixmap::fromImage(image.scaled(96, 96, Qt::KeepAspectRatio, Qt::FastTransformation))));
-    item.setToolTip(0, tr("%1: %2. Click to show it, F2 to rename it, drag it onto another block to attach it there").arg(words(block), made_by(*design.blocks.at(block))));
+    item.setToolTip(0, plain_tip(tr("%1: %2. Click to show it, F2 to rename it, drag it onto another block to attach it there").arg(words(block), made_by(*design.blocks.at(block)))));
 }
 
 void DesignTree::refresh(const QString& block) {

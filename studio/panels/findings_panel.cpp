@@ -17,6 +17,7 @@
 #include <algorithm>
 #include <map>
 #include <studio/jobs/background.hpp>
+#include <studio/panels/plain_tip.hpp>
 #include <studio/panels/rule_fixes.hpp>
 
 /// Resources of a library that is linked in are there only once they are asked for, outside of any namespace.
@@ -111,9 +112,11 @@ void FindingsPanel::list_looms() {
     m_looms->insertSeparator(m_looms->count());
     m_looms->addItem(tr("A profile from a file …"));
     const QString last = QSettings().value("loom").toString();
-    m_looms->setCurrentIndex(last.isEmpty() ? 0 : std::max(0, m_looms->findText(last)));
+    m_chosen = last.isEmpty() ? 0 : std::max(0, m_looms->findText(last));
+    m_looms->setCurrentIndex(m_chosen);
     connect(m_looms, &QComboBox::activated, this, [this](int chosen) {
         if (chosen == m_looms->count() - 1) return open_profile();
+        m_chosen = chosen;
         QSettings().setValue("loom", m_looms->currentText());
         check_soon();
     });
@@ -123,18 +126,19 @@ void FindingsPanel::open_profile() {
     const QString path = QFileDialog::getOpenFileName(this, tr("Loom profile"), {}, tr("Loom profiles (*.json)"));
     auto profile = path.isEmpty() ? Result<LoomProfile>(Error{}) : load_profile(path.toStdString());
     if (!profile) {
-        m_looms->setCurrentIndex(0);
-        if (!path.isEmpty()) QMessageBox::warning(this, tr("Loom profile"), words(profile.error().text()));
+        m_looms->setCurrentIndex(m_chosen);
+        if (!path.isEmpty()) QMessageBox::warning(this, tr("Loom profile"), plain_tip(words(profile.error().text())));
         return;
     }
     m_looms->insertItem(static_cast<int>(m_profiles.size()), words(profile->name));
-    m_looms->setCurrentIndex(static_cast<int>(m_profiles.size()));
+    m_chosen = static_cast<int>(m_profiles.size());
+    m_looms->setCurrentIndex(m_chosen);
     m_profiles.push_back(std::move(*profile));
     check_soon();
 }
 
 const LoomProfile* FindingsPanel::profile() const {
-    const auto chosen = static_cast<std::size_t>(std::max(0, m_looms->currentIndex()));
+    const auto chosen = static_cast<std::size_t>(m_chosen);
     return chosen < m_profiles.size() ? &m_profiles[chosen] : nullptr;
 }
 
@@ -146,11 +150,10 @@ void FindingsPanel::show_document(Document* document) {
     if (m_document != nullptr) m_document->disconnect(this);
     m_document = document;
     m_relaxed.reset();
-    if (document == nullptr) {
-        m_list->clear();
-        m_summary->clear();
-        return;
-    }
+    ++m_wanted;  // a report that is under way is of the document before
+    m_soon->stop();
+    show_none({});
+    if (document == nullptr) return;
     connect(document, &Document::whole_made, this, &FindingsPanel::check_soon);
     connect(document, &Document::edited, this, [this] { m_relaxed.reset(); });
     check_soon();
@@ -168,12 +171,9 @@ void FindingsPanel::check_soon() {
 void FindingsPanel::check() {
     if (m_document == nullptr || profile() == nullptr) return;
     const Cloth& whole = m_document->whole();
+    if (whole.block && whole.revision != m_document->revision()) return;  // its cloth is being made, and will be judged then
     const std::uint64_t wanted = ++m_wanted;
-    if (!whole.block) {
-        m_list->clear();
-        m_summary->setText(whole.error ? words(whole.error->text()) : QString());
-        return;
-    }
+    if (!whole.block) return show_none(whole.error ? words(whole.error->text()) : QString());
     in_background(
         this,
         [design = m_document->design(), evaluation = Evaluation{whole.block, whole.lost_flips}, loom = *profile(), relaxed = m_relaxed] {
@@ -185,6 +185,13 @@ void FindingsPanel::check() {
 }
 
 // ---- The list ----
+
+void FindingsPanel::show_none(const QString& reason) {
+    m_report.reset();
+    m_list->clear();
+    m_summary->setText(reason);
+    Q_EMIT counted(0, 0);
+}
 
 void FindingsPanel::show_report(const CheckReport& report) {
     m_report = report;
@@ -225,7 +232,7 @@ void FindingsPanel::add_group(const std::string& rule, const std::vector<const F
 void FindingsPanel::add_finding(QTreeWidgetItem& group, const Finding& finding) {
     auto* item = new QTreeWidgetItem(&group);
     item->setText(0, words(finding.message));
-    item->setToolTip(0, words(finding.message));
+    item->setToolTip(0, plain_tip(words(finding.message)));
     if (finding.pick) item->setData(0, pick_role, QVariant::fromValue<qulonglong>(*finding.pick));
     if (finding.end) item->setData(0, end_role, QVariant::fromValue<qulonglong>(*finding.end));
     if (finding.pick || finding.end) item->setText(1, tr("Show the place"));
@@ -238,7 +245,7 @@ void FindingsPanel::add_not_evaluated() {
     for (const NotEvaluated& rule : m_report->not_evaluated) {
         auto* item = new QTreeWidgetItem(group);
         item->setText(0, tr("%1: %2").arg(words(rule.rule), words(rule.reason)));
-        item->setToolTip(0, item->text(0));
+        item->setToolTip(0, plain_tip(item->text(0)));
     }
 }
 

@@ -35,7 +35,7 @@ class FindingsPanel : public QWidget {
   Q_SIGNALS:
     /// The person wants to see this crossing of the cloth.
     void place_wanted(const weave::CardPlace& place);
-    /// How many there are of each weight, for a badge.
+    /// How many there are of each weight, for a badge; none too where there is no report.
     void counted(std::size_t errors, std::size_t warnings);
 
   private:
@@ -44,6 +44,7 @@ class FindingsPanel : public QWidget {
     void check_soon();
     void check();
     void show_report(const CheckReport& report);
+    void show_none(const QString& reason);
     void add_group(const std::string& rule, const std::vector<const Finding*>& findings);
     void add_not_evaluated();
     void add_finding(QTreeWidgetItem& group, const Finding& finding);
@@ -57,6 +58,7 @@ class FindingsPanel : public QWidget {
     std::optional<RelaxedCloth> m_relaxed;
     std::optional<CheckReport> m_report;
     std::uint64_t m_wanted = 0;
+    int m_chosen = 0;  ///< the loom that counts, whatever is just being chosen
 };
 
 }  // namespace weave::studio

@@ -12,6 +12,7 @@
 
 #include <algorithm>
 #include <studio/panels/approval_flow.hpp>
+#include <studio/panels/plain_tip.hpp>
 #include <studio/panels/sign_in_form.hpp>
 
 namespace weave::studio {
@@ -46,6 +47,23 @@ QString name_from(const QString& title) {
     return name;
 }
 
+/// A design in the list, with what has become of its newest revision.
+QString entry_of(const wire::MillDesign& design) {
+    const QString state = design.newest ? MillPlace::tr("revision %1, %2").arg(*design.newest).arg(state_in_words(words(design.state)))
+                                        : MillPlace::tr("no revision yet");
+    return MillPlace::tr("%1 — %2").arg(words(design.name), state);
+}
+
+/// Typed spaces are hyphens: a name at a mill has none.
+class NameValidator : public QRegularExpressionValidator {
+  public:
+    explicit NameValidator(QObject* parent) : QRegularExpressionValidator(QRegularExpression("[A-Za-z0-9._-]{0,64}"), parent) {}
+    State validate(QString& text, int& cursor) const override {
+        text.replace(' ', '-');
+        return QRegularExpressionValidator::validate(text, cursor);
+    }
+};
+
 }  // namespace
 
 MillPlace::MillPlace(QWidget* parent)
@@ -67,7 +85,7 @@ MillPlace::MillPlace(QWidget* parent)
     for (QComboBox* list : {m_designs, m_branches})
         list->setMinimumContentsLength(12), list->setSizePolicy(QSizePolicy::Expanding, QSizePolicy::Fixed);
     m_name->setObjectName("new_design");
-    m_name->setValidator(new QRegularExpressionValidator(QRegularExpression("[A-Za-z0-9._-]{0,64}"), m_name));
+    m_name->setValidator(new NameValidator(m_name));
     m_name->setToolTip(tr("Letters a to z, digits, point, hyphen and underscore; at most 64"));
     m_branches->setObjectName("branch");
     m_branches->setToolTip(tr("The branch of the design that the revision goes on"));
@@ -115,7 +133,7 @@ void MillPlace::show_access(const MillAccess& access) {
     const QUrl url(access.origin);
     const QString mill = url.port() > 0 ? tr("%1, port %2").arg(url.host()).arg(url.port()) : access.origin;
     m_who->setText(tr("%1 at %2").arg(access.full_name.isEmpty() ? access.name : access.full_name, mill));
-    m_who->setToolTip(tr("%1, signed in as %2: %3").arg(access.origin, access.name, access.roles.join(", ")));
+    m_who->setToolTip(plain_tip(tr("%1, signed in as %2: %3").arg(access.origin, access.name, access.roles.join(", "))));
     if (access.signed_in && m_designs->count() == 0) fill({});
 }
 
@@ -126,19 +144,23 @@ void MillPlace::show_designs(const std::vector<wire::MillDesign>& designs) {
     fill(m_chosen || !is_new() ? design() : QString());
 }
 
+void MillPlace::show_newest(const wire::MillHistory& history) {
+    const auto known = std::find_if(m_known.begin(), m_known.end(), [&](const wire::MillDesign& one) { return one.name == history.design; });
+    const auto newest = std::max_element(history.revisions.begin(), history.revisions.end(),
+                                         [](const auto& one, const auto& other) { return one.number < other.number; });
+    if (known == m_known.end() || newest == history.revisions.end()) return;
+    known->newest = newest->number;
+    known->state = newest->state;
+    m_designs->setItemText(m_designs->findData(words(known->name)), entry_of(*known));
+}
+
 void MillPlace::fill(const QString& chosen) {
     const bool was_new = is_new();
     const QString typed = m_name->text(), meant = design();
     {
         const QSignalBlocker quiet(m_designs), quiet_name(m_name);
         m_designs->clear();
-        for (const wire::MillDesign& design : m_known) {
-            const QString state =
-                design.newest
-                    ? tr("revision %1, %2").arg(*design.newest).arg(state_in_words(words(design.state)))
-                    : tr("no revision yet");
-            m_designs->addItem(tr("%1 — %2").arg(words(design.name), state), words(design.name));
-        }
+        for (const wire::MillDesign& design : m_known) m_designs->addItem(entry_of(design), words(design.name));
         m_designs->addItem(tr("A new design …"));
         if (m_chosen && was_new)
             m_designs->setCurrentIndex(m_designs->count() - 1), m_name->setText(typed);
@@ -154,6 +176,11 @@ void MillPlace::choose(const QString& name) {
     const int found = name.isEmpty() ? -1 : m_designs->findData(name);
     m_designs->setCurrentIndex(found >= 0 ? found : m_designs->count() - 1);
     if (found < 0) m_name->setText(name);
+}
+
+void MillPlace::suggest_anew(const QString& name) {
+    if (!m_chosen) return suggest(name);
+    m_suggested = name_from(name);
 }
 
 void MillPlace::suggest(const QString& name) {

@@ -24,9 +24,13 @@ class MillPlace : public QWidget {
 
     void show_access(const MillAccess& access);
     void show_designs(const std::vector<wire::MillDesign>& designs);
+    /// What has become of a design, which the list of designs tells but now and then.
+    void show_newest(const wire::MillHistory& history);
     void show_branches(const std::vector<wire::MillBranch>& branches);
     /// The name that is meant if the person chose none: the design of this name, or a new one.
     void suggest(const QString& name);
+    /// The same for the design that is open already, whose name has changed: what the person chose stays.
+    void suggest_anew(const QString& name);
     /// A new design was made at the mill under this name.
     void take_made(const QString& name);
 

@@ -1,5 +1,6 @@
 #include <studio/panels/preset_dialog.hpp>
 
+#include <QCheckBox>
 #include <QComboBox>
 #include <QDialogButtonBox>
 #include <QFormLayout>
@@ -43,13 +44,27 @@ int as_int(std::int64_t value) {
     return static_cast<int>(std::clamp<std::int64_t>(value, std::numeric_limits<int>::min(), std::numeric_limits<int>::max()));
 }
 
+/// `pointed-twill` as a weaver writes it: Pointed twill.
+QString plain_name(const std::string& name) {
+    QString plain = QString::fromStdString(name).replace('-', ' ');
+    if (!plain.isEmpty()) plain[0] = plain[0].toUpper();
+    return plain;
+}
+
+/// The move takes more words than a rule has room for.
+QString help_of(const PresetOption& option) {
+    const QString help = QString::fromStdString(option.help);
+    if (option.name != "move") return help;
+    return PresetDialog::tr("The move (counter): how many yarns further the binding point of the next pick lies. It has no divisor in common with the size. %1").arg(help);
+}
+
 }  // namespace
 
 PresetDialog::PresetDialog(QWidget* parent)
     : QDialog(parent), m_families(new QComboBox), m_help(new QLabel), m_form(new QFormLayout), m_picture(new QLabel), m_verdict(new QLabel),
       m_buttons(new QDialogButtonBox(QDialogButtonBox::Ok | QDialogButtonBox::Cancel)) {
     setWindowTitle(tr("Traditional weave"));
-    for (const PresetFamily& family : preset_families()) m_families->addItem(QString::fromStdString(family.name));
+    for (const PresetFamily& family : preset_families()) m_families->addItem(plain_name(family.name), QString::fromStdString(family.name));
     m_families->setAccessibleName(tr("Weave"));
     m_help->setWordWrap(true);
     m_verdict->setWordWrap(true);
@@ -77,24 +92,49 @@ PresetDialog::PresetDialog(QWidget* parent)
 
 void PresetDialog::show_options() {
     while (m_form->rowCount() > 0) m_form->removeRow(0);
-    m_options.clear();
-    const PresetFamily& family = preset_families()[static_cast<std::size_t>(m_families->currentIndex())];
-    m_help->setText(QString::fromStdString(family.help));
-    for (const PresetOption& option : family.options) {
-        auto* box = new QSpinBox;
-        box->setRange(as_int(option.low), as_int(option.high));
-        box->setValue(as_int(option.fallback));
-        box->setToolTip(QString::fromStdString(option.help));
-        box->setObjectName(QString::fromStdString(option.name));
-        box->setAccessibleName(QString::fromStdString(option.name));
-        connect(box, &QSpinBox::valueChanged, this, &PresetDialog::try_out);
-        auto* label = new QLabel(QString::fromStdString(option.name));
-        label->setToolTip(box->toolTip());
-        label->setBuddy(box);
-        m_form->addRow(label, box);
-        m_options[option.name] = box;
+    m_numbers.clear();
+    m_choices.clear();
+    m_help->setText(QString::fromStdString(family().help));
+    for (const PresetOption& option : family().options) {
+        QWidget* field = make_field(option);
+        field->setObjectName(QString::fromStdString(option.name));
+        field->setAccessibleName(plain_name(option.name));
+        field->setToolTip(help_of(option));
+        if (m_choices.contains(option.name)) {
+            m_form->addRow(field);
+            continue;
+        }
+        auto* label = new QLabel(plain_name(option.name));
+        label->setToolTip(field->toolTip());
+        label->setBuddy(field);
+        m_form->addRow(label, field);
     }
     try_out();
+}
+
+/// What can only be 0 or 1 is a box to tick.
+QWidget* PresetDialog::make_field(const PresetOption& option) {
+    if (option.low == 0 && option.high == 1) {
+        auto* box = new QCheckBox(plain_name(option.name));
+        box->setChecked(option.fallback != 0);
+        connect(box, &QCheckBox::toggled, this, &PresetDialog::try_out);
+        return m_choices[option.name] = box;
+    }
+    auto* box = new QSpinBox;
+    box->setRange(as_int(option.low), as_int(option.high));
+    box->setValue(as_int(option.fallback));
+    connect(box, &QSpinBox::valueChanged, this, &PresetDialog::try_out);
+    return m_numbers[option.name] = box;
+}
+
+const PresetFamily& PresetDialog::family() const {
+    return preset_families()[static_cast<std::size_t>(m_families->currentIndex())];
+}
+
+std::int64_t PresetDialog::value_of(const PresetOption& option) const {
+    if (const auto choice = m_choices.find(option.name); choice != m_choices.end()) return choice->second->isChecked() ? 1 : 0;
+    const auto number = m_numbers.find(option.name);
+    return number == m_numbers.end() ? option.fallback : number->second->value();
 }
 
 void PresetDialog::try_out() {
@@ -110,18 +150,17 @@ void PresetDialog::try_out() {
 }
 
 void PresetDialog::set_preset(const Preset& preset) {
-    m_families->setCurrentText(QString::fromStdString(preset.family));
+    m_families->setCurrentIndex(std::max(0, m_families->findData(QString::fromStdString(preset.family))));
     for (const auto& [name, value] : preset.options) {
-        if (m_options.contains(name)) m_options.at(name)->setValue(as_int(value));
+        if (m_numbers.contains(name)) m_numbers.at(name)->setValue(as_int(value));
+        if (m_choices.contains(name)) m_choices.at(name)->setChecked(value != 0);
     }
 }
 
 Preset PresetDialog::preset() const {
-    Preset preset{m_families->currentText().toStdString(), {}};
-    const PresetFamily& family = preset_families()[static_cast<std::size_t>(m_families->currentIndex())];
-    for (const PresetOption& option : family.options) {
-        const auto found = m_options.find(option.name);
-        if (found != m_options.end() && found->second->value() != option.fallback) preset.options[option.name] = found->second->value();
+    Preset preset{family().name, {}};
+    for (const PresetOption& option : family().options) {
+        if (value_of(option) != option.fallback) preset.options[option.name] = value_of(option);
     }
     return preset;
 }

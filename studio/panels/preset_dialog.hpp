@@ -7,6 +7,7 @@
 #include <map>
 #include <string>
 
+class QCheckBox;
 class QComboBox;
 class QDialogButtonBox;
 class QFormLayout;
@@ -34,7 +35,12 @@ class PresetDialog : public QDialog {
     QLabel* m_picture;
     QLabel* m_verdict;
     QDialogButtonBox* m_buttons;
-    std::map<std::string, QSpinBox*> m_options;
+    [[nodiscard]] const PresetFamily& family() const;
+    QWidget* make_field(const PresetOption& option);
+    [[nodiscard]] std::int64_t value_of(const PresetOption& option) const;
+
+    std::map<std::string, QSpinBox*> m_numbers;
+    std::map<std::string, QCheckBox*> m_choices;  ///< options that are a yes or a no
 };
 
 }  // namespace weave::studio

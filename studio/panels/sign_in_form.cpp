@@ -20,8 +20,11 @@ SignInForm::SignInForm(QWidget* parent)
     auto* greeting =
         new QLabel(tr("You are not signed in. A mill keeps every revision of a design and lets others "
                       "approve it; ask your mill's administrator for "
-                      "its address, the fingerprint of its certificate, and an invitation."));
+                      "its address, the fingerprint of its certificate, and an invitation. With the invitation's link "
+                      "join once, in a terminal: loomlink user join LINK. Then sign in here."));
     greeting->setWordWrap(true);
+    greeting->setObjectName("greeting");
+    greeting->setTextInteractionFlags(Qt::TextSelectableByMouse);
     m_origin->setPlaceholderText(tr("https://mill:8443"));
     m_origin->setToolTip(tr("The address of the mill's loomlink"));
     m_fingerprint->setPlaceholderText(tr("64 digits; empty: the system's authorities vouch for it"));

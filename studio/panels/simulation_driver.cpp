@@ -13,11 +13,51 @@ namespace weave::studio {
 namespace {
 
 /// Nodes never change, so those that are one object need not be looked into.
+bool same_source(const NodePtr& one, const NodePtr& other) {
+    return one == other || Node{one->source, {}} == Node{other->source, {}};
+}
+
+/// But for the flips of the cloth itself, which can be led.
 bool same_blocks(const Design& one, const Design& other) {
     return std::equal(one.blocks.begin(), one.blocks.end(), other.blocks.begin(), other.blocks.end(),
-                      [](const auto& a, const auto& b) {
-                          return a.first == b.first && (a.second == b.second || *a.second == *b.second);
+                      [&](const auto& a, const auto& b) {
+                          if (a.first != b.first) return false;
+                          if (a.first == one.root) return same_source(a.second, b.second);
+                          return a.second == b.second || *a.second == *b.second;
                       });
+}
+
+const std::vector<Flip>& flips_of(const Design& design) {
+    static const std::vector<Flip> none;
+    const auto cloth = design.blocks.find(design.root);
+    return cloth == design.blocks.end() ? none : cloth->second->flips;
+}
+
+bool same_place(const Flip& one, const Flip& other) {
+    return one.pick == other.pick && one.end == other.end;
+}
+
+/// The flip of a crossing that counts: of several at one place the last.
+const Flip* last_at(const std::vector<Flip>& flips, const Flip& place) {
+    const auto found = std::find_if(flips.rbegin(), flips.rend(), [&](const Flip& one) { return same_place(one, place); });
+    return found == flips.rend() ? nullptr : &*found;
+}
+
+Flip opposite(const Flip& flip) {
+    return {flip.pick, flip.end, !flip.weft_over};
+}
+
+/// What leads from the crossings as the one has them to those of the other: a flip that is gone goes the other way.
+std::vector<Flip> flips_between(const std::vector<Flip>& before, const std::vector<Flip>& now) {
+    std::vector<Flip> between;
+    for (const Flip& flip : before) {
+        if (last_at(now, flip) == nullptr && last_at(before, flip) == &flip) between.push_back(opposite(flip));
+    }
+    for (const Flip& flip : now) {
+        const Flip* was = last_at(before, flip);
+        if (last_at(now, flip) == &flip && (was == nullptr || *was != flip)) between.push_back(flip);
+    }
+    return between;
 }
 
 /// Whether a run of the one shows the other, but for what can be led into it.
@@ -54,6 +94,7 @@ void SimulationDriver::start(const Design& design, const sim::RunRequest& reques
     m_started = design;
     m_highest = 0;
     m_is_to_run = false;
+    forget_flips();
     connect_run();
     Q_EMIT begun();
     m_run->start(design, request);
@@ -104,10 +145,24 @@ void SimulationDriver::take(const Progress& progress) {
     Q_EMIT state_changed();
 }
 
-/// What was flipped in the run is what the design gets as an edit: after that they show the same.
+/// What was flipped in the run is what the design gets as an edit: after that they show the same. What the
+/// design had before the run is no edit once more.
 void SimulationDriver::take_flip(const Flip& flip, bool done, const QString& reason) {
-    if (done) static_cast<void>(apply_edit(m_started, PutFlip{m_started.root, flip}));
-    Q_EMIT flip_ended(flip, done, reason);
+    const auto led = std::find(m_led.begin(), m_led.end(), flip);
+    if (led == m_led.end()) {
+        static_cast<void>(std::erase(m_asked, flip));
+        if (done) static_cast<void>(apply_edit(m_started, PutFlip{m_started.root, flip}));
+        Q_EMIT flip_ended(flip, done, reason);
+        return;
+    }
+    m_led.erase(led);
+    if (done) return;
+    m_refused.push_back(flip);
+    Q_EMIT fell_behind(flip, reason);
+}
+
+bool SimulationDriver::is_refused(const Flip& flip) const {
+    return std::any_of(m_refused.begin(), m_refused.end(), [&](const Flip& one) { return same_place(one, flip); });
 }
 
 void SimulationDriver::run() {
@@ -132,18 +187,48 @@ void SimulationDriver::stop() {
 }
 
 void SimulationDriver::flip(const Flip& flip) {
-    if (is_open()) m_run->flip(flip);
+    if (!is_open()) return;
+    m_asked.push_back(flip);
+    m_run->flip(flip);
+}
+
+void SimulationDriver::leave() {
+    m_run.reset();
+    m_state = {};
+    m_plan.reset();
+    m_is_to_run = false;
+    forget_flips();
+    Q_EMIT begun();
+}
+
+void SimulationDriver::forget_flips() {
+    m_asked.clear();
+    m_led.clear();
+    m_refused.clear();
 }
 
 bool SimulationDriver::follow(const Design& design) {
     if (m_state.phase == RunPhase::idle) return false;
     if (!same_cloth(m_started, design)) return true;
-    if (!is_open()) return m_started.scene != design.scene;
+    if (!is_open()) return m_started.scene != design.scene || !flips_between(flips_of(m_started), flips_of(design)).empty();
+    lead_flips(design);
     lead_parameters(design.scene);
     if (m_started.scene.pins != design.scene.pins) m_run->hold(design.scene.pins);
     if (m_started.scene.fields != design.scene.fields) m_run->push(design.scene.fields);
     m_started.scene = design.scene;
-    return false;
+    return !m_refused.empty();
+}
+
+/// A crossing that the run did not turn lies as before: turned back in the design, the two agree again, and
+/// there is nothing to lead.
+void SimulationDriver::lead_flips(const Design& design) {
+    for (const Flip& flip : flips_between(flips_of(m_started), flips_of(design))) {
+        if (std::erase_if(m_refused, [&](const Flip& one) { return one == opposite(flip); }) > 0) continue;
+        if (is_refused(flip)) continue;
+        m_led.push_back(flip);
+        if (std::erase(m_asked, flip) == 0) m_run->flip(flip);
+    }
+    m_started.blocks = design.blocks;
 }
 
 void SimulationDriver::lead_parameters(const Scene& scene) {

@@ -9,6 +9,7 @@
 #include <studio/jobs/relaxation.hpp>
 #include <studio/jobs/server_place.hpp>
 #include <studio/jobs/state_words.hpp>
+#include <vector>
 
 namespace weave::studio {
 
@@ -26,9 +27,11 @@ class SimulationDriver : public QObject {
     void step(std::uint64_t steps);
     void stop();
     void flip(const Flip& flip);
+    /// Nobody looks at the run any more: it ends, and nothing of it arrives from here on.
+    void leave();
 
-    /// The design as it is now: strain, stiffness, radii, pins and fields are led into the run. Whether the
-    /// run shows another design all the same, so that it would have to start again.
+    /// The design as it is now: strain, stiffness, radii, pins, fields and flips of the cloth are led into the
+    /// run. Whether the run shows another design all the same, so that it would have to start again.
     bool follow(const Design& design);
 
     [[nodiscard]] const RunState& state() const { return m_state; }
@@ -47,7 +50,10 @@ class SimulationDriver : public QObject {
     void laid_out(const std::shared_ptr<const weave::studio::YarnLayout>& layout);
     void frame_came(const std::shared_ptr<const weave::studio::Frame>& frame);
     void yarns_came(const std::shared_ptr<const weave::Yarns>& yarns);
+    /// Of flip(): one that is done belongs into the design.
     void flip_ended(const weave::Flip& flip, bool done, const QString& reason);
+    /// A flip of the design that the run does not take: it no longer shows the design.
+    void fell_behind(const weave::Flip& flip, const QString& reason);
     void refused(const weave::Error& error);
     void troubled(const QString& words);
 
@@ -57,11 +63,17 @@ class SimulationDriver : public QObject {
     void take(const Progress& progress);
     void take_flip(const Flip& flip, bool done, const QString& reason);
     void lead_parameters(const Scene& scene);
+    void lead_flips(const Design& design);
+    void forget_flips();
+    [[nodiscard]] bool is_refused(const Flip& flip) const;
 
     std::unique_ptr<Relaxation> m_run;
     RunState m_state;
     std::shared_ptr<const PlanSummary> m_plan;
     Design m_started;  ///< what the run shows, with what was led into it
+    std::vector<Flip> m_asked;    ///< flips under way in the run that the design gets once they are done
+    std::vector<Flip> m_led;      ///< flips under way that the design has already
+    std::vector<Flip> m_refused;  ///< flips of the design that the run did not take
     double m_highest = 0;
     bool m_is_to_run = false;  ///< asked for, and not yet begun
 };

@@ -5,6 +5,7 @@
 #include <QStyledItemDelegate>
 
 #include <algorithm>
+#include <studio/panels/plain_tip.hpp>
 
 namespace weave::studio {
 
@@ -35,7 +36,7 @@ class WrappingLines : public QStyledItemDelegate {
 
 QTreeWidgetItem* line_below(QTreeWidgetItem* above, const QString& words) {
     auto* item = new QTreeWidgetItem(above, {words});
-    item->setToolTip(0, words);
+    item->setToolTip(0, plain_tip(words));
     return item;
 }
 

@@ -1,10 +1,12 @@
 #include <studio/panels/simulation_panel.hpp>
 
 #include <QAction>
+#include <QComboBox>
 #include <QFileDialog>
 #include <QFileInfo>
 #include <QLabel>
 #include <QProgressBar>
+#include <QRadioButton>
 #include <QSpinBox>
 #include <QTabWidget>
 
@@ -18,6 +20,7 @@
 #include <studio/panels/simulation_residual_plot.hpp>
 #include <studio/panels/simulation_scene_group.hpp>
 #include <studio/panels/simulation_system_group.hpp>
+#include <utility>
 
 namespace weave::studio {
 
@@ -37,12 +40,42 @@ void SimulationPanel::set_design(const Design& design) {
     m_warp->set_values(design.scene.warp);
     m_weft->set_values(design.scene.weft);
     m_scene->set_scene(design.scene);
-    m_is_out_of_date = m_driver->follow(m_design);
-    show_actions();
+    set_out_of_date(m_driver->follow(m_design));
+}
+
+void SimulationPanel::clear_design() {
+    m_files->forget();  // what is still being read was for the design that was here
+    m_design = {};
+    m_has_design = m_choices_differ = false;
+    m_message->clear();
+    m_driver->leave();
+    m_region->whole()->setChecked(true);
+    set_out_of_date(false);
+}
+
+/// Nothing of an earlier run is shown as if it were of this one.
+void SimulationPanel::forget_run() {
+    m_plot->clear();
+    m_findings->set_plan({});
+    m_findings->set_inspection({}, false);
+    m_shown_inspection.reset();
+    m_yarns.reset();
+    show_state();
+    Q_EMIT begun();
+}
+
+void SimulationPanel::set_out_of_date(bool is_dated) {
+    const bool changes = std::exchange(m_is_out_of_date, is_dated) != is_dated;
+    show_state();
+    if (changes) Q_EMIT dated_changed(is_dated);
+}
+
+void SimulationPanel::set_cloth(const BlockGrid& grid) {
+    m_region->set_cloth(grid);
 }
 
 void SimulationPanel::set_cloth_size(std::size_t rows, std::size_t columns) {
-    m_region->set_cloth_size(rows, columns);
+    set_cloth(BlockGrid(std::vector<std::uint32_t>(rows, 1), std::vector<std::uint32_t>(columns, 1)));
 }
 
 /// The run has it before the owner of the design does; both come to the same.
@@ -53,8 +86,7 @@ void SimulationPanel::edit_scene(bool is_dragging) {
     m_scene->put_into(scene);
     if (scene == m_design.scene && is_dragging) return;
     m_design.scene = scene;
-    m_is_out_of_date = m_driver->follow(m_design);
-    show_actions();
+    set_out_of_date(m_driver->follow(m_design));
     Q_EMIT scene_edited(scene, is_dragging);
 }
 
@@ -74,19 +106,26 @@ bool SimulationPanel::begin() {
     request.start_from = m_fidelity->start_from();
     request.goal.most_iterations = wire::most_number;  // on as long as somebody wants it to
     m_message->clear();
-    m_is_out_of_date = m_choices_differ = false;
+    m_choices_differ = false;
+    m_machine = m_backend->choice()->currentText();
     m_driver->start(m_design, request, m_backend->server());
+    set_out_of_date(false);
     return true;
+}
+
+/// Whether to go on with the run there is would show something else than was asked for, or nothing at all.
+bool SimulationPanel::begins_anew() const {
+    return !m_driver->is_open() || m_is_out_of_date || (m_choices_differ && m_driver->state().phase == RunPhase::at_rest);
 }
 
 void SimulationPanel::toggle_run() {
     if (m_driver->is_running()) return m_driver->pause();
-    if (!m_driver->is_open() && !begin()) return;
+    if (begins_anew() && !begin()) return;
     m_driver->run();
 }
 
 void SimulationPanel::step() {
-    if (!m_driver->is_open() && !begin()) return;
+    if (begins_anew() && !begin()) return;
     m_driver->step(static_cast<std::uint64_t>(m_steps->value()));
 }
 
@@ -145,7 +184,7 @@ void SimulationPanel::show_file(const std::shared_ptr<const Yarns>& yarns,
 
 void SimulationPanel::show_state() {
     const RunState& state = m_driver->state();
-    m_sentence->setText(state_words(state));
+    m_sentence->setText(m_is_out_of_date ? dated_words(state) : state_words(state));
     m_sentence->setAccessibleName(m_sentence->text());
     m_plot->set_goal(state.progress.goal);
     show_progress();
@@ -162,9 +201,10 @@ void SimulationPanel::show_progress() {
     const bool is_working = state.phase == RunPhase::planning || state.phase == RunPhase::running;
     const std::optional<double> share = m_driver->share_done();
     m_progress->setRange(0, is_working && !share ? 0 : whole);  // 0: it works, and nobody knows how long
-    m_progress->setValue(static_cast<int>(share.value_or(0) * whole));
-    const bool has_time = state.phase == RunPhase::running && state.progress.seconds_left;
-    m_progress->setFormat(has_time ? tr("%1 to go").arg(duration_words(*state.progress.seconds_left))
+    m_progress->setValue(m_is_out_of_date && !is_working ? 0 : static_cast<int>(share.value_or(0) * whole));
+    // How long it will take is said once, above.
+    m_progress->setFormat(state.phase == RunPhase::running && share ? QStringLiteral("%p %")
+                          : state.phase == RunPhase::at_rest && m_is_out_of_date ? tr("the design has changed")
                           : state.phase == RunPhase::at_rest  ? tr("at rest")
                           : state.phase == RunPhase::planning ? tr("laying out")
                                                               : QString());
@@ -180,9 +220,10 @@ void SimulationPanel::show_findings() {
 
 void SimulationPanel::show_actions() {
     const RunPhase phase = m_driver->state().phase;
-    const bool runs = m_driver->is_running(), is_done = phase == RunPhase::at_rest && m_driver->is_open();
-    m_run_action->setText(runs ? tr("Pause") : phase == RunPhase::paused ? tr("Go on") : tr("Run"));
-    m_run_action->setIcon(style()->standardIcon(runs ? QStyle::SP_MediaPause : QStyle::SP_MediaPlay));
+    const bool runs = m_driver->is_running(), is_done = phase == RunPhase::at_rest && !begins_anew();
+    const bool goes_on = phase == RunPhase::paused && !begins_anew();
+    m_run_action->setText(runs ? tr("Pause") : goes_on ? tr("Go on") : tr("Run"));
+    show_icons();
     m_run_action->setEnabled(m_has_design && (runs || !is_done));
     m_step_action->setEnabled(m_has_design && !runs && !is_done);
     m_steps->setEnabled(m_step_action->isEnabled());
@@ -192,7 +233,8 @@ void SimulationPanel::show_actions() {
     m_out_of_date->setVisible(phase != RunPhase::idle && (m_is_out_of_date || m_choices_differ));
     m_out_of_date->setText(
         m_is_out_of_date
-            ? tr("The design has changed in a way that this run does not show. Start again to see it.")
+            ? runs ? tr("The design has changed in a way that this run does not show. Start again to see it.")
+                   : tr("The design has changed in a way that this run does not show. Run starts again with it.")
             : tr("What was chosen counts from the next start on."));
 }
 

@@ -1,5 +1,6 @@
 #pragma once
 
+#include <weave/block/block_grid.hpp>
 #include <weave/design/design.hpp>
 
 #include <QWidget>
@@ -39,8 +40,11 @@ class SimulationPanel : public QWidget {
     /// The design as it is now; a run goes on with it as far as changes can be led in, else it is marked as
     /// out of date.
     void set_design(const Design& design);
+    /// No design is shown, or another one: the run ends, and nothing of it is told from here on.
+    void clear_design();
     /// Rows and columns of stacks of its cloth, for the part that is simulated.
-    void set_cloth_size(std::size_t rows, std::size_t columns);
+    void set_cloth(const BlockGrid& grid);
+    void set_cloth_size(std::size_t rows, std::size_t columns);  ///< of one pick and one end each
     /// Leads a crossing of the running simulation to its other side.
     void flip(const Flip& flip);
 
@@ -55,6 +59,8 @@ class SimulationPanel : public QWidget {
 
     [[nodiscard]] const RunState& state() const;
     [[nodiscard]] bool is_out_of_date() const { return m_is_out_of_date; }
+    /// Where the run computes, in words; as it was chosen when it began.
+    [[nodiscard]] const QString& machine() const { return m_machine; }
     /// Without asking for a name: .yarns, .vtp or .obj.
     void save_to(const QString& file);
     void open(const QString& file);
@@ -79,16 +85,23 @@ class SimulationPanel : public QWidget {
     void place_wanted(std::size_t pick, std::size_t end);
 
     // For a view of the yarns, as Relaxation has them.
+    /// A run begins, or there is none any more.
+    void begun();
+    /// Whether what is shown is of the design before a change.
+    void dated_changed(bool is_dated);
     void phase_changed(weave::studio::RunPhase phase);
     void laid_out(const std::shared_ptr<const weave::studio::YarnLayout>& layout);
     void frame_came(const std::shared_ptr<const weave::studio::Frame>& frame);
     /// At rest, paused or from a file: for colours by strain, contact and displacement.
     void yarns_came(const std::shared_ptr<const weave::Yarns>& yarns);
+    /// What the run of this design came to, as yarns_came() told; a file is none.
+    void run_stood(const std::shared_ptr<const weave::Yarns>& yarns);
     /// One that is done belongs into the design (PutFlip).
     void flip_ended(const weave::Flip& flip, bool done, const QString& reason);
 
   protected:
     bool eventFilter(QObject* watched, QEvent* event) override;
+    void changeEvent(QEvent* event) override;
 
   private:
     void make_actions();
@@ -101,6 +114,9 @@ class SimulationPanel : public QWidget {
     void guard_keys();
 
     [[nodiscard]] bool begin();
+    [[nodiscard]] bool begins_anew() const;
+    void forget_run();
+    void set_out_of_date(bool is_dated);
     void toggle_run();
     void step();
     void start_again();
@@ -110,6 +126,7 @@ class SimulationPanel : public QWidget {
     void ask_to_open();
     void show_state();
     void show_actions();
+    void show_icons();
     void show_progress();
     void show_findings();
     void show_file(const std::shared_ptr<const Yarns>& yarns,
@@ -117,6 +134,7 @@ class SimulationPanel : public QWidget {
 
     Design m_design;
     bool m_has_design = false, m_is_out_of_date = false, m_choices_differ = false;
+    QString m_machine;
     RunPhase m_shown_phase = RunPhase::idle;
     std::shared_ptr<const Yarns> m_yarns;  ///< that can be saved
     std::shared_ptr<const Inspection> m_shown_inspection;

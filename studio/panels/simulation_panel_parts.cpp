@@ -12,6 +12,8 @@
 #include <QHBoxLayout>
 #include <QKeyEvent>
 #include <QLabel>
+#include <QPainter>
+#include <QPainterPath>
 #include <QProgressBar>
 #include <QScrollArea>
 #include <QSpinBox>
@@ -51,6 +53,40 @@ QToolButton* button_of(QAction* action, Qt::ToolButtonStyle look) {
     button->setToolButtonStyle(look);
     button->setFocusPolicy(Qt::StrongFocus);
     return button;
+}
+
+enum class Sign { run, pause, step, stop };
+
+/// The shape of a sign, within a square of 16.
+QPainterPath shape_of(Sign sign) {
+    QPainterPath path;
+    const auto triangle = [&path](double left) {
+        path.addPolygon(QPolygonF{{left, 3}, {left + 9, 8}, {left, 13}});
+        path.closeSubpath();
+    };
+    if (sign == Sign::run) triangle(4);
+    if (sign == Sign::step) triangle(2), path.addRect(11.5, 3, 2.5, 10);
+    if (sign == Sign::pause) path.addRect(3.5, 3, 3.5, 10), path.addRect(9, 3, 3.5, 10);
+    if (sign == Sign::stop) path.addRect(3.5, 3.5, 9, 9);
+    return path;
+}
+
+/// In the colour that text has: the style's own signs are black on a dark ground.
+QIcon icon_of(Sign sign, const QPalette& palette) {
+    constexpr int side = 16, times = 4;  // for dense displays
+    QIcon icon;
+    for (const auto& [mode, group] : {std::pair(QIcon::Normal, QPalette::Active), std::pair(QIcon::Disabled, QPalette::Disabled)}) {
+        QPixmap pixmap(side * times, side * times);
+        pixmap.fill(Qt::transparent);
+        QPainter painter(&pixmap);
+        painter.setRenderHint(QPainter::Antialiasing);
+        painter.scale(times, times);
+        painter.fillPath(shape_of(sign), palette.color(group, QPalette::ButtonText));
+        painter.end();
+        pixmap.setDevicePixelRatio(times);
+        icon.addPixmap(pixmap, mode);
+    }
+    return icon;
 }
 
 }  // namespace
@@ -133,6 +169,7 @@ QWidget* SimulationPanel::make_controls() {
     buttons->addStretch(1);
     lines->addLayout(buttons);
     m_sentence->setWordWrap(true);
+    m_sentence->setTextFormat(Qt::PlainText);  // it quotes what servers and files say
     m_sentence->setTextInteractionFlags(Qt::TextSelectableByMouse);
     QFont bold = font();
     bold.setBold(true);
@@ -142,6 +179,7 @@ QWidget* SimulationPanel::make_controls() {
     m_progress->setAccessibleName(tr("Progress"));
     lines->addWidget(m_progress);
     m_out_of_date->setWordWrap(true);
+    m_out_of_date->setTextFormat(Qt::PlainText);
     lines->addWidget(m_out_of_date);
     return part;
 }
@@ -202,12 +240,7 @@ void SimulationPanel::connect_parts() {
 }
 
 void SimulationPanel::connect_driver() {
-    connect(m_driver, &SimulationDriver::begun, this, [this] {
-        m_plot->clear();
-        m_findings->set_plan({});
-        m_yarns.reset();
-        show_state();
-    });
+    connect(m_driver, &SimulationDriver::begun, this, &SimulationPanel::forget_run);
     connect(m_driver, &SimulationDriver::planned, this,
             [this] { m_findings->set_plan(plan_words(*m_driver->plan())); });
     connect(m_driver, &SimulationDriver::state_changed, this, &SimulationPanel::show_state);
@@ -217,6 +250,7 @@ void SimulationPanel::connect_driver() {
     connect(m_driver, &SimulationDriver::yarns_came, this, [this](const auto& yarns) {
         m_yarns = yarns;
         Q_EMIT yarns_came(yarns);
+        Q_EMIT run_stood(yarns);
     });
     connect(m_driver, &SimulationDriver::flip_ended, this,
             [this](const Flip& flip, bool done, const QString& reason) {
@@ -227,6 +261,12 @@ void SimulationPanel::connect_driver() {
                             .arg(QString::number(flip.pick + 1), QString::number(flip.end + 1), reason));
                 Q_EMIT flip_ended(flip, done, reason);
             });
+    connect(m_driver, &SimulationDriver::fell_behind, this, [this](const Flip& flip, const QString& reason) {
+        m_message->tell(MessageBar::Kind::warning,
+                        tr("The simulated cloth does not follow at pick %1, end %2: %3")
+                            .arg(QString::number(flip.pick + 1), QString::number(flip.end + 1), reason));
+        set_out_of_date(true);
+    });
     connect(m_driver, &SimulationDriver::refused, this, [this](const Error& error) {
         m_message->tell(MessageBar::Kind::warning, tr("Not done: %1").arg(error_words(error)));
     });
@@ -236,6 +276,17 @@ void SimulationPanel::connect_driver() {
         else
             m_message->tell(MessageBar::Kind::warning, tr("%1; trying again").arg(words));
     });
+}
+
+void SimulationPanel::show_icons() {
+    m_run_action->setIcon(icon_of(m_driver->is_running() ? Sign::pause : Sign::run, palette()));
+    m_step_action->setIcon(icon_of(Sign::step, palette()));
+    m_stop_action->setIcon(icon_of(Sign::stop, palette()));
+}
+
+void SimulationPanel::changeEvent(QEvent* event) {
+    QWidget::changeEvent(event);
+    if (event->type() == QEvent::PaletteChange) show_icons();
 }
 
 // ---- Keys and wheel ----

@@ -53,13 +53,15 @@ void ParameterRow::name(const QString& name, const QString& tool_tip) {
 }
 
 double ParameterRow::value() const {
-    return m_spin->value();
+    return m_spin->value() == m_rounded ? m_given : m_spin->value();
 }
 
 void ParameterRow::set_value(double value) {
     const QSignalBlocker quiet_spin(m_spin), quiet_slider(m_slider);
     m_spin->setRange(std::min(m_range.least, value), std::max(m_range.most, value));
     m_spin->setValue(value);
+    m_given = value;
+    m_rounded = m_spin->value();
     m_slider->setValue(place_of(value));
 }
 

@@ -45,6 +45,7 @@ class ParameterRow : public QWidget {
     ParameterRange m_range;
     QDoubleSpinBox* m_spin;
     QSlider* m_slider;
+    double m_given = 0, m_rounded = 0;  ///< the value that is shown, and as the box has it: nobody's edit shortens it
 };
 
 }  // namespace weave::studio

@@ -8,6 +8,7 @@
 
 #include <algorithm>
 #include <limits>
+#include <numeric>
 
 namespace weave::studio {
 
@@ -21,10 +22,16 @@ int limited(std::size_t count) {
     return static_cast<int>(std::min<std::size_t>(count, std::numeric_limits<int>::max()));
 }
 
+void put(QSpinBox* box, int value) {
+    const QSignalBlocker quiet(box);
+    box->setValue(value);
+}
+
 }  // namespace
 
 RegionGroup::RegionGroup(QWidget* parent)
     : QGroupBox(tr("What is simulated"), parent),
+      m_yarns(new QLabel(this)),
       m_whole(new QRadioButton(tr("The &whole cloth"), this)),
       m_part(new QRadioButton(tr("A &part of it"), this)),
       m_first_row(new QSpinBox(this)),
@@ -54,16 +61,20 @@ RegionGroup::RegionGroup(QWidget* parent)
             box->setEnabled(false);
         }
     };
-    add(2, tr("Rows"), m_first_row, m_last_row);
-    add(3, tr("Columns"), m_first_column, m_last_column);
+    add(2, tr("Rows of picks"), m_first_row, m_last_row);
+    add(3, tr("Columns of ends"), m_first_column, m_last_column);
+    grid->addWidget(m_yarns, 4, 0, 1, 5);
     grid->setColumnStretch(4, 1);
     m_whole->setChecked(true);
     connect(m_part, &QRadioButton::toggled, this, [this] { Q_EMIT edited(); });
-    set_cloth_size(std::size_t{1} << 28U, std::size_t{1} << 28U);
-    for (QSpinBox* last : {m_last_row, m_last_column}) last->setValue(usual_part);
+    set_cloth(BlockGrid({1}, {1}));
 }
 
-void RegionGroup::set_cloth_size(std::size_t rows, std::size_t columns) {
+/// A part that nobody has chosen follows the cloth.
+void RegionGroup::set_cloth(const BlockGrid& cloth) {
+    if (m_grid == cloth) return;
+    m_grid = cloth;
+    const std::size_t rows = cloth.rows(), columns = cloth.columns();
     const QSignalBlocker quiet(this);
     const auto limit = [](QSpinBox* first, QSpinBox* last, int count) {
         const QSignalBlocker quiet_first(first), quiet_last(last);
@@ -72,6 +83,10 @@ void RegionGroup::set_cloth_size(std::size_t rows, std::size_t columns) {
     };
     limit(m_first_row, m_last_row, limited(rows));
     limit(m_first_column, m_last_column, limited(columns));
+    if (m_whole->isChecked()) {
+        for (QSpinBox* first : {m_first_row, m_first_column}) put(first, 1);
+        for (QSpinBox* last : {m_last_row, m_last_column}) put(last, usual_part);
+    }
     const bool is_cuttable = rows >= fewest && columns >= fewest;
     m_part->setEnabled(is_cuttable);
     if (!is_cuttable) m_whole->setChecked(true);
@@ -85,6 +100,19 @@ void RegionGroup::keep_in_order() {
     };
     keep(m_first_row, m_last_row);
     keep(m_first_column, m_last_column);
+    tell_yarns();
+}
+
+void RegionGroup::tell_yarns() {
+    const auto after = [](const std::vector<std::uint32_t>& counts, int lines) {
+        const auto most = std::min<std::size_t>(counts.size(), static_cast<std::size_t>(lines));
+        return std::accumulate(counts.begin(), counts.begin() + static_cast<std::ptrdiff_t>(most), std::size_t{0});
+    };
+    m_yarns->setText(tr("picks %1 to %2, ends %3 to %4")
+                         .arg(after(m_grid.t(), m_first_row->value() - 1) + 1)
+                         .arg(after(m_grid.t(), m_last_row->value()))
+                         .arg(after(m_grid.p(), m_first_column->value() - 1) + 1)
+                         .arg(after(m_grid.p(), m_last_column->value())));
 }
 
 std::optional<Region> RegionGroup::region() const {

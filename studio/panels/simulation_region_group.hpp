@@ -1,5 +1,6 @@
 #pragma once
 
+#include <weave/block/block_grid.hpp>
 #include <weave/curve/cloth_curves.hpp>
 
 #include <QGroupBox>
@@ -7,6 +8,7 @@
 #include <cstddef>
 #include <optional>
 
+class QLabel;
 class QRadioButton;
 class QSpinBox;
 
@@ -18,8 +20,8 @@ class RegionGroup : public QGroupBox {
   public:
     explicit RegionGroup(QWidget* parent = nullptr);
 
-    /// The whole cloth has so many rows and columns of stacks.
-    void set_cloth_size(std::size_t rows, std::size_t columns);
+    /// Rows and columns of stacks of the whole cloth, and the picks and ends that each of them has.
+    void set_cloth(const BlockGrid& grid);
     /// Nothing: the whole.
     [[nodiscard]] std::optional<Region> region() const;
     [[nodiscard]] QRadioButton* whole() const { return m_whole; }
@@ -34,7 +36,10 @@ class RegionGroup : public QGroupBox {
 
   private:
     void keep_in_order();
+    void tell_yarns();
 
+    BlockGrid m_grid;
+    QLabel* m_yarns;  ///< the part in picks and ends
     QRadioButton *m_whole, *m_part;
     QSpinBox *m_first_row, *m_last_row, *m_first_column, *m_last_column;
 };

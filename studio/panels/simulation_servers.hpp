@@ -5,6 +5,8 @@
 #include <studio/jobs/server_place.hpp>
 #include <vector>
 
+class QLabel;
+class QPushButton;
 class QTableWidget;
 
 namespace weave::studio {
@@ -27,8 +29,12 @@ class ServersDialog : public QDialog {
   private:
     void remove_chosen();
     void choose_token_file();
+    void test_chosen();
+    [[nodiscard]] ServerWish server_in(int line) const;
 
     QTableWidget* m_table;
+    QLabel* m_answer;  ///< of the server that was tested
+    QPushButton* m_test = nullptr;
 };
 
 }  // namespace weave::studio

@@ -6,6 +6,7 @@
 #include <QPixmap>
 #include <QStyle>
 #include <QVBoxLayout>
+#include <studio/panels/plain_tip.hpp>
 
 namespace weave::studio {
 
@@ -57,7 +58,7 @@ StepBox::StepBox(int number, const QString& title, QWidget* parent)
 
 void StepBox::say(const QString& words) {
     m_words->setText(words);
-    m_words->setToolTip(words);
+    m_words->setToolTip(plain_tip(words));
 }
 
 }  // namespace weave::studio

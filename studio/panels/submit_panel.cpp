@@ -137,16 +137,18 @@ void SubmitPanel::connect_desk() {
                                      "what you wrote stays.")
                                       .arg(m_desk.access().origin));
         m_again->setVisible(!reached);
+        if (reached) compare();  // it may have failed for that
         judge();
     });
     connect(&m_desk, &MillDesk::compared, this, [this](const MillComparison& comparison) {
         m_comparison = comparison;
+        m_not_comparable.reset();
         m_changes->show(comparison);
         judge();
     });
     connect(&m_desk, &MillDesk::saved, this, [this](const QString& design, qint64 number) {
         m_just_saved = number;
-        m_form->clear_note();
+        if (!m_submits) m_form->clear_note();  // a submission that is refused is tried again with it
         m_form->tell(tr("Saved as revision %1 of %2.").arg(number).arg(design));
     });
     connect(&m_desk, &MillDesk::submitted, this, [this](qint64 number, const QString& state) {
@@ -206,6 +208,7 @@ void SubmitPanel::clear_design() {
     m_design.reset();
     m_cloth.reset();
     m_comparison.reset();
+    m_not_comparable.reset();
     m_desk.forget_comparison();
     m_has_findings = false;
     m_evidence->set_design({}, m_edition);
@@ -217,11 +220,21 @@ void SubmitPanel::suggest_name(const QString& name) {
     m_place->suggest(name);
 }
 
+void SubmitPanel::suggest_anew(const QString& name) {
+    m_place->suggest_anew(name);
+}
+
 void SubmitPanel::set_findings(std::size_t errors, std::size_t warnings, const QString& text) {
     m_errors = errors;
     m_warnings = warnings;
     m_findings_text = text;
     m_has_findings = true;
+    tell_what();
+    judge();
+}
+
+void SubmitPanel::forget_findings() {
+    m_has_findings = false;
     tell_what();
     judge();
 }
@@ -256,6 +269,7 @@ void SubmitPanel::take_access() {
     } else {
         m_history.reset();
         m_comparison.reset();
+        m_not_comparable.reset();
         m_review->clear();
         m_changes->show_revisions({}, {});
         m_changes->say(tr("Sign in to see what changed since the last revision."));
@@ -266,6 +280,7 @@ void SubmitPanel::take_access() {
 void SubmitPanel::take_design_choice() {
     m_history.reset();
     m_comparison.reset();
+    m_not_comparable.reset();
     m_just_saved.reset();
     m_trouble->setText({});
     m_review->clear();
@@ -279,6 +294,8 @@ void SubmitPanel::take_design_choice() {
 
 void SubmitPanel::take_history(const wire::MillHistory& history) {
     m_history = history;
+    m_not_comparable.reset();
+    m_place->show_newest(history);
     m_place->show_branches(history.branches);
     m_changes->show_revisions(history.revisions, history.head_of(m_place->branch().toStdString()));
     m_review->show_history(history, std::exchange(m_just_saved, std::nullopt));
@@ -300,8 +317,11 @@ void SubmitPanel::take_trouble(const MillTrouble& trouble) {
     if (trouble.given_up)
         return m_trouble->setText(
             tr("Cancelled. If the mill had all of it already, the revision shows below."));
-    if (trouble.task == MillTask::compare)
-        return m_changes->say(tr("The revision cannot be compared: %1").arg(trouble.words));
+    if (trouble.task == MillTask::compare) {
+        m_not_comparable = m_edition;
+        m_changes->say(tr("The revision cannot be compared: %1").arg(trouble.words));
+        return judge();
+    }
     if (trouble.task == MillTask::hand_in) {
         m_trouble->setText(tr("The mill did not take it: %1").arg(trouble.words));
         return m_desk.refresh();
@@ -336,6 +356,7 @@ const wire::MillRevision* SubmitPanel::head() const {
 
 std::optional<bool> SubmitPanel::is_saved() const {
     if (m_place->is_new() || (m_history && head() == nullptr)) return false;
+    if (m_not_comparable == m_edition) return false;  // what nobody can read keeps nobody from going on
     if (!m_comparison || !m_history || m_comparison->edition != m_edition) return {};
     if (m_comparison->number != head()->number)
         return false;  // the person compares with an older one; the mill knows
@@ -357,7 +378,7 @@ void SubmitPanel::hand_in(bool submits, const QString& note, const QString& pass
         wish.document = *m_design;
     if (const auto* paper = m_evidence->paper()) wish.evidence.push_back(*paper);
     wish.note = note;
-    wish.submits = submits;
+    wish.submits = m_submits = submits;
     wish.password = password;
     m_desk.hand_in(std::move(wish));
 }

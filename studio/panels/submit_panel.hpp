@@ -43,8 +43,12 @@ class SubmitPanel : public QWidget {
     void clear_design();
     /// The name that the design may have at the mill, such as its title; asked when another design is opened.
     void suggest_name(const QString& name);
+    /// The open design has another name: what the person chose at the mill stays.
+    void suggest_anew(const QString& name);
     /// What the rules of a loom have to say of it.
     void set_findings(std::size_t errors, std::size_t warnings, const QString& text);
+    /// They have nothing to say, as there is no cloth.
+    void forget_findings();
     [[nodiscard]] EvidenceBox& evidence() { return *m_evidence; }
     MillDesk& desk() { return m_desk; }
 
@@ -85,9 +89,10 @@ class SubmitPanel : public QWidget {
     std::uint64_t m_edition = 0;
     std::size_t m_errors = 0, m_warnings = 0;
     QString m_findings_text;
-    bool m_has_findings = false, m_looked_in = false;
+    bool m_has_findings = false, m_looked_in = false, m_submits = false;
     std::optional<wire::MillHistory> m_history;
     std::optional<MillComparison> m_comparison;
+    std::optional<std::uint64_t> m_not_comparable;  ///< the edition that could not be compared
     std::optional<std::int64_t> m_just_saved;
 
     TroubleLabel *m_gone, *m_trouble;

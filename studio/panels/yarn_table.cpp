@@ -2,7 +2,6 @@
 
 #include <QColorDialog>
 #include <QHeaderView>
-#include <QScrollBar>
 #include <QScopedValueRollback>
 
 #include <algorithm>
@@ -13,6 +12,8 @@ namespace weave::studio {
 namespace {
 
 constexpr int name_column = 0, colour_column = 1;
+/// What a cell stands for: a colour, or a number with all its digits.
+constexpr int exact_role = Qt::UserRole, shown_role = Qt::UserRole + 1;
 /// The members behind the columns from the third on.
 constexpr std::array members{"radius_mm", "linear_density_tex", "stretch_stiffness_N", "bending_stiffness_N_mm2", "contact_stiffness_N_mm2"};
 
@@ -20,17 +21,16 @@ constexpr std::array members{"radius_mm", "linear_density_tex", "stretch_stiffne
 
 YarnTable::YarnTable(QWidget* parent) : QTableWidget(parent) {
     setColumnCount(2 + static_cast<int>(members.size()));
-    setHorizontalHeaderLabels({tr("Name"), tr("Colour"), tr("Radius\nmm"), tr("Weight\ntex"), tr("Stretch EA\nN"), tr("Bending EI\nN mm²"), tr("Contact k\nN/mm²")});
-    horizontalHeader()->setSectionResizeMode(QHeaderView::ResizeToContents);
-    horizontalHeader()->setStretchLastSection(true);
+    setHorizontalHeaderLabels({tr("Name"), tr("Colour"), tr("Radius\nmm"), tr("Weight\ntex"), tr("Stretch\nEA, N"), tr("Bend EI\nN mm²"), tr("Contact\nN/mm²")});
+    horizontalHeader()->setMinimumSectionSize(2 * fontMetrics().height());
+    horizontalHeader()->setSectionResizeMode(QHeaderView::Stretch);  // all of it is seen in a narrow dock
+    setHorizontalScrollBarPolicy(Qt::ScrollBarAlwaysOff);
+    verticalHeader()->setSectionResizeMode(QHeaderView::Fixed);
     setSelectionBehavior(QAbstractItemView::SelectRows);
     connect(this, &QTableWidget::itemChanged, this, [this] {
         if (!m_is_filling) Q_EMIT edited();
     });
     connect(this, &QTableWidget::cellActivated, this, [this](int row, int column) {
-        if (column == colour_column) ask_colour(row);
-    });
-    connect(this, &QTableWidget::cellDoubleClicked, this, [this](int row, int column) {
         if (column == colour_column) ask_colour(row);
     });
 }
@@ -40,7 +40,7 @@ void YarnTable::show_yarns(const Json& yarns) {
     setRowCount(static_cast<int>(yarns.size()));
     for (int row = 0; row < rowCount(); ++row) fill_row(row, yarns[static_cast<std::size_t>(row)]);
     const int line = verticalHeader()->defaultSectionSize();
-    setFixedHeight(horizontalHeader()->sizeHint().height() + line * std::clamp(rowCount(), 1, 4) + horizontalScrollBar()->sizeHint().height() + 6);
+    setFixedHeight(horizontalHeader()->sizeHint().height() + line * std::clamp(rowCount(), 1, 4) + 6);
 }
 
 void YarnTable::fill_row(int row, const Json& yarn) {
@@ -50,37 +50,49 @@ void YarnTable::fill_row(int row, const Json& yarn) {
         return cell;
     };
     set(name_column, QString::fromStdString(yarn.value("name", "")));
-    const QString colour = QString::fromStdString(yarn.value("colour", "#808080"));
-    QTableWidgetItem* patch = set(colour_column, colour);
-    patch->setBackground(QColor(colour));
-    patch->setForeground(QColor(colour).lightnessF() > 0.55 ? Qt::black : Qt::white);
+    QTableWidgetItem* patch = set(colour_column, {});
     patch->setFlags(Qt::ItemIsEnabled | Qt::ItemIsSelectable);
-    patch->setToolTip(tr("Double-click to choose a colour"));
-    for (std::size_t k = 0; k < members.size(); ++k) set(2 + static_cast<int>(k), QString::number(yarn.value(members[k], 0.0), 'g', 10));
+    show_colour(*patch, QString::fromStdString(yarn.value("colour", "#808080")));
+    for (std::size_t k = 0; k < members.size(); ++k) {
+        const double number = yarn.value(members[k], 0.0);
+        QTableWidgetItem* cell = set(2 + static_cast<int>(k), QString::number(number, 'g', 6));
+        cell->setData(exact_role, number);
+        cell->setData(shown_role, cell->text());
+    }
+}
+
+void YarnTable::show_colour(QTableWidgetItem& patch, const QString& colour) {
+    patch.setData(exact_role, colour);
+    patch.setData(Qt::AccessibleTextRole, colour);
+    patch.setBackground(QColor(colour));
+    patch.setToolTip(tr("%1. Double-click to choose another colour").arg(QColor(colour).name()));
+}
+
+/// A number that nobody typed anew keeps the digits that its cell has no room for. One that is none stays a text: the library says
+/// what it misses.
+Json YarnTable::number_in(const QTableWidgetItem& cell) {
+    if (cell.text() == cell.data(shown_role).toString()) return cell.data(exact_role).toDouble();
+    bool is_number = false;
+    const double number = cell.text().toDouble(&is_number);
+    return is_number ? Json(number) : Json(cell.text().toStdString());
 }
 
 Json YarnTable::yarns() const {
     Json yarns = Json::array();
     for (int row = 0; row < rowCount(); ++row) {
-        Json yarn{{"name", item(row, name_column)->text().toStdString()}, {"colour", item(row, colour_column)->text().toStdString()}};
-        for (std::size_t k = 0; k < members.size(); ++k) {
-            const QString text = item(row, 2 + static_cast<int>(k))->text();
-            bool is_number = false;
-            const double number = text.toDouble(&is_number);
-            yarn[members[k]] = is_number ? Json(number) : Json(text.toStdString());  // the library says what it misses
-        }
+        Json yarn{{"name", item(row, name_column)->text().toStdString()}, {"colour", item(row, colour_column)->data(exact_role).toString().toStdString()}};
+        for (std::size_t k = 0; k < members.size(); ++k) yarn[members[k]] = number_in(*item(row, 2 + static_cast<int>(k)));
         yarns.push_back(std::move(yarn));
     }
     return yarns;
 }
 
 void YarnTable::ask_colour(int row) {
-    const QColor colour = QColorDialog::getColor(QColor(item(row, colour_column)->text()), this, tr("Colour of the yarn"));
+    const QColor colour = QColorDialog::getColor(QColor(item(row, colour_column)->data(exact_role).toString()), this, tr("Colour of the yarn"));
     if (!colour.isValid()) return;
     {
         const QScopedValueRollback quiet(m_is_filling, true);
-        item(row, colour_column)->setText(colour.name());
-        item(row, colour_column)->setBackground(colour);
+        show_colour(*item(row, colour_column), colour.name());
     }
     Q_EMIT edited();
 }

@@ -23,6 +23,8 @@ class YarnTable : public QTableWidget {
 
   private:
     void fill_row(int row, const Json& yarn);
+    void show_colour(QTableWidgetItem& patch, const QString& colour);
+    static Json number_in(const QTableWidgetItem& cell);
     void ask_colour(int row);
 
     bool m_is_filling = false;

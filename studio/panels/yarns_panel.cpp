@@ -53,10 +53,12 @@ YarnsPanel::YarnsPanel(QWidget* parent) : QWidget(parent), m_pause(new QTimer(th
     m_title->setObjectName("title");
     m_notes->setObjectName("notes");
     m_notes->setFixedHeight(fontMetrics().height() * 4);
+    m_notes->setSizePolicy(QSizePolicy::Expanding, QSizePolicy::Fixed);
     m_notes->setTabChangesFocus(true);
     form->addRow(tr("Title"), m_title);
     form->addRow(tr("Notes"), m_notes);
     m_trouble->setWordWrap(true);
+    m_trouble->setTextFormat(Qt::PlainText);
     m_trouble->setObjectName("yarns-trouble");
     auto* inside = new QWidget;
     auto* column = new QVBoxLayout(inside);
@@ -68,6 +70,7 @@ YarnsPanel::YarnsPanel(QWidget* parent) : QWidget(parent), m_pause(new QTimer(th
     scroll->setWidget(inside);
     scroll->setWidgetResizable(true);
     scroll->setFrameShape(QFrame::NoFrame);
+    scroll->setHorizontalScrollBarPolicy(Qt::ScrollBarAlwaysOff);
     auto* all = new QVBoxLayout(this);
     all->setContentsMargins(0, 0, 0, 0);
     all->addWidget(scroll);
@@ -88,6 +91,7 @@ YarnsPanel::YarnsPanel(QWidget* parent) : QWidget(parent), m_pause(new QTimer(th
 
 QWidget* YarnsPanel::make_side(Side& side, bool is_warp) {
     auto* box = new QGroupBox(is_warp ? tr("Warp (ends)") : tr("Weft (picks)"));
+    box->setSizePolicy(QSizePolicy::Preferred, QSizePolicy::Maximum);  // what is left over stays below
     auto* column = new QVBoxLayout(box);
     side.yarns = new YarnTable;
     side.yarns->setObjectName(is_warp ? "warp-yarns" : "weft-yarns");
@@ -152,9 +156,19 @@ void YarnsPanel::show_plans() {
     show(m_warp.order, with_numbers_moved(QString::fromStdString(warp["order"]), 1));
     show(m_weft.order, with_numbers_moved(QString::fromStdString(weft["feeder_order"]), 1));
     show(m_weft.feeders, yarns_of(design.weft));
-    m_warp.density->setValue(design.warp.density_ends_per_cm);
-    m_weft.density->setValue(design.weft.density_picks_per_cm);
+    show_density(m_warp, design.warp.density_ends_per_cm);
+    show_density(m_weft, design.weft.density_picks_per_cm);
     m_trouble->hide();
+}
+
+void YarnsPanel::show_density(Side& side, double density) {
+    side.density->setValue(density);
+    side.shown_density = side.density->value();
+}
+
+/// The box shows two decimals: a density that nobody typed anew keeps those that it has.
+double YarnsPanel::density_of(const Side& side, double before) {
+    return side.density->value() == side.shown_density ? before : side.density->value();
 }
 
 void YarnsPanel::tell(const Status& status) {
@@ -167,7 +181,7 @@ void YarnsPanel::take_warp() {
     Json form = to_json(m_document->design().warp);
     form["yarns"] = m_warp.yarns->yarns();
     form["order"] = with_numbers_moved(m_warp.order->text(), -1).toStdString();
-    form["density_ends_per_cm"] = m_warp.density->value();
+    form["density_ends_per_cm"] = density_of(m_warp, m_document->design().warp.density_ends_per_cm);
     JsonReader reader(form, "warp");
     const WarpPlan warp = warp_from_json(reader);
     if (const Status fine = reader.status(); !fine) return tell(fine);
@@ -180,7 +194,7 @@ void YarnsPanel::take_weft() {
     form["yarns"] = m_weft.yarns->yarns();
     form["feeders"] = feeders_of(m_weft.feeders->text(), m_document->design().weft);
     form["feeder_order"] = with_numbers_moved(m_weft.order->text(), -1).toStdString();
-    form["density_picks_per_cm"] = m_weft.density->value();
+    form["density_picks_per_cm"] = density_of(m_weft, m_document->design().weft.density_picks_per_cm);
     JsonReader reader(form, "weft");
     const WeftPlan weft = weft_from_json(reader);
     if (const Status fine = reader.status(); !fine) return tell(fine);

@@ -31,10 +31,13 @@ class YarnsPanel : public QWidget {
         YarnTable* yarns = nullptr;
         QLineEdit* order = nullptr;
         QDoubleSpinBox* density = nullptr;
+        double shown_density = 0;      ///< as the box rounds that of the design
         QLineEdit* feeders = nullptr;  ///< names of the weft's feeders with their yarns
     };
     QWidget* make_side(Side& side, bool is_warp);
     void show_plans();
+    static void show_density(Side& side, double density);
+    static double density_of(const Side& side, double before);
     void take_warp();
     void take_weft();
     void take_title();

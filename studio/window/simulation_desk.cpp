@@ -66,6 +66,7 @@ SimulationDesk::SimulationDesk(SimulationPanel& panel, ViewerPanel& viewer, QObj
 void SimulationDesk::show_document(Document* document) {
     if (m_document != nullptr) m_document->disconnect(this);
     m_document = document;
+    m_panel.clear_design();  // a flip under way would end in the new document
     m_layout.reset();
     m_yarns.reset();
     m_shown_layout = 0;
@@ -75,10 +76,12 @@ void SimulationDesk::show_document(Document* document) {
     if (document == nullptr) return;
     const auto tell_design = [this] { m_panel.set_design(m_document->design()); };
     connect(document, &Document::edited, this, tell_design);
-    connect(document, &Document::whole_made, this, [this] {
-        if (const BlockPtr& block = m_document->whole().block) m_panel.set_cloth_size(block->rows(), block->columns());
-    });
+    const auto tell_size = [this] {
+        if (const BlockPtr& block = m_document->whole().block) m_panel.set_cloth(block->grid());
+    };
+    connect(document, &Document::whole_made, this, tell_size);
     tell_design();
+    tell_size();
 }
 
 void SimulationDesk::take_layout(const std::shared_ptr<const YarnLayout>& layout) {

@@ -1,8 +1,9 @@
 #include <studio/window/submit_desk.hpp>
 
-#include <QComboBox>
+#include <weave/design/document.hpp>
+#include <weave/sim/take_up.hpp>
 
-#include <studio/panels/simulation_backend_row.hpp>
+#include <studio/jobs/background.hpp>
 
 namespace weave::studio {
 
@@ -14,6 +15,12 @@ QString text_of(const Json& report, const char* name) {
     return found != report.end() && found->is_string() ? QString::fromStdString(found->get<std::string>()) : QString();
 }
 
+/// What a design may be called at a mill; nothing where it has no name yet.
+QString name_of(const Document& document) {
+    const bool has_name = !document.design().title.empty() || !document.path().isEmpty();
+    return has_name ? document.name() : QString();
+}
+
 bool is_true(const Json& report, const char* name) {
     const auto found = report.find(name);
     return found != report.end() && found->is_boolean() && found->get<bool>();
@@ -22,19 +29,25 @@ bool is_true(const Json& report, const char* name) {
 }  // namespace
 
 SubmitDesk::SubmitDesk(SubmitPanel& panel, FindingsPanel& findings, SimulationPanel& simulation, QObject* parent)
-    : QObject(parent), m_panel(panel), m_simulation(simulation) {
+    : QObject(parent), m_panel(panel), m_findings(findings), m_simulation(simulation) {
     connect(&findings, &FindingsPanel::counted, this, [this, &findings](std::size_t errors, std::size_t warnings) {
-        if (m_document != nullptr) m_panel.set_findings(errors, warnings, findings.summary());
+        if (m_document == nullptr || !findings.report()) return m_panel.forget_findings();
+        m_panel.set_findings(errors, warnings, findings.summary());
     });
-    connect(&simulation, &SimulationPanel::yarns_came, this, &SubmitDesk::take_yarns);
+    connect(&simulation, &SimulationPanel::begun, this, [this] { m_begun = m_document == nullptr ? 0 : m_document->revision(); });
+    connect(&simulation, &SimulationPanel::run_stood, this, &SubmitDesk::take_yarns);
 }
 
 void SubmitDesk::show_document(Document* document) {
     if (m_document != nullptr) m_document->disconnect(this);
     m_document = document;
     m_panel.clear_design();
+    m_begun = 0;
+    forget_take_up();
     if (document == nullptr) return;
-    m_panel.suggest_name(document->name());
+    m_panel.suggest_name(name_of(*document));
+    connect(document, &Document::path_changed, this, [this] { m_panel.suggest_anew(name_of(*m_document)); });
+    connect(document, &Document::edited, this, &SubmitDesk::forget_take_up);
     connect(document, &Document::whole_made, this, &SubmitDesk::tell_design);
     tell_design();
 }
@@ -42,18 +55,42 @@ void SubmitDesk::show_document(Document* document) {
 void SubmitDesk::tell_design() {
     if (m_document->whole().revision == m_document->revision() || !m_document->whole().block)
         m_panel.set_design(m_document->design(), m_document->whole().block, m_document->revision());
+    judge_take_up();
 }
 
+/// They are of the design as it was when the run began, or of what was led into the run since: their hashes tell.
 void SubmitDesk::take_yarns(const std::shared_ptr<const Yarns>& yarns) {
     if (m_document == nullptr || !yarns) return;
+    const Design& design = m_document->design();
+    const bool is_current = yarns->design_sha256 == design_sha256(design) && yarns->scene_sha256 == scene_sha256(design);
     SimulationFound found;
-    found.machine = m_simulation.backend()->choice()->currentText();
+    found.machine = m_simulation.machine();
     found.fidelity = text_of(yarns->report, "fidelity");
     found.at = QDateTime::currentDateTime();
     found.at_rest = is_true(yarns->report, "converged");
     found.order_kept = is_true(yarns->report, "order_kept");
-    found.edition = m_document->revision();
+    found.edition = is_current ? m_document->revision() : m_begun;
     m_panel.evidence().set_found(found);
+    m_relaxed = is_current ? yarns : nullptr;
+    judge_take_up();
+}
+
+/// Yarns that no loom should be set up by, such as those of a part or not at rest, leave the rules unjudged.
+void SubmitDesk::judge_take_up() {
+    const Cloth& whole = m_document->whole();
+    if (!m_relaxed || !whole.block || whole.revision != m_document->revision()) return;
+    in_background(
+        this, [yarns = std::move(m_relaxed), design = m_document->design(), block = whole.block] { return relaxed_cloth(*yarns, design, *block); },
+        [this, wanted = ++m_wanted](const Result<RelaxedCloth>& relaxed) {
+            if (wanted == m_wanted && relaxed) m_findings.set_relaxed(*relaxed);
+        });
+    m_relaxed.reset();
+}
+
+/// What was found of the design before is nothing to judge it by.
+void SubmitDesk::forget_take_up() {
+    m_relaxed.reset();
+    ++m_wanted;
 }
 
 }  // namespace weave::studio

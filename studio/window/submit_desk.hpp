@@ -20,10 +20,16 @@ class SubmitDesk : public QObject {
   private:
     void tell_design();
     void take_yarns(const std::shared_ptr<const Yarns>& yarns);
+    void judge_take_up();
+    void forget_take_up();
 
     SubmitPanel& m_panel;
+    FindingsPanel& m_findings;
     SimulationPanel& m_simulation;
     Document* m_document = nullptr;
+    std::uint64_t m_begun = 0;  ///< revision of the document when the run began
+    std::shared_ptr<const Yarns> m_relaxed;  ///< of the design as it stands, until its take-up is judged
+    std::uint64_t m_wanted = 0;              ///< counts what would be judged, so that only the latest is
 };
 
 }  // namespace weave::studio

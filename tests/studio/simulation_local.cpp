@@ -1,6 +1,7 @@
 // Runs that this computer computes.
 
 #include <weave/design/evaluate.hpp>
+#include <weave/sim/forecast.hpp>
 #include <weave/sim/simulate.hpp>
 
 #include <catch2/catch.hpp>
@@ -8,6 +9,7 @@
 #include <QElapsedTimer>
 
 #include <studio/jobs/local_relaxation.hpp>
+#include <studio/jobs/plan_summary.hpp>
 #include <studio/support/follow_run.hpp>
 
 using namespace weave;
@@ -230,6 +232,52 @@ TEST_CASE("a stopped simulation run leaves its yarns as they lie, and takes noth
     told.frame.reset();  // another run counts its own
     run.start(sample("plain"), request_at(sim::Fidelity::draft));
     REQUIRE(told.until_phase(RunPhase::paused));
+}
+
+TEST_CASE("a run that is stopped while its yarns are laid out is stopped at once") {
+    LocalRelaxation run;
+    FollowedRun told(run);
+    run.start(sample("hexagon-tubes"), request_at(sim::Fidelity::draft));
+    REQUIRE(run.phase() == RunPhase::planning);
+    run.stop();
+    CHECK(run.phase() == RunPhase::stopped);
+    CHECK_FALSE(run.is_open());
+}
+
+TEST_CASE("a cloth with no room at all is refused before it is laid out, and a draft is not told to be one") {
+    const Design shoe = sample("shoe-adult");
+    const Evaluation evaluation = evaluate(shoe).value();
+    const auto points = foreseen_points(shoe, *evaluation.block, request_at(sim::Fidelity::draft).plan);
+    REQUIRE(points);
+    CHECK(*points > 5'000'000);  // 14 million, as its plan has them
+    CHECK(*points < 60'000'000);
+    LocalRelaxation run(LocalMeans{.threads = 1, .memory_bytes = std::uint64_t{2} << 30});
+    FollowedRun told(run);
+    run.start(shoe, request_at(sim::Fidelity::draft));
+    REQUIRE(QTest::qWaitFor([&] { return told.error.has_value(); }, patience_ms));
+    CHECK_FALSE(told.plan);
+    CHECK_THAT(told.error->message, Catch::Contains("simulate a part of the cloth") && !Catch::Contains("draft"));
+    CHECK_THAT(lack_of_memory(2, 1, sim::Fidelity::standard).message, Catch::Contains("or as draft"));
+}
+
+TEST_CASE("memory is foreseen about as the plan has it") {
+    std::size_t planned = 0;
+    for (const char* name : {"plain", "angle-interlock-b", "hexagon-tubes", "pocket"}) {
+        INFO(name);
+        Design design = sample(name);
+        design.scene.boundary_x = design.scene.boundary_y = Boundary::frozen;
+        const Evaluation evaluation = evaluate(design).value();
+        const sim::SimulationRequest request = request_at(sim::Fidelity::draft).plan;
+        const auto plan = sim::make_plan(design, *evaluation.block, request);
+        if (!plan) continue;  // too small to be held at its rims
+        ++planned;
+        const auto points = foreseen_points(design, *evaluation.block, request);
+        REQUIRE(points);
+        CHECK(*points >= sim::points_of(*plan) / 4);
+        CHECK(*points <= 4 * sim::points_of(*plan));
+    }
+    CHECK(planned >= 1);
+    CHECK_FALSE(foreseen_points(sample("plain"), *evaluate(sample("plain")).value().block, {}));  // its repeat may do
 }
 
 TEST_CASE("a design that cannot be simulated is told as it is") {

@@ -3,6 +3,7 @@
 #include <studio/panels/simulation_panel.hpp>
 
 #include <weave/core/file.hpp>
+#include <weave/design/document.hpp>
 #include <weave/sim/yarns_file.hpp>
 
 #include <QtTest>
@@ -14,6 +15,7 @@
 #include <studio/panels/simulation_fidelity_group.hpp>
 #include <studio/panels/simulation_findings.hpp>
 #include <studio/panels/message_bar.hpp>
+#include <studio/panels/plain_tip.hpp>
 #include <studio/panels/simulation_parameter_row.hpp>
 #include <studio/panels/simulation_region_group.hpp>
 #include <studio/panels/simulation_residual_plot.hpp>
@@ -102,6 +104,7 @@ class Shown {
     std::optional<ClothPlace> place;
     std::shared_ptr<const Yarns> yarns;
     std::size_t layouts = 0, frames = 0;
+    [[nodiscard]] const Design& design() const { return m_design; }
 
   private:
     Design m_design;
@@ -281,6 +284,60 @@ TEST_CASE("a part of the cloth is what the simulation panel simulates when that 
     CHECK_FALSE(panel.region()->region());
 }
 
+TEST_CASE("a run at rest or paused that no longer shows the design says so, and starts anew by Run and by Step") {
+    const OwnSettings settings;
+    Shown shown(sample("plain"));
+    SimulationPanel& panel = *shown.panel;
+    std::vector<bool> dated;
+    QObject::connect(&panel, &SimulationPanel::dated_changed, &panel, [&](bool is_dated) { dated.push_back(is_dated); });
+    shown.press(panel.run_action());
+    REQUIRE(shown.until_inspected());
+    CHECK_FALSE(panel.run_action()->isEnabled());
+    auto* bar = panel.findChild<QProgressBar*>();
+    CHECK(bar->format() == "at rest");
+    panel.tabs()->setCurrentIndex(2);
+    panel.scene()->gravity()->click();
+    REQUIRE(panel.is_out_of_date());
+    CHECK(panel.sentence()->text().startsWith("The design before the change: Converged"));
+    CHECK(bar->format() == "the design has changed");
+    CHECK(bar->value() == 0);
+    CHECK(panel.step_action()->isEnabled());
+    shown.press(panel.run_action());
+    CHECK(panel.state().inspection == nullptr);
+    REQUIRE(shown.until_inspected());
+    CHECK(shown.layouts == 2);
+    CHECK(panel.sentence()->text().startsWith("Converged"));
+    CHECK(shown.yarns->scene_sha256 == scene_sha256(shown.design()));
+    panel.scene()->gravity()->click();
+    shown.press(panel.step_action());
+    REQUIRE(shown.until([&] { return panel.state().phase == RunPhase::paused && panel.state().progress.step == 1; }));
+    CHECK(shown.layouts == 3);
+    CHECK(panel.run_action()->text() == "Go on");
+    panel.scene()->gravity()->click();
+    CHECK(panel.run_action()->text() == "Run");
+    CHECK(dated == std::vector{true, false, true, false, true});
+}
+
+TEST_CASE("a figure that has more places than its box shows keeps them when something else is edited") {
+    const OwnSettings settings;
+    Design design = sample("plain");
+    design.scene.friction = 0.125;
+    Shown shown(design);
+    shown.panel->tabs()->setCurrentIndex(2);
+    shown.panel->scene()->gravity()->click();
+    REQUIRE(shown.edits.size() == 1);
+    CHECK(shown.edits.back().scene.friction == 0.125);
+    set_spin(shown.panel->scene()->friction()->spin_box(), "0.3");
+    CHECK(shown.edits.back().scene.friction == 0.3);
+}
+
+TEST_CASE("the words of a server are shown as they are in the simulation panel") {
+    const OwnSettings settings;
+    Shown shown(sample("plain"));
+    CHECK(shown.panel->sentence()->textFormat() == Qt::PlainText);
+    CHECK(plain_tip("a<b>c\nd") == "<qt>a&lt;b&gt;c<br>d</qt>");
+}
+
 TEST_CASE("yarns of the simulation panel are saved and opened, and what goes wrong is told in words") {
     const OwnSettings settings;
     const weave::testing::TemporaryFolder folder;
@@ -358,6 +415,33 @@ TEST_CASE("servers and the fidelity are remembered, a token's file by its name a
     const FidelityGroup fidelity;
     CHECK(fidelity.fidelity() == sim::Fidelity::standard);
     CHECK(fidelity.start_from() == sim::Fidelity::draft);
+}
+
+TEST_CASE("a simulation server is tested from the list of servers, and an empty place shows what one looks like") {
+    const OwnSettings settings;
+    ServersDialog dialog({{"unix:/nowhere/simd.sock", "", ""}});
+    dialog.show();
+    REQUIRE(QTest::qWaitForWindowExposed(&dialog));
+    dialog.table()->setCurrentCell(0, 0);
+    QTest::mouseClick(dialog.findChild<QPushButton*>("test_server"), Qt::LeftButton);
+    const auto* answer = dialog.findChild<QLabel*>("server_answer");
+    REQUIRE(QTest::qWaitFor([&] { return answer->text().contains("nowhere") && !answer->text().startsWith("Asking"); }, patience_ms));
+    dialog.add({});
+    dialog.table()->setCurrentCell(1, 0);
+    dialog.table()->editItem(dialog.table()->currentItem());
+    REQUIRE(dialog.table()->findChild<QLineEdit*>());
+    CHECK(dialog.table()->findChild<QLineEdit*>()->placeholderText().contains("box:8444"));
+}
+
+TEST_CASE("the signs of run, step and stop are in the colour of the text in the simulation panel") {
+    const OwnSettings settings;
+    Shown shown(sample("plain"));
+    QPalette dark;
+    dark.setColor(QPalette::Window, QColor(45, 45, 48));
+    dark.setColor(QPalette::ButtonText, Qt::white);
+    shown.panel->setPalette(dark);
+    const QImage sign = shown.panel->run_action()->icon().pixmap(64, 64).toImage();
+    CHECK(sign.pixelColor(sign.width() / 2, sign.height() / 2) == QColor(Qt::white));
 }
 
 TEST_CASE("figures of each fidelity stand in the documents that they name") {

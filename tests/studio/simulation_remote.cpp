@@ -37,6 +37,8 @@ class Server {
         m_program->end(SIGKILL);
         m_program->exit_code();
     }
+    /// It stands still, and keeps its connections, as one does that is overloaded.
+    void suspend() { m_program->end(SIGSTOP); }
     [[nodiscard]] ServerWish wish() const {
         return {.host = "unix:" + (folder() / "simd.sock").string(), .token_file = {}, .fingerprint = {}};
     }
@@ -152,6 +154,21 @@ TEST_CASE("a run on a server that is stopped brings its yarns, and one that is l
     run->run();
     run.reset();
     CHECK(QTest::qWaitFor([&] { return server.sessions() == 0; }, patience_ms));
+}
+
+TEST_CASE("a run on a server that answers nothing any more is stopped all the same") {
+    Server server;
+    RemoteRelaxation run(server.wish());
+    FollowedRun told(run);
+    sim::RunRequest request = request_at(sim::Fidelity::standard);
+    request.goal.residual = 1e-12;
+    run.start(sample("hexagon-tubes"), request);
+    run.run();
+    REQUIRE(told.until([&] { return told.progress.step > 3; }));
+    server.suspend();
+    run.stop();
+    REQUIRE(told.until([&] { return run.phase() == RunPhase::stopped; }));
+    CHECK_FALSE(told.error);
 }
 
 TEST_CASE("a server that is not there, and one that refuses, are told as they are") {

@@ -78,6 +78,12 @@ TEST_CASE("a run that stands or is over says why") {
     CHECK(said(state) == "Failed: scene.boundary_x: end 3 is fed\\x0aat constant tension");
 }
 
+TEST_CASE("a run of the design before a change says so, as long as it shows cloth") {
+    CHECK(dated_words(state_in(RunPhase::at_rest)) == "The design before the change: Converged: at rest within 0.001 after 214 steps");
+    CHECK(dated_words(state_in(RunPhase::paused)).startsWith("The design before the change: Paused"));
+    CHECK(dated_words(state_in(RunPhase::stopped)) == "Stopped after 214 steps: residual 0.041");
+}
+
 TEST_CASE("times are told as roughly as they are known") {
     CHECK(duration_words(0.2) == "less than 1 s");
     CHECK(duration_words(12) == "about 12 s");

@@ -62,6 +62,7 @@ TEST_CASE(
     window.wait_for("state", "Revision 1 is approved");
     CHECK(window.talk().contains("The abel"));
     CHECK(window.talk().contains("Looked at face and back"));
+    REQUIRE(window.wait([&] { return window.find<QComboBox>("design").currentText() == "pocket — revision 1, approved"; }));
 }
 
 TEST_CASE("submit: a second revision shows what changed, and a rejection its reason") {
@@ -103,12 +104,58 @@ TEST_CASE("submit: a wrong signing password keeps what was saved, and the mill's
     window.type("signing_password", "not it");
     window.click("submit");
     window.wait_for("trouble", "the password is wrong");
+    CHECK(window.find<QPlainTextEdit>("note").toPlainText() == "Mine");
     window.wait_for("state", "Revision 1 is saved, not submitted");
     REQUIRE(window.wait([&] { return window.find<QPushButton>("submit").text() == "Submit revision 1"; }));
     CHECK(window.panel.desk().access().signed_in);
     window.submit("Now with the right one");
     window.wait_for("state", "Revision 1 is submitted");
     CHECK(window.text("trouble").isEmpty());
+}
+
+TEST_CASE("submit: a revision that cannot be compared keeps nobody from saving") {
+    const Mill mill;
+    SubmitWindow window(mill.session_of("dora"));
+    window.wait_signed_in();
+    window.type("new_design", "cloth");
+    window.write_note("First");
+    window.click("save_revision");
+    window.wait_for("changes", "is what revision 1 holds");
+    window.write_note("Second");
+    window.open_sample("twill-2-2");
+    CHECK_FALSE(window.find<QPushButton>("save_revision").isEnabled());
+    CHECK(window.text("hint").contains("is being compared"));
+    Q_EMIT window.panel.desk().failed({MillTask::compare, "of a later version", false, false});
+    CHECK(window.text("changes").contains("cannot be compared: of a later version"));
+    CHECK(window.find<QPushButton>("save_revision").isEnabled());
+}
+
+TEST_CASE("submit: what was had from one mill is not taken for another's of the same name and number") {
+    const Mill one, other;
+    const std::string file = other.at("other.weave");
+    REQUIRE(write_file(file, write_document(find_sample("twill-2-2")->make())));
+    other.as("dora", {"design", "make", "cloth"});
+    other.as("dora", {"save", file, "cloth", "--message", "Another cloth"});
+    SubmitWindow window(one.session_of("dora"));
+    window.wait_signed_in();
+    window.type("new_design", "cloth");
+    window.write_note("First");
+    window.click("save_revision");
+    window.wait_for("changes", "is what revision 1 holds");
+    QTest::mouseClick(&window.find<QPushButton>("sign_out"), Qt::LeftButton);
+    REQUIRE(window.wait([&] { return !window.panel.desk().access().signed_in; }));
+    window.sign_in(other);
+    window.wait_signed_in();
+    window.wait_for("changes", "crossings differ");
+}
+
+TEST_CASE("submit: a space in a new name is a hyphen, and an invitation has its way in") {
+    const Mill mill;
+    SubmitWindow window(mill.session_of("dora"));
+    window.wait_signed_in();
+    window.type("new_design", "My stencil");
+    CHECK(window.find<QLineEdit>("new_design").text() == "My-stencil");
+    CHECK(window.text("greeting").contains("loomlink user join"));
 }
 
 TEST_CASE("submit: somebody who saved first is not overwritten unseen") {

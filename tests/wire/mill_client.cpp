@@ -298,6 +298,12 @@ TEST_CASE("a session is kept for its owner alone, and none is there before", "[m
 TEST_CASE("plain HTTP goes to this machine alone, and a fingerprint belongs to TLS", "[mill]") {
     CHECK(wire::client_options({"http://127.0.0.1:1", {}, {}, {}, {}}));
     CHECK(wire::client_options({"http://mill:1", {}, {}, {}, {}}).error().code == ErrorCode::refused);
+    for (const char* stranger : {"http://127.0.0.1.evil.example:1", "http://127.evil.example:1", "http://127.0.0.1a:1"}) {
+        INFO(stranger);
+        CHECK_FALSE(wire::client_options({stranger, {}, {}, {}, {}}));
+    }
+    CHECK(wire::client_options({"http://localhost:1", {}, {}, {}, {}}));
+    CHECK(wire::client_options({"http://127.0.0.2:1", {}, {}, {}, {}}));
     CHECK(wire::client_options({"http://127.0.0.1:1", std::string(64, 'a'), {}, {}, {}}).error().code ==
           ErrorCode::usage);
     CHECK(wire::server_wished("https://mill", "4f3a", {}, "fingerprint")

@@ -3,6 +3,7 @@
 #include <weave/core/json_reader.hpp>
 #include <weave/keys/hex.hpp>
 #include <weave/keys/private_file.hpp>
+#include <weave/wire/place.hpp>
 
 #include <algorithm>
 #include <cerrno>
@@ -32,10 +33,6 @@ Result<MillSession> read_session(std::string_view bytes) {
     reader.no_others();
     WEAVE_CHECK_OK(reader.status());
     return session;
-}
-
-bool is_this_machine(const std::string& host) {
-    return host == "localhost" || host == "::1" || host.starts_with("127.");
 }
 
 }  // namespace

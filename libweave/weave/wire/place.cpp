@@ -9,11 +9,6 @@ namespace weave::wire {
 
 namespace {
 
-bool is_this_machine(const std::string& host) {
-    const bool in_127 = host.starts_with("127.") && host.find_first_not_of("0123456789.") == std::string::npos;
-    return in_127 || host == "::1" || host == "localhost";
-}
-
 /// `box`, `box:9000` and `[::1]` as an address.
 std::string with_scheme(const std::string& text) {
     const std::size_t colon = text.find_last_of(":]");
@@ -34,6 +29,11 @@ bool is_token(std::string_view text) {
 }
 
 }  // namespace
+
+bool is_this_machine(const std::string& host) {
+    const bool in_127 = host.starts_with("127.") && host.find_first_not_of("0123456789.") == std::string::npos;
+    return in_127 || host == "::1" || host == "localhost";
+}
 
 Result<ServerPlace> place_of(const std::string& text) {
     const bool is_whole = text.find("://") != std::string::npos || text.starts_with("unix:");

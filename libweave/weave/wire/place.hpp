@@ -22,6 +22,10 @@ struct ServerPlace {
     std::string token;  ///< a secret: it goes to the server alone, and into no message; empty: none
 };
 
+/// Whether a host is the machine itself, so that plain HTTP to it is heard by nobody on the way. A name that only
+/// begins like such an address, as 127.0.0.1.evil.example, is another machine's.
+bool is_this_machine(const std::string& host);
+
 /// The place that a person names: `box` and `box:9000` (TLS; port 8444 where none is said), `https://box:8444`,
 /// `http://127.0.0.1:9000` (plain, within this machine alone), `unix:/path/of/socket` (or a path from the working
 /// folder on). Errors (bad_input): none of these; plain HTTP to another machine, where everybody on the way could read the token.
