@@ -70,6 +70,7 @@ class Viewport : public QOpenGLWidget {
     [[nodiscard]] bool attach_mode() const { return m_attach; }
     /// How much is shown, such as "rows 1 to 40 of 900".
     void set_caption(const QString& text);
+    [[nodiscard]] const QString& caption() const { return m_caption; }
     /// Why there is nothing to see, in one or two sentences; shown under "Nothing to show yet".
     void set_empty_words(const QString& text);
 

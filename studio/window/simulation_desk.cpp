@@ -57,6 +57,9 @@ SimulationDesk::SimulationDesk(SimulationPanel& panel, ViewerPanel& viewer, QObj
         if (!made) Q_EMIT failed(QString::fromStdString(made.error().text()));
     });
     connect(&panel, &SimulationPanel::place_wanted, this, [this](std::size_t pick, std::size_t end) { Q_EMIT place_wanted({pick, end}); });
+    connect(&panel, &SimulationPanel::dated_changed, this, [this](bool is_dated) {
+        m_viewer.set_caption(ViewerPanel::Mode::relaxed, is_dated ? tr("The cloth before the last change; Run (Space) relaxes it anew") : QString());
+    });
     connect(&panel, &SimulationPanel::laid_out, this, &SimulationDesk::take_layout);
     connect(&panel, &SimulationPanel::frame_came, this, &SimulationDesk::take_frame);
     connect(&panel, &SimulationPanel::yarns_came, this, &SimulationDesk::take_yarns);

@@ -220,3 +220,20 @@ TEST_CASE("the part that may be simulated follows the cloth, in picks and ends")
     for (const QLabel* label : region.findChildren<QLabel*>()) is_told = is_told || label->text().contains(QString("picks 1 to %1,").arg(picks));
     CHECK(is_told);
 }
+
+TEST_CASE("over the relaxed cloth stands that the design has changed since, until it is as it was") {
+    Loom loom("plain");
+    loom.relax();
+    auto& viewer = loom.find<ViewerPanel>();
+    REQUIRE(viewer.mode() == ViewerPanel::Mode::relaxed);
+    CHECK(viewer.viewport()->caption().isEmpty());
+    WarpPlan warp = loom.document().design().warp;
+    warp.density_ends_per_cm *= 1.5;
+    REQUIRE(loom.document().perform({"denser", {SetWarp{warp}}}));
+    CHECK(viewer.viewport()->caption().contains("before the last change"));
+    viewer.set_mode(ViewerPanel::Mode::planned);
+    CHECK_FALSE(viewer.viewport()->caption().contains("before the last change"));
+    viewer.set_mode(ViewerPanel::Mode::relaxed);
+    loom.document().undo();
+    CHECK(viewer.viewport()->caption().isEmpty());
+}
