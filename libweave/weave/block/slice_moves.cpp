@@ -138,7 +138,7 @@ Result<Slice> remove_yarns(const Slice& slice, std::span<const SliceYarnId> yarn
     WEAVE_TRY(SliceDraft draft, SliceDraft::open(slice));
     std::vector<SliceYarnId> list(yarns.begin(), yarns.end());
     std::ranges::sort(list, std::greater<>());  // the last first, so that no number changes before its turn
-    list.erase(std::ranges::unique(list).begin(), list.end());
+    list.erase(std::unique(list.begin(), list.end()), list.end());
     for (const SliceYarnId& yarn : list) {
         WEAVE_CHECK_OK(check_holds(slice, yarn));
         const auto close_up = [&](std::size_t number) { return number > yarn.number ? number - 1 : number; };
