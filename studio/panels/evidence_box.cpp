@@ -3,31 +3,23 @@
 #include <weave/core/file.hpp>
 
 #include <studio/jobs/background.hpp>
+#include <studio/panels/plain_label.hpp>
 #include <studio/panels/simulation_servers.hpp>
 #include <studio/panels/trouble_label.hpp>
 
 #include <QFileDialog>
 #include <QGridLayout>
-#include <QLabel>
 #include <QLocale>
 #include <QMenu>
 #include <QPushButton>
 #include <QToolButton>
 
-#include <array>
+#include <string_view>
 #include <utility>
 
 namespace weave::studio {
 
 namespace {
-
-QLabel* plain_label(const char* name) {
-    auto* label = new QLabel;
-    label->setObjectName(name);
-    label->setWordWrap(true);
-    label->setTextFormat(Qt::PlainText);
-    return label;
-}
 
 template <class Button>
 Button* named_button(const char* name, const QString& text, const QString& tip) {

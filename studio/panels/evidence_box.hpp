@@ -56,7 +56,6 @@ class EvidenceBox : public QWidget {
     void choose_file();
     void edit_servers();
     void begin(const ServerWish& server, sim::Fidelity fidelity);
-    void take_paper(const SignedPaper& paper, std::uint64_t edition);
     void complain(const QString& words);
     void tell();
     [[nodiscard]] QString found_words() const;

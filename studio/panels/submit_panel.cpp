@@ -11,6 +11,7 @@
 #include <studio/panels/change_view.hpp>
 #include <studio/panels/hand_in_form.hpp>
 #include <studio/panels/mill_place.hpp>
+#include <studio/panels/plain_label.hpp>
 #include <studio/panels/review_view.hpp>
 #include <studio/panels/sign_in_form.hpp>
 #include <studio/panels/step_box.hpp>
@@ -21,14 +22,6 @@ namespace weave::studio {
 namespace {
 
 constexpr int pause_before_comparing = 400;  // milliseconds: edits come in quick succession
-
-QLabel* plain_label(const char* name) {
-    auto* label = new QLabel;
-    label->setObjectName(name);
-    label->setWordWrap(true);
-    label->setTextFormat(Qt::PlainText);
-    return label;
-}
 
 QHBoxLayout* with_button(QLabel* label, QPushButton* button) {
     auto* row = new QHBoxLayout;

@@ -7,6 +7,7 @@
 #include <cstdint>
 #include <functional>
 #include <string>
+#include <utility>
 
 /// What becomes of a job on a simulation server, for whoever gave it: every byte of it comes from outside.
 namespace weave::wire {
