@@ -70,8 +70,10 @@ void ViewerDesk::show_document(Document* document) {
     connect(&document->focus(), &Focus::place_changed, this, [this] {
         const auto& place = m_document->focus().place();
         const BlockPtr& block = m_document->shown().block;
-        if (!place || !block || !m_region || place->pick >= block->picks() || place->end >= block->ends()) return;
-        if (!holds(*m_region, block->row_of_pick(place->pick), block->column_of_end(place->end))) plan();
+        if (!place || !block || place->pick >= block->picks() || place->end >= block->ends()) return;
+        // While a plan is under way, it is of where the person was when it began.
+        const bool is_in_sight = !m_is_planning && (!m_region || holds(*m_region, block->row_of_pick(place->pick), block->column_of_end(place->end)));
+        if (!is_in_sight) plan();
     });
     plan();
 }
