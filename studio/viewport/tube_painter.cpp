@@ -1,6 +1,7 @@
 #include <studio/viewport/tube_painter.hpp>
 
 #include <weave/picture/colour_map.hpp>
+#include <studio/viewport/found_gl.hpp>
 #include <studio/viewport/shaders.hpp>
 
 #include <QCoreApplication>
@@ -119,8 +120,7 @@ QString TubePainter::start() {
         return QCoreApplication::translate("TubePainter", "the graphics driver has no OpenGL 3.3");
     const auto* const name = reinterpret_cast<const char*>(gl->glGetString(GL_RENDERER));
     m_renderer = QString::fromUtf8(name);
-    m_is_software =
-        m_renderer.contains("llvmpipe") || m_renderer.contains("softpipe") || m_renderer.contains("SWR");
+    m_is_software = is_software_renderer(m_renderer);
     find_by_processor(m_is_software);
     QString trouble;
     m_find[0] = program(shaders::vertex({}), shaders::find({}), trouble);

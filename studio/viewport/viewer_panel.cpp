@@ -3,10 +3,7 @@
 #include <studio/viewport/words.hpp>
 
 #include <QComboBox>
-#include <QCoreApplication>
 #include <QLabel>
-#include <QOffscreenSurface>
-#include <QOpenGLContext>
 #include <QSaveFile>
 #include <QSignalBlocker>
 #include <QSlider>
@@ -42,26 +39,6 @@ QLabel* trouble_page(const QString& trouble) {
 }
 
 }  // namespace
-
-QString find_gl_trouble() {
-    QSurfaceFormat format;
-    format.setVersion(3, 3);
-    format.setProfile(QSurfaceFormat::CoreProfile);
-    QOpenGLContext context;
-    context.setFormat(format);
-    if (!context.create()) return QCoreApplication::translate("ViewerPanel", "this display has no OpenGL");
-    QOffscreenSurface surface;
-    surface.setFormat(context.format());
-    surface.create();
-    if (!context.makeCurrent(&surface))
-        return QCoreApplication::translate("ViewerPanel", "OpenGL does not start on this display");
-    const auto version = context.format().version();
-    if (version < std::pair(3, 3))
-        return QCoreApplication::translate("ViewerPanel", "this display has OpenGL %1.%2, and 3.3 is needed")
-            .arg(version.first)
-            .arg(version.second);
-    return {};
-}
 
 ViewerPanel::ViewerPanel(QWidget* parent, const QString& trouble) : QWidget(parent) {
     auto* const column = new QVBoxLayout(this);

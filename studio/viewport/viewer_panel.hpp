@@ -20,9 +20,6 @@ class QToolButton;
 
 namespace weave::studio {
 
-/// Why there is no OpenGL 3.3 on this display; empty where there is.
-QString find_gl_trouble();
-
 /// The 3D viewer with its tools: planned or relaxed yarns, their colours, repeats, the plane that cuts, views
 /// and the lock.
 class ViewerPanel : public QWidget {
@@ -31,7 +28,7 @@ class ViewerPanel : public QWidget {
     enum class Mode : std::uint8_t { planned, relaxed };
 
     /// Without OpenGL (`trouble` says why) the panel says so, and all else works as ever.
-    explicit ViewerPanel(QWidget* parent = nullptr, const QString& trouble = find_gl_trouble());
+    explicit ViewerPanel(QWidget* parent = nullptr, const QString& trouble = found_gl().trouble);
 
     /// The planned curves of the block that is shown, made into a picture in another thread.
     void set_planned(std::shared_ptr<const Design> design, std::shared_ptr<const ClothCurves> curves);

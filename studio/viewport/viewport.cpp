@@ -8,7 +8,6 @@
 #include <QOpenGLFramebufferObject>
 #include <QOpenGLFunctions>
 #include <QPainter>
-#include <QSurfaceFormat>
 
 #include <algorithm>
 #include <cmath>
@@ -36,12 +35,13 @@ void OverlaySheet::paintEvent(QPaintEvent*) {
     m_viewport.paint_over(painter, rect(), true);
 }
 
-Viewport::Viewport(QWidget* parent) : QOpenGLWidget(parent), m_sheet(*this) {
-    QSurfaceFormat format;
-    format.setVersion(3, 3);
-    format.setProfile(QSurfaceFormat::CoreProfile);
-    format.setDepthBufferSize(24);
-    setFormat(format);
+Viewport::Viewport(QWidget* parent, bool is_software)
+    : QWidget(parent),
+      m_canvas(make_yarn_canvas(is_software,
+                                {[this] { start(); }, [this] { m_painter.release(); },
+                                 [this](unsigned target) { draw(target); }},
+                                this)),
+      m_sheet(*this) {
     setFocusPolicy(Qt::StrongFocus);
     setMouseTracking(true);
     setMinimumSize(fontMetrics().height() * 8, fontMetrics().height() * 6);
@@ -64,8 +64,10 @@ Viewport::Viewport(QWidget* parent) : QOpenGLWidget(parent), m_sheet(*this) {
 
 Viewport::~Viewport() {
     m_glide.disconnect();
-    if (context() != nullptr) disconnect(context(), nullptr, this, nullptr);
-    release();
+    if (!m_painter.has_started() || !m_canvas->has_context()) return;
+    m_canvas->make_current();
+    m_painter.release();
+    m_canvas->done_current();
 }
 
 // ---- What is shown ----
@@ -141,12 +143,12 @@ void Viewport::set_attach_mode(bool attach) {
 
 void Viewport::set_caption(const QString& text) {
     m_caption = text;
-    look_again();
+    m_sheet.update();
 }
 
 void Viewport::set_empty_words(const QString& text) {
     m_empty_words = text;
-    look_again();
+    m_sheet.update();
 }
 
 void Viewport::update_states() {
@@ -277,24 +279,16 @@ void Viewport::set_locked(bool locked) {
 
 // ---- Drawing ----
 
-void Viewport::initializeGL() {
-    connect(context(), &QOpenGLContext::aboutToBeDestroyed, this, &Viewport::release, Qt::UniqueConnection);
+void Viewport::start() {
     m_trouble = m_painter.start();
     if (!m_trouble.isEmpty()) Q_EMIT trouble_found(m_trouble);
     m_painter.set_model(m_model.get());
     update_states();
 }
 
-void Viewport::release() {
-    if (!m_painter.has_started()) return;
-    makeCurrent();
-    m_painter.release();
-    doneCurrent();
-}
-
 /// The yarns and what is written over them.
 void Viewport::look_again() {
-    update();
+    m_canvas->draw_again();
     m_sheet.update();
 }
 
@@ -305,8 +299,9 @@ void Viewport::place_cube() {
 }
 
 void Viewport::resizeEvent(QResizeEvent* event) {
-    QOpenGLWidget::resizeEvent(event);
+    QWidget::resizeEvent(event);
     place_cube();
+    m_canvas->widget().setGeometry(rect());
     m_sheet.setGeometry(rect());
     if (m_model != nullptr && !m_history.can_go_back() && !m_locked) {
         // Until somebody moves it the view stays fitted to the window.
@@ -330,34 +325,36 @@ TubeFrame Viewport::frame_of(double pixel_ratio) const {
 }
 
 /// A processor that draws does so in fewer pixels while the camera moves, so many as it manages in time.
-void Viewport::draw_yarns(const TubeFrame& frame) {
+void Viewport::draw_yarns(const TubeFrame& frame, unsigned target) {
     QElapsedTimer timer;
     timer.start();
-    m_painter.draw(frame, defaultFramebufferObject());
+    m_painter.draw(frame, target);
     if (!m_painter.is_software() || !m_moving) return;
-    context()->functions()->glFinish();
+    QOpenGLContext::currentContext()->functions()->glFinish();
     const double ms = static_cast<double>(timer.nsecsElapsed()) / 1e6;
     if (ms > slow_ms)
         m_moving_scale = std::max(least_scale, m_moving_scale * std::max(0.6, std::sqrt(slow_ms / ms)));
     if (ms < quick_ms) m_moving_scale = std::min(1.0, m_moving_scale * 1.2);
 }
 
-void Viewport::paintGL() {
-    const bool can_draw = m_model != nullptr && m_trouble.isEmpty() && m_painter.has_started();
-    if (can_draw) {
-        TubeFrame frame = frame_of(devicePixelRatioF());
-        if (m_painter.is_software()) {
-            if (m_moving) frame.scale = m_moving_scale;
-            frame.hollows = !m_moving;
-        } else if (devicePixelRatioF() < 1.5) {
-            frame.scale = 2;
-        }
-        draw_yarns(frame);
-    } else {
+void Viewport::draw(unsigned target) {
+    auto* const context = QOpenGLContext::currentContext();
+    if (m_model == nullptr || !m_trouble.isEmpty() || !m_painter.has_started()) {
+        if (context == nullptr) return;
         const QColor ground = palette().color(QPalette::Window);
-        context()->functions()->glClearColor(ground.redF(), ground.greenF(), ground.blueF(), 1);
-        context()->functions()->glClear(GL_COLOR_BUFFER_BIT | GL_DEPTH_BUFFER_BIT);
+        context->functions()->glBindFramebuffer(GL_FRAMEBUFFER, target);
+        context->functions()->glClearColor(ground.redF(), ground.greenF(), ground.blueF(), 1);
+        context->functions()->glClear(GL_COLOR_BUFFER_BIT | GL_DEPTH_BUFFER_BIT);
+        return;
     }
+    TubeFrame frame = frame_of(devicePixelRatioF());
+    if (m_painter.is_software()) {
+        if (m_moving) frame.scale = m_moving_scale;
+        frame.hollows = !m_moving;
+    } else if (devicePixelRatioF() < 1.5) {
+        frame.scale = 2;
+    }
+    draw_yarns(frame, target);
 }
 
 void Viewport::paint_over(QPainter& painter, const QRectF& area, bool for_screen) {
@@ -399,7 +396,7 @@ QImage Viewport::picture(int times) {
     frame.scale = m_painter.is_software() ? 1 : 2;
     const bool was_marked = m_hovered.has_value();
     if (was_marked) clear_hover();  // what the mouse happens to be over
-    makeCurrent();
+    m_canvas->make_current();
     QImage image;
     {
         QOpenGLFramebufferObject target(static_cast<int>(frame.size.width),
@@ -407,7 +404,7 @@ QImage Viewport::picture(int times) {
         m_painter.draw(frame, target.handle());
         image = target.toImage().convertToFormat(QImage::Format_RGB32);
     }
-    doneCurrent();
+    m_canvas->done_current();
     image.setDevicePixelRatio(times);
     QPainter painter(&image);
     painter.setFont(font());

@@ -1,13 +1,15 @@
 #pragma once
 
+#include <studio/viewport/found_gl.hpp>
 #include <studio/viewport/orientation_cube.hpp>
 #include <studio/viewport/picking.hpp>
 #include <studio/viewport/tube_painter.hpp>
 #include <studio/viewport/view_history.hpp>
+#include <studio/viewport/yarn_canvas.hpp>
 
-#include <QOpenGLWidget>
 #include <QTimer>
 #include <QVariantAnimation>
+#include <QWidget>
 
 #include <memory>
 #include <optional>
@@ -43,10 +45,11 @@ struct YarnName {
 /// Mouse: drag left to turn, middle or Shift and left to move, wheel to zoom at the cursor; a press and
 /// release that is no drag is a click. Keys: F all in view, 1 to 6 the standard views, + and − zoom, arrows
 /// turn (with Shift: move), Alt+Left and Alt+Right the views before and after, L locks the view, Esc lets go.
-class Viewport : public QOpenGLWidget {
+class Viewport : public QWidget {
     Q_OBJECT
   public:
-    explicit Viewport(QWidget* parent = nullptr);
+    /// `is_software`: whether OpenGL is a program of the processor.
+    explicit Viewport(QWidget* parent = nullptr, bool is_software = found_gl().is_software);
     ~Viewport() override;
 
     /// What is shown from now on; null: nothing. The view stays where it is, unless there was nothing before:
@@ -93,6 +96,8 @@ class Viewport : public QOpenGLWidget {
     /// What is to be seen, with legend, scale and caption, `times` as many pixels across as the widget has on
     /// a plain display.
     QImage picture(int times);
+    /// The yarns alone, as they are on the screen.
+    QImage yarns_on_screen() { return m_canvas->yarns(); }
     /// Why nothing can be drawn; empty where all is well.
     [[nodiscard]] const QString& trouble() const { return m_trouble; }
     /// The yarn that was clicked first and waits for the one that it crosses.
@@ -117,8 +122,6 @@ class Viewport : public QOpenGLWidget {
     void trouble_found(const QString& words);
 
   protected:
-    void initializeGL() override;
-    void paintGL() override;
     void mousePressEvent(QMouseEvent* event) override;
     void mouseMoveEvent(QMouseEvent* event) override;
     void mouseReleaseEvent(QMouseEvent* event) override;
@@ -135,8 +138,9 @@ class Viewport : public QOpenGLWidget {
     [[nodiscard]] PictureSize picture_size() const;
     [[nodiscard]] Ray ray_at(const QPointF& place) const;
     [[nodiscard]] TubeFrame frame_of(double pixel_ratio) const;
-    void release();
-    void draw_yarns(const TubeFrame& frame);
+    void start();
+    void draw(unsigned target);
+    void draw_yarns(const TubeFrame& frame, unsigned target);
     void place_cube();
     void look_again();
     void update_states();
@@ -158,6 +162,7 @@ class Viewport : public QOpenGLWidget {
     std::shared_ptr<TubeModel> m_model;
     Shown m_shown;
     TubePainter m_painter;
+    std::unique_ptr<YarnCanvas> m_canvas;
     QString m_trouble, m_caption, m_empty_words;
 
     Camera m_camera;

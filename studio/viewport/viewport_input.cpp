@@ -181,8 +181,8 @@ void Viewport::wheelEvent(QWheelEvent* event) {
 
 void Viewport::leaveEvent(QEvent* event) {
     clear_hover();
-    look_again();
-    QOpenGLWidget::leaveEvent(event);
+    m_sheet.update();
+    QWidget::leaveEvent(event);
 }
 
 // ---- Keys ----
@@ -198,11 +198,11 @@ bool Viewport::event(QEvent* event) {
             (plain && key->key() == Qt::Key_Escape && (m_held || m_attach)))
             event->accept();
     }
-    return QOpenGLWidget::event(event);
+    return QWidget::event(event);
 }
 
 void Viewport::keyPressEvent(QKeyEvent* event) {
-    if (!press_key(event)) QOpenGLWidget::keyPressEvent(event);
+    if (!press_key(event)) QWidget::keyPressEvent(event);
 }
 
 bool Viewport::press_key(QKeyEvent* event) {

@@ -34,7 +34,7 @@ TEST_CASE("pictures of the viewer to look at", "[.screens]") {
     REQUIRE(QTest::qWaitForWindowExposed(&viewport));
     const auto save = [&](const char* name) {
         QTest::qWait(300);
-        viewport.grabFramebuffer().save(QString("/tmp/vp_%1.png").arg(name));
+        viewport.yarns_on_screen().save(QString("/tmp/vp_%1.png").arg(name));
     };
     save("planned");
     auto relaxed = std::make_shared<TubeModel>(*TubeModel::relaxed(yarns, ColourBy::contact));

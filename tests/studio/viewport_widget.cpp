@@ -59,7 +59,7 @@ class Shot {
 
 /// The overlay lies over the picture of OpenGL, which is grabbed without it.
 QColor pixel(Viewport& viewport, const QPoint& at) {
-    return viewport.grabFramebuffer().pixelColor(at);
+    return viewport.yarns_on_screen().pixelColor(at);
 }
 
 }  // namespace
@@ -287,7 +287,7 @@ TEST_CASE("OpenGL draws what the processor draws") {
         own.height_mm = perspective ? seen.z() / 1.7 : high / camera.pixels_per_unit();
         own.pan(at.x - wide / 2.0, at.y - high / 2.0, {wide, high});
         viewport.set_camera(own);
-        const QImage drawn = viewport.grabFramebuffer();
+        const QImage drawn = viewport.yarns_on_screen();
         std::size_t differ = 0, yarn = 0, colour_differs = 0;
         for (int y = 0; y < high; ++y) {
             for (int x = 0; x < wide; ++x) {
@@ -319,14 +319,14 @@ TEST_CASE("the picture outlives another parent, and goes without yarns") {
     viewport->turn_to(StandardView::face);
     first.show();
     REQUIRE(QTest::qWaitForWindowExposed(&first));
-    const QImage before = viewport->grabFramebuffer();
+    const QImage before = viewport->yarns_on_screen();
     second.show();
     REQUIRE(QTest::qWaitForWindowExposed(&second));
     viewport->setParent(&second);
     viewport->show();
     REQUIRE(QTest::qWaitFor([&] { return viewport->painter().has_started(); }));
     CHECK(viewport->trouble().isEmpty());
-    CHECK(viewport->grabFramebuffer() == before);
+    CHECK(viewport->yarns_on_screen() == before);
     viewport->set_model(nullptr);
     const QImage empty = viewport->grab().toImage();
     CHECK(empty != before);
