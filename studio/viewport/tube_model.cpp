@@ -9,6 +9,8 @@
 
 #include <algorithm>
 #include <cmath>
+#include <future>
+#include <numeric>
 #include <tuple>
 
 namespace weave::studio {
@@ -88,8 +90,9 @@ Result<TubeModel> TubeModel::relaxed(std::shared_ptr<const Yarns> yarns, ColourB
     TubeModel model;
     WEAVE_TRY(model.m_parameters, parameters_of(*yarns));
     model.m_source = std::move(yarns);
+    auto crossings = std::async(std::launch::async, [&model] { model.find_crossings(); });  // beside the pieces
     model.lay_out();
-    model.find_crossings();
+    crossings.get();
     model.set_colour(colour);
     return model;
 }
@@ -109,8 +112,7 @@ void TubeModel::lay_out() {
     }
     m_knots.resize(knots);
     place_knots(splines);
-    add_level(0);
-    for (const double share : level_shares) add_level(share * m_thinnest);
+    add_levels();
     measure();
 }
 
@@ -137,9 +139,26 @@ void TubeModel::place_knots(const std::vector<Spline>& splines) {
     }
 }
 
-void TubeModel::add_level(double error_mm) {
+/// Each level leaves out joints of the one before, which is much quicker than to begin at all knots again: what it strays further
+/// adds up to no more than its error.
+void TubeModel::add_levels() {
+    std::vector<Joints> joints;
+    for (const ModelYarn& yarn : m_yarns) {
+        joints.emplace_back(yarn.knots);
+        std::iota(joints.back().begin(), joints.back().end(), yarn.first_knot);
+    }
+    add_level(0, joints);
+    double error_mm = 0;
+    for (const double share : level_shares) {
+        for (Joints& one : joints) one = fewer(one, share * m_thinnest - error_mm);
+        error_mm = share * m_thinnest;
+        add_level(error_mm, joints);
+    }
+}
+
+void TubeModel::add_level(double error_mm, const std::vector<Joints>& joints) {
     Level level{error_mm, static_cast<std::uint32_t>(m_pieces.size()), 0, 0, {}};
-    for (std::uint32_t yarn = 0; yarn < m_yarns.size(); ++yarn) add_pieces(yarn, error_mm);
+    for (std::uint32_t yarn = 0; yarn < m_yarns.size(); ++yarn) add_pieces(yarn, joints[yarn]);
     const auto first = m_pieces.begin() + level.first;
     const auto flat =
         std::stable_partition(first, m_pieces.end(), [](const PieceLink& piece) { return piece.flags == 0; });
@@ -154,32 +173,40 @@ void TubeModel::add_level(double error_mm) {
     m_levels.push_back(std::move(level));
 }
 
-void TubeModel::add_pieces(std::uint32_t yarn, double error_mm) {
-    const ModelYarn& of = m_yarns[yarn];
-    const std::uint32_t last = of.last_knot();
-    const auto place = [&](std::uint32_t knot) { return m_knots[knot].place(); };
-    const auto strays = [&](std::uint32_t from, std::uint32_t to) {
-        if (to - from > longest_merge || m_knots[from].tangent().dot(m_knots[to].tangent()) < 0.5)
-            return true;
-        const Vec3 start = place(from), chord = place(to) - start;
-        for (std::uint32_t k = from + 1; k < to; ++k) {
-            const Vec3 way = place(k) - start;
-            const double share = std::clamp(way.dot(chord) / std::max(chord.squaredNorm(), 1e-30), 0.0, 1.0);
-            if ((way - share * chord).squaredNorm() > error_mm * error_mm) return true;
+/// The joints that are left where none of those between two lies further than `room_mm` from the straight line.
+TubeModel::Joints TubeModel::fewer(const Joints& joints, double room_mm) const {
+    const auto strays = [&](std::size_t from, std::size_t to) {
+        const Knot &start = m_knots[joints[from]], &end = m_knots[joints[to]];
+        if (joints[to] - joints[from] > longest_merge || start.tangent().dot(end.tangent()) < 0.5) return true;
+        const Vec3 chord = end.place() - start.place();
+        const double per_length = 1 / std::max(chord.squaredNorm(), 1e-30);
+        for (std::size_t k = from + 1; k < to; ++k) {
+            const Vec3 way = m_knots[joints[k]].place() - start.place();
+            const double share = std::clamp(way.dot(chord) * per_length, 0.0, 1.0);
+            if ((way - share * chord).squaredNorm() > room_mm * room_mm) return true;
         }
         return false;
     };
-    const auto flags_of = [&](std::uint32_t from, std::uint32_t to) {
-        const double near = 1.5 * of.radius_mm;
-        return ((place(from) - place(of.first_knot)).norm() < near ? PieceLink::near_start : 0U) |
-               ((place(to) - place(last)).norm() < near ? PieceLink::near_end : 0U);
-    };
-    if (of.knots == 1) m_pieces.push_back({last, last, yarn, 0});
-    for (std::uint32_t from = of.first_knot; from < last;) {
-        std::uint32_t to = from + 1;
-        while (error_mm > 0 && to < last && !strays(from, to + 1)) ++to;
-        m_pieces.push_back({from, to, yarn, flags_of(from, to)});
+    Joints left{joints.front()};
+    for (std::size_t from = 0; from + 1 < joints.size();) {
+        std::size_t to = from + 1;
+        while (to + 1 < joints.size() && !strays(from, to + 1)) ++to;
+        left.push_back(joints[to]);
         from = to;
+    }
+    return left;
+}
+
+void TubeModel::add_pieces(std::uint32_t yarn, const Joints& joints) {
+    const ModelYarn& of = m_yarns[yarn];
+    const Vec3 start = m_knots[of.first_knot].place(), end = m_knots[of.last_knot()].place();
+    const double near = 1.5 * of.radius_mm;
+    if (joints.size() == 1) m_pieces.push_back({joints[0], joints[0], yarn, 0});
+    for (std::size_t k = 0; k + 1 < joints.size(); ++k) {
+        const std::uint32_t from = joints[k], to = joints[k + 1];
+        const std::uint32_t flags = ((m_knots[from].place() - start).norm() < near ? PieceLink::near_start : 0U) |
+                                    ((m_knots[to].place() - end).norm() < near ? PieceLink::near_end : 0U);
+        m_pieces.push_back({from, to, yarn, flags});
     }
 }
 

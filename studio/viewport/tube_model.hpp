@@ -122,8 +122,11 @@ class TubeModel {
   private:
     TubeModel() = default;
     void lay_out();
-    void add_level(double error_mm);
-    void add_pieces(std::uint32_t yarn, double error_mm);
+    using Joints = std::vector<std::uint32_t>;  ///< knots of a yarn at which its pieces meet
+    void add_levels();
+    void add_level(double error_mm, const std::vector<Joints>& joints);
+    [[nodiscard]] Joints fewer(const Joints& joints, double room_mm) const;
+    void add_pieces(std::uint32_t yarn, const Joints& joints);
     void place_knots(const std::vector<Spline>& splines);
     void measure();
     void set_values();

@@ -464,6 +464,36 @@ TEST_CASE("what is larger than any block may be is refused for that, not for the
     CHECK_THAT(evaluate(design).error().message, Catch::Contains("crossings"));
 }
 
+TEST_CASE("flips made one after the other, and taken back, come to what they come to all at once") {
+    for_all(
+        [](Random& random) {
+            Design design;
+            design.blocks["square"] = random_square(random, {});
+            design.blocks["cloth"] = stencil_of({"square", "square"}, 2, 2, {0, 1, 1, 0});
+            design.root = "cloth";
+            Evaluator evaluator;
+            std::vector<Edit> undo;
+            for (std::size_t step = 0; step < 12; ++step) {
+                const bool below = random.between(0, 4) == 0;
+                if (undo.empty() || random.between(0, 3) > 0) {
+                    const Flip flip{random.between(0, 5), random.between(0, 5), random.coin()};
+                    undo.push_back(edited(design, PutFlip{below ? "square" : "cloth", flip}));
+                } else {
+                    edited(design, undo.back());
+                    undo.pop_back();
+                }
+                const Evaluation made = evaluator.evaluate(design).value(), anew = evaluate(design).value();
+                REQUIRE(*made.block == *anew.block);
+                REQUIRE(made.lost_flips.size() == anew.lost_flips.size());
+                for (std::size_t k = 0; k < made.lost_flips.size(); ++k) {
+                    REQUIRE(made.lost_flips[k].flip == anew.lost_flips[k].flip);
+                    REQUIRE(made.lost_flips[k].reason == anew.lost_flips[k].reason);
+                }
+            }
+        },
+        property_cases() / 20);
+}
+
 TEST_CASE("whatever the budget, the cloth and its lost flips are the same") {
     for_all(
         [](Random& random) {

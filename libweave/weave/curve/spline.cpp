@@ -61,6 +61,13 @@ std::pair<std::ptrdiff_t, double> locate(const Spline& spline, double t) {
 /// The four control points of a segment under four weights.
 Vec3 weighted(const Spline& spline, std::ptrdiff_t segment, const std::array<double, 4>& weights) {
     Vec3 sum = Vec3::Zero();
+    // Far from the ends, where most are, they lie side by side: no index needs to be looked at.
+    const auto count = static_cast<std::ptrdiff_t>(spline.control.size());
+    if (segment >= 1 && segment + 2 < count) {
+        const Vec3* control = &spline.control[static_cast<std::size_t>(segment) - 1];
+        for (std::size_t k = 0; k < 4; ++k) sum += weights[k] * control[k];
+        return sum;
+    }
     for (std::ptrdiff_t k = 0; k < 4; ++k)
         sum += weights[static_cast<std::size_t>(k)] * spline.at(segment - 1 + k);
     return sum;

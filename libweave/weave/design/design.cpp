@@ -16,11 +16,17 @@ struct Overload : Cases... {
 template <class... Cases>
 Overload(Cases...) -> Overload<Cases...>;  // clang 14 does not deduce this by itself
 
+/// What is held by both is not compared with itself, however large.
+template <class T>
+bool same_content(const std::shared_ptr<const T>& a, const std::shared_ptr<const T>& b) {
+    return a == b || *a == *b;
+}
+
 bool same(const StacksLeaf& a, const StacksLeaf& b) {
-    return *a.block == *b.block;
+    return same_content(a.block, b.block);
 }
 bool same(const CardLeaf& a, const CardLeaf& b) {
-    return *a.card == *b.card && a.t == b.t && a.p == b.p;
+    return same_content(a.card, b.card) && a.t == b.t && a.p == b.p;
 }
 bool same(const PresetLeaf& a, const PresetLeaf& b) {
     return a.preset == b.preset;
@@ -35,7 +41,7 @@ bool same(const AttachOperation& a, const AttachOperation& b) {
     return a.of == b.of && a.other == b.other && a.face == b.face;
 }
 bool same(const StencilOperation& a, const StencilOperation& b) {
-    return a.of == b.of && *a.map == *b.map;
+    return a.of == b.of && same_content(a.map, b.map);
 }
 bool same(const RenumberOperation& a, const RenumberOperation& b) {
     return a.of == b.of && a.system == b.system && a.line == b.line && a.order == b.order;

@@ -5,6 +5,7 @@
 #include <weave/design/tree.hpp>
 
 #include <algorithm>
+#include <span>
 
 namespace weave {
 
@@ -37,6 +38,13 @@ Result<Block> make(const RenumberOperation& operation, const std::vector<BlockPt
                                             : renumber_column(*children[0], operation.line, operation.order);
 }
 
+BlockPtr with_flips(Block block, std::span<const Flip> flips, std::vector<RefusedFlip>& refused) {
+    if (flips.empty()) return std::make_shared<const Block>(std::move(block));
+    FlippedBlock flipped = apply_flips(std::move(block), flips);
+    refused = std::move(flipped.refused);
+    return std::make_shared<const Block>(std::move(flipped.block));
+}
+
 /// What a node is made into. A leaf of stacks without flips is its block already: no copy.
 Result<BlockPtr> block_of(const Node& node, const std::vector<BlockPtr>& children,
                           std::vector<RefusedFlip>& refused) {
@@ -44,10 +52,29 @@ Result<BlockPtr> block_of(const Node& node, const std::vector<BlockPtr>& childre
     if (leaf != nullptr && node.flips.empty()) return leaf->block;
     WEAVE_TRY(Block block,
               std::visit([&](const auto& source) { return make(source, children); }, node.source));
-    if (node.flips.empty()) return std::make_shared<const Block>(std::move(block));
-    FlippedBlock flipped = apply_flips(std::move(block), node.flips);
-    refused = std::move(flipped.refused);
-    return std::make_shared<const Block>(std::move(flipped.block));
+    return with_flips(std::move(block), node.flips, refused);
+}
+
+bool begins_with(const std::vector<Flip>& flips, const std::vector<Flip>& first) {
+    return flips.size() >= first.size() && std::equal(first.begin(), first.end(), flips.begin());
+}
+
+bool same_source(const Node& a, const Node& b) {
+    return Node{a.source, {}} == Node{b.source, {}};
+}
+
+/// Of remembered versions, the latest first, the one with most of the flips that the latest begins with, none of them lost, and
+/// otherwise the same. Flips are made one after the other, so the rest of them made on its block come to the latest: for a person
+/// who flips one crossing after the other that is a copy of the block instead of making it from its parts.
+template <class Version>
+const Version* with_fewer_flips(const std::vector<Version>& versions) {
+    const Version &latest = versions.front(), *found = nullptr;
+    for (const Version& version : versions) {
+        const bool serves = version.block && version.lost_flips.empty() && version.children == latest.children &&
+                            begins_with(latest.node->flips, version.node->flips) && same_source(*version.node, *latest.node);
+        if (serves && (found == nullptr || found->node->flips.size() < version.node->flips.size())) found = &version;
+    }
+    return found;
 }
 
 constexpr std::size_t most_versions = 8;
@@ -158,7 +185,11 @@ Result<BlockPtr> Evaluator::cloth(const std::vector<std::string>& order) {
 Status Evaluator::make(const std::string& name, const std::vector<BlockPtr>& children) {
     Version& version = latest(name);
     std::vector<RefusedFlip> refused;
-    Result<BlockPtr> block = block_of(*version.node, children, refused);
+    Result<BlockPtr> block = [&]() -> Result<BlockPtr> {
+        const Version* before = with_fewer_flips(m_known.at(name));
+        if (before == nullptr) return block_of(*version.node, children, refused);
+        return with_flips(*before->block, std::span(version.node->flips).subspan(before->node->flips.size()), refused);
+    }();
     if (!block) return std::move(block).error().under("blocks." + name);
     ++m_computed;
     version.lost_flips.clear();
