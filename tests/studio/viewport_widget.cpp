@@ -255,6 +255,8 @@ TEST_CASE("selected yarns stand out and the others pale") {
 
 TEST_CASE("OpenGL draws what the processor draws") {
     const auto yarns = sample_yarns();
+    const bool apart = GENERATE(true, false);  // into a picture of its own, or straight into the window
+    CAPTURE(apart);
     for (const bool perspective : {false, true}) {
         ClothView view;
         view.perspective = perspective;
@@ -269,7 +271,7 @@ TEST_CASE("OpenGL draws what the processor draws") {
                    perspective ? Rectangle{0, 0, wide, high} : Rectangle{20, 20, wide - 40, high - 40});
         const auto expected = render(*scene, camera, wide, high);
 
-        Viewport viewport;
+        Viewport viewport(nullptr, apart);
         viewport.set_animated(false);
         viewport.resize(wide, high);
         viewport.set_model(model_of(yarns));
@@ -309,10 +311,12 @@ TEST_CASE("OpenGL draws what the processor draws") {
 }
 
 TEST_CASE("the picture outlives another parent, and goes without yarns") {
+    const bool apart = GENERATE(true, false);
+    CAPTURE(apart);
     QWidget first, second;
     first.resize(400, 300);
     second.resize(400, 300);
-    auto* const viewport = new Viewport(&first);
+    auto* const viewport = new Viewport(&first, apart);
     viewport->set_animated(false);
     viewport->resize(400, 300);
     viewport->set_model(model_of(crossed_yarns()));
@@ -327,6 +331,8 @@ TEST_CASE("the picture outlives another parent, and goes without yarns") {
     REQUIRE(QTest::qWaitFor([&] { return viewport->painter().has_started(); }));
     CHECK(viewport->trouble().isEmpty());
     CHECK(viewport->yarns_on_screen() == before);
+    const QImage whole = viewport->grab().toImage();
+    CHECK(whole.pixelColor(200, 150) == before.pixelColor(200, 150));
     viewport->set_model(nullptr);
     const QImage empty = viewport->grab().toImage();
     CHECK(empty != before);
