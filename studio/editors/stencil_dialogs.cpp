@@ -17,8 +17,8 @@ namespace weave::studio {
 
 StencilSizeDialog::StencilSizeDialog(std::size_t rows, std::size_t columns, QWidget* parent)
     : QDialog(parent),
-      m_rows(new QSpinBox(this)),
       m_columns(new QSpinBox(this)),
+      m_rows(new QSpinBox(this)),
       m_anchor(new QButtonGroup(this)) {
     setObjectName("stencil_size");
     setWindowTitle(tr("Size of the picture"));

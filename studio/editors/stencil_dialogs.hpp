@@ -26,7 +26,7 @@ class StencilSizeDialog : public QDialog {
     [[nodiscard]] Keep columns_kept() const { return static_cast<Keep>(m_anchor->checkedId() % 3); }
 
   private:
-    QSpinBox *m_rows, *m_columns;
+    QSpinBox *m_columns, *m_rows;  // the first to be filled in first
     QButtonGroup* m_anchor;  ///< nine buttons, row by row from the top
 };
 

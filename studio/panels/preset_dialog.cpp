@@ -123,6 +123,7 @@ QWidget* PresetDialog::make_field(const PresetOption& option) {
     auto* box = new QSpinBox;
     box->setRange(as_int(option.low), as_int(option.high));
     box->setValue(as_int(option.fallback));
+    if (option.name == "move" && option.low == 0) box->setSpecialValueText(tr("the most even"));
     connect(box, &QSpinBox::valueChanged, this, &PresetDialog::try_out);
     return m_numbers[option.name] = box;
 }

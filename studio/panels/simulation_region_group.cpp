@@ -66,7 +66,10 @@ RegionGroup::RegionGroup(QWidget* parent)
     grid->addWidget(m_yarns, 4, 0, 1, 5);
     grid->setColumnStretch(4, 1);
     m_whole->setChecked(true);
-    connect(m_part, &QRadioButton::toggled, this, [this] { Q_EMIT edited(); });
+    connect(m_part, &QRadioButton::toggled, this, [this] {
+        tell_yarns();
+        Q_EMIT edited();
+    });
     set_cloth(BlockGrid({1}, {1}));
 }
 
@@ -108,6 +111,8 @@ void RegionGroup::tell_yarns() {
         const auto most = std::min<std::size_t>(counts.size(), static_cast<std::size_t>(lines));
         return std::accumulate(counts.begin(), counts.begin() + static_cast<std::ptrdiff_t>(most), std::size_t{0});
     };
+    if (!m_part->isChecked())
+        return m_yarns->setText(tr("all of it: picks 1 to %1, ends 1 to %2").arg(m_grid.picks()).arg(m_grid.ends()));
     m_yarns->setText(tr("picks %1 to %2, ends %3 to %4")
                          .arg(after(m_grid.t(), m_first_row->value() - 1) + 1)
                          .arg(after(m_grid.t(), m_last_row->value()))

@@ -142,7 +142,9 @@ void BlockActions::add_stencil() {
     std::string name;
     auto step = compose_blocks(m_document.design(), shown, "stencil", StencilOperation{{shown}, map}, name);
     if (!step) return failed(words(step.error().text()));
-    if (perform(*step)) m_document.focus().show_block(name);
+    if (!perform(*step)) return;
+    m_document.focus().show_block(name);
+    Q_EMIT stencil_begun();
 }
 
 void BlockActions::duplicate(const std::string& block) {

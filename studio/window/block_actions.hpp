@@ -52,6 +52,8 @@ class BlockActions : public QObject {
   Q_SIGNALS:
     void failed(const QString& reason);
     void told(const QString& words);
+    /// A stencil was made, and is shown: it is to be painted.
+    void stencil_begun();
     /// To be read when there is time.
     void noted(const QString& words);
 

@@ -259,6 +259,7 @@ void MainWindow::show_start_page() {
 void MainWindow::close_document() {
     if (!m_document) return;
     show_in_parts(nullptr);
+    m_is_learning = false;  // it leads through its own design
     m_blocks = nullptr;
     m_document->discard();
     m_document.reset();
@@ -270,6 +271,7 @@ void MainWindow::take(std::unique_ptr<Document> document) {
     m_blocks = new BlockActions(*m_document, this);
     connect(m_blocks, &BlockActions::failed, this, &MainWindow::warn);
     connect(m_blocks, &BlockActions::told, this, &MainWindow::tell);
+    connect(m_blocks, &BlockActions::stencil_begun, this, [this] { m_editors->setCurrentWidget(m_stencil); });
     connect(m_blocks, &BlockActions::noted, this, [this](const QString& words) { m_messages->tell(MessageBar::Kind::note, words); });
     follow_document();
     show_in_parts(m_document.get());
@@ -385,12 +387,13 @@ void MainWindow::closeEvent(QCloseEvent* event) {
 
 void MainWindow::begin_tutorial() {
     if (!may_close()) return;
-    m_is_learning = true;
     Design design;
     design.title = tr("My first pocket").toStdString();
     design.root = "layer";
     design.blocks["layer"] = std::make_shared<const Node>(Node{PresetLeaf{{"plain", {}}}, {}});
     show_design(std::move(design), {}, true);
+    m_is_learning = true;
+    m_tutorial_dock->show();
     m_tutorial->begin();
     const int width = m_tutorial_dock->width();  // its longest step is to be read without scrolling
     resizeDocks({m_tutorial_dock}, {m_tutorial->height_for(width) + 3 * fontMetrics().height()}, Qt::Vertical);
@@ -405,7 +408,9 @@ void MainWindow::show_help(const QString& heading) {
 
 /// Rings what a step of the tutorial needs, for two seconds.
 void MainWindow::show_where(std::size_t step) {
-    const std::array<QWidget*, Tutorial::steps> places{m_tree, m_simulation, m_card, m_viewer, m_simulation->scene()};
+    QWidget* const repeat = m_tool_bar->widgetForAction(m_repeat);
+    QWidget* const run = m_tool_bar->widgetForAction(m_simulation->run_action());
+    const std::array<QWidget*, Tutorial::steps> places{repeat, run, m_card, m_viewer, m_simulation->scene()};
     if (step >= places.size()) return;
     if (places[step] == m_card) m_editors->setCurrentWidget(m_card);
     for (QWidget* above = places[step]; above != nullptr; above = above->parentWidget()) {

@@ -125,6 +125,7 @@ class MainWindow : public QMainWindow {
     QAction* m_undo = nullptr;
     QAction* m_redo = nullptr;
     QList<QAction*> m_design_actions;  ///< that need a design
+    QAction* m_repeat = nullptr;
     QList<QAction*> m_tools;           ///< of these the ones in the tool bar
     QToolBar* m_tool_bar = nullptr;
 };

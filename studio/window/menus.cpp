@@ -75,7 +75,8 @@ void MainWindow::make_edit_menu() {
     m_tools.push_back(add(block, tr("Add a traditional &weave …"), {}, [this] { m_blocks->add_weave(); }));
     m_tools.push_back(add(block, tr("Add a &drawing (slice)"), {}, [this] { m_blocks->add_drawing(); }));
     m_tools.push_back(add(block, tr("&Stencil from the block shown"), {}, [this] { m_blocks->add_stencil(); }));
-    m_tools.push_back(add(block, tr("&Repeat the block shown …"), {}, [this] { m_blocks->repeat(m_document->shown_block()); }));
+    m_repeat = add(block, tr("&Repeat the block shown …"), {}, [this] { m_blocks->repeat(m_document->shown_block()); });
+    m_tools.push_back(m_repeat);
     QAction* attach = add(block, tr("&Attach to the block shown"), {}, [] {});
     attach->setCheckable(true);
     attach->setToolTip(tr("Choose in the 3D view the side of the block to which another is attached"));

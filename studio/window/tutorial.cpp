@@ -53,6 +53,7 @@ Tutorial::Tutorial(QWidget* parent) : QWidget(parent), m_title(new QLabel), m_te
     column->addWidget(m_progress);
     column->addLayout(buttons);
     column->addStretch();
+    for (QPushButton* button : {m_show, close}) button->setFocusPolicy(Qt::TabFocus);  // a click leaves Space to Run
     connect(m_show, &QPushButton::clicked, this, [this] { Q_EMIT help_wanted(m_step); });
     connect(close, &QPushButton::clicked, this, &Tutorial::closed);
     show_step();
@@ -61,6 +62,7 @@ Tutorial::Tutorial(QWidget* parent) : QWidget(parent), m_title(new QLabel), m_te
 void Tutorial::begin() {
     m_step = 0;
     m_has_relaxed = false;
+    show_step();
     look();
 }
 
@@ -96,14 +98,17 @@ bool Tutorial::is_done(std::size_t step) const {
     }
 }
 
+/// The first step that is not done: one that was taken back is to be done again.
 void Tutorial::look() {
+    if (m_document == nullptr || !m_document->whole().block) return;
+    m_step = 0;
     while (m_step < steps && is_done(m_step)) ++m_step;
     show_step();
 }
 
 std::array<QString, Tutorial::steps + 1> Tutorial::texts() {
     return {
-        tr("You have one repeat of a plain weave. Make a layer of it: press Repeat above, 10 along and 10 across, so that the cloth has at least 20 picks and 20 ends."),
+        tr("You have one repeat of a plain weave. Make a layer of it: press Repeat in the tool bar, 10 along and 10 across, so that the cloth has at least 20 picks and 20 ends."),
         tr("See it as cloth: press Run in Simulation (or Space), and wait until it is at rest. Drag in the 3D view to turn it, use the wheel to come nearer; 1 to 6 are standard views."),
         tr("Any crossing can be changed by itself: click one on the card, and weft and end change sides there, as where a float is to be caught. Where that cannot be, it says which yarns stand in the way. Ctrl+Z takes it back."),
         tr("Now a second layer: choose Attach in the 3D view, click the lower face of the block (or drag a block onto another in Blocks), and take the same layer again. It will lie below the first."),

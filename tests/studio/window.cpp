@@ -9,6 +9,7 @@
 #include <studio/commands/tile_block.hpp>
 #include <studio/editors/card_editor.hpp>
 #include <studio/editors/slice_editor.hpp>
+#include <studio/editors/stencil_editor.hpp>
 #include <studio/panels/design_tree.hpp>
 #include <studio/panels/findings_panel.hpp>
 #include <studio/panels/message_bar.hpp>
@@ -353,6 +354,38 @@ TEST_CASE("the tutorial goes on by what is done, and ends with a pocket") {
     QTest::keyClick(&weft, Qt::Key_Down);
     CHECK(tutorial.step() == Tutorial::steps);
     CHECK(shown.document().design().scene.weft_mode == WeftMode::wraparound);
+    shown.document().undo();
+    CHECK(tutorial.step() == 4);  // taken back is not done
+    shown.document().undo();
+    shown.settle();
+    CHECK(tutorial.step() == 3);
+    shown.document().redo();
+    shown.settle();
+    CHECK(tutorial.step() == 4);
+    const weave::testing::TemporaryFolder folder;
+    shown.document().save(QString::fromStdString((folder.path / "pocket.json").string()));
+    REQUIRE(until([&] { return !shown.document().is_modified(); }));
+    shown.window.show_sample("plain");
+    CHECK_FALSE(tutorial.isVisible());
+}
+
+TEST_CASE("a click on 'Show me where' leaves the keys where they were") {
+    Desk shown;
+    click(&shown.find<QAbstractButton>("begin-tutorial"));
+    shown.settle();
+    shown.find<CardEditor>().canvas().setFocus();
+    for (QPushButton* button : shown.find<Tutorial>().findChildren<QPushButton*>()) {
+        if (button->isVisible() && button->text().startsWith("Show")) click(button);
+    }
+    CHECK(shown.find<CardEditor>().canvas().hasFocus());
+}
+
+TEST_CASE("a stencil that is begun is there to be painted") {
+    Desk shown("plain");
+    choose(shown.window, {"Block", "Stencil from the block shown"});
+    CHECK(shown.find<StencilEditor>().isVisible());
+    shown.document().undo();
+    CHECK_FALSE(shown.find<StencilEditor>().isVisible());
 }
 
 TEST_CASE("the window fits the screen of a laptop, and the first step of the tutorial is to be read whole") {

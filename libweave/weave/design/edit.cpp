@@ -111,10 +111,17 @@ Result<Edit> make(Design& design, const PutFlip& edit) {
     const auto same_place = [&](const Flip& flip) {
         return flip.pick == edit.flip.pick && flip.end == edit.flip.end;
     };
+    // What takes it back tells of one flip where that is all there is to tell: whoever keeps a long list of undo keeps no copy
+    // of all flips for each of them.
+    Edit undo = RemoveFlip{edit.block, edit.flip.pick, edit.flip.end};
     // Flips are made one after the other: one taken out from under later ones could undo or revive those.
-    if (!flips.empty() && same_place(flips.back())) flips.pop_back();
+    if (!flips.empty() && same_place(flips.back())) {
+        undo = PutFlip{edit.block, flips.back()};
+        flips.pop_back();
+    } else if (std::ranges::any_of(flips, same_place)) {
+        undo = PutBlock{edit.block, found->second};
+    }
     flips.push_back(edit.flip);
-    Edit undo = PutBlock{edit.block, found->second};
     found->second = with_flips(*found->second, std::move(flips));
     return undo;
 }

@@ -127,7 +127,7 @@ void Evaluator::recognise(const std::string& name, const NodePtr& node) {
     for (const std::string& child : children_of(*node)) children.push_back(latest(child).id);
     std::vector<Version>& versions = m_known[name];
     const auto found = std::find_if(versions.begin(), versions.end(), [&](const Version& version) {
-        return version.node == node && version.children == children;
+        return version.children == children && (version.node == node || *version.node == *node);
     });
     if (found != versions.end()) {
         std::rotate(versions.begin(), found, found + 1);
