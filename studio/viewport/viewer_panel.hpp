@@ -53,7 +53,8 @@ class ViewerPanel : public QWidget {
     /// For a menu: lock, attach, save the picture.
     [[nodiscard]] QList<QAction*> menu_actions() const { return {m_lock, m_attach, m_save}; }
 
-    /// View, mode, colours, repeats and lock, for a document; what it does not know of it leaves as it is.
+    /// Camera, mode, colours, repeats, cut and lock, to be found again; what it does not know of it leaves as it
+    /// is.
     [[nodiscard]] Json state() const;
     Status set_state(const Json& json);
     /// Writes what is seen as PNG, twice as fine as on a plain display. Errors: nothing shown, a file that
@@ -82,6 +83,7 @@ class ViewerPanel : public QWidget {
     void apply_repeat();
     void apply_clip();
     void choose_clip(int axis);
+    void set_cut(const Json& cut);
     void ask_for_picture();
 
     ModelMaker m_maker;

@@ -14,12 +14,11 @@
 
 #include <optional>
 #include <studio/jobs/background.hpp>
+#include <studio/window/recent_designs.hpp>
 
 namespace weave::studio {
 
 namespace {
-
-constexpr int most_recent = 12;
 
 /// Where the person opened or saved last; at first, where documents lie.
 QString last_folder() {
@@ -77,7 +76,7 @@ void DesignFiles::open_file(const QString& path) {
             }
             QStringList warnings;
             for (const std::string& warning : read->warnings) warnings.push_back(QString::fromStdString(warning));
-            if (read->is_document) note_recent(path);
+            if (read->is_document) recent_designs::note(path);
             if (!read->is_document && read->design.title.empty()) read->design.title = QFileInfo(path).completeBaseName().toStdString();
             Q_EMIT opened(read->design, read->is_document ? path : QString(), warnings);
         });
@@ -86,7 +85,6 @@ void DesignFiles::open_file(const QString& path) {
 bool DesignFiles::save(Document& document) {
     if (document.path().isEmpty()) return save_as(document);
     document.save(document.path());
-    note_recent(document.path());
     return true;
 }
 
@@ -97,7 +95,6 @@ bool DesignFiles::save_as(Document& document) {
     if (path.isEmpty() || !still) return false;
     QSettings().setValue("folder", QFileInfo(path).absolutePath());
     document.save(path);
-    note_recent(path);
     return true;
 }
 
@@ -114,19 +111,6 @@ void DesignFiles::export_card(const Document& document) {
             if (!done) return failed(QString::fromStdString(done.error().text()));
             Q_EMIT told(tr("The card image is in %1. It is a sample: only a release goes to a loom").arg(path));
         });
-}
-
-QStringList DesignFiles::recent() {
-    return QSettings().value("recent").toStringList();
-}
-
-void DesignFiles::note_recent(const QString& path) {
-    QStringList paths = recent();
-    const QString whole = QFileInfo(path).absoluteFilePath();
-    paths.removeAll(whole);
-    paths.prepend(whole);
-    while (paths.size() > most_recent) paths.removeLast();
-    QSettings().setValue("recent", paths);
 }
 
 }  // namespace weave::studio

@@ -11,7 +11,7 @@
 
 namespace weave::studio {
 
-/// Opens, saves and exports designs for a window: the dialogs, the reading in the background, and the list of those of late.
+/// Opens, saves and exports designs for a window: the dialogs, and the reading in the background.
 class DesignFiles : public QObject {
     Q_OBJECT
   public:
@@ -24,8 +24,6 @@ class DesignFiles : public QObject {
     bool save_as(Document& document);
     /// The card as a picture or WIF, by the ending that is chosen.
     void export_card(const Document& document);
-    [[nodiscard]] static QStringList recent();
-    static void note_recent(const QString& path);
 
   Q_SIGNALS:
     /// `path` is empty where the design was made from a file of another kind, and is to be saved anew.

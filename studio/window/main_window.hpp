@@ -77,6 +77,9 @@ class MainWindow : public QMainWindow {
     void close_document();
     void show_in_parts(Document* document);
     void show_start_page();
+    void show_workspace();
+    void keep_places();
+    void keep_looks();
     void begin_tutorial();
     void show_help(const QString& heading);
     void show_where(std::size_t step);
@@ -126,6 +129,7 @@ class MainWindow : public QMainWindow {
     QAction* m_redo = nullptr;
     QList<QAction*> m_design_actions;  ///< that need a design
     QList<QAction*> m_tools;           ///< of these the ones in the tool bar
+    QByteArray m_places;               ///< of docks, while the start page is shown
     QToolBar* m_tool_bar = nullptr;
 };
 

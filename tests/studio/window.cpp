@@ -28,6 +28,7 @@
 #include <catch2/catch.hpp>
 
 #include <support/temporary_folder.hpp>
+#include "support/desk.hpp"
 #include "support/hands.hpp"
 #include "support/slow_share.hpp"
 
@@ -38,39 +39,6 @@ using namespace weave::studio::test;
 namespace {
 
 constexpr int patience_ms = 180000;  // for what must come
-
-struct Desk {
-    explicit Desk(const char* sample = nullptr) {
-        window.show();
-        REQUIRE(QTest::qWaitForWindowExposed(&window));
-        QApplication::setActiveWindow(&window);
-        if (sample == nullptr) return;
-        window.show_sample(sample);
-        settle();
-    }
-    void settle() {
-        REQUIRE(until([&] { return document().shown_is_current() && document().whole().revision == document().revision(); }));
-        QCoreApplication::processEvents();
-    }
-    Document& document() { return *window.document(); }
-    template <class Widget>
-    Widget& find(const QString& name = {}) {
-        auto* found = window.findChild<Widget*>(name);
-        REQUIRE(found != nullptr);
-        return *found;
-    }
-    QString said() { return find<MessageBar>("messages").words(); }
-
-    MainWindow window;
-};
-
-/// Presses the button of a question that says this.
-void press(QDialog& dialog, const QString& text) {
-    for (QAbstractButton* button : dialog.findChildren<QAbstractButton*>()) {
-        if (button->text().remove('&') == text) return QTest::mouseClick(button, Qt::LeftButton);
-    }
-    FAIL("no button " << text.toStdString());
-}
 
 std::string file_of(const weave::testing::TemporaryFolder& folder, const char* name, const std::string& bytes) {
     const std::filesystem::path path = folder.path / name;
