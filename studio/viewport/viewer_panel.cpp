@@ -7,7 +7,6 @@
 #include <QLabel>
 #include <QOffscreenSurface>
 #include <QOpenGLContext>
-#include <QSaveFile>
 #include <QSignalBlocker>
 #include <QSlider>
 #include <QSpinBox>
@@ -241,16 +240,6 @@ void ViewerPanel::apply_clip() {
     const Box box = m_viewport->shown_box();
     const double at = box.low[axis] + box.size()[axis] * m_clip_at->value() / m_clip_at->maximum();
     m_viewport->set_clip(Plane{Vec3::Unit(axis) * m_clip_side, at * m_clip_side});
-}
-
-Status ViewerPanel::save_picture(const QString& path) {
-    const QImage image = m_viewport->picture(2);
-    if (image.isNull()) return invalid("there is nothing to save yet");
-    QSaveFile file(path);
-    if (!file.open(QIODevice::WriteOnly) || !image.save(&file, "PNG") || !file.commit())
-        return system_fault("the picture cannot be written: " + file.errorString().toStdString(),
-                            path.toStdString());
-    return {};
 }
 
 }  // namespace weave::studio

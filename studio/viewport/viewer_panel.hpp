@@ -3,6 +3,7 @@
 #include <studio/viewport/model_maker.hpp>
 #include <studio/viewport/viewport.hpp>
 
+#include <QImage>
 #include <QList>
 #include <QWidget>
 
@@ -57,14 +58,13 @@ class ViewerPanel : public QWidget {
     /// is.
     [[nodiscard]] Json state() const;
     Status set_state(const Json& json);
-    /// Writes what is seen as PNG, twice as fine as on a plain display. Errors: nothing shown, a file that
-    /// cannot be written.
-    Status save_picture(const QString& path);
 
   Q_SIGNALS:
     void mode_changed(weave::studio::ViewerPanel::Mode mode);
     /// A model that was asked for is shown, or cannot be.
     void model_shown();
+    /// A picture of what is seen is to be saved, twice as fine as on a plain display.
+    void picture_taken(const QImage& picture);
 
   private:
     void build_tools();
@@ -84,7 +84,6 @@ class ViewerPanel : public QWidget {
     void apply_clip();
     void choose_clip(int axis);
     void set_cut(const Json& cut);
-    void ask_for_picture();
 
     ModelMaker m_maker;
     QStackedWidget* m_pages = nullptr;

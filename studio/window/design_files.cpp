@@ -9,6 +9,7 @@
 #include <QFileInfo>
 #include <QPointer>
 #include <QRegularExpression>
+#include <QSaveFile>
 #include <QSettings>
 #include <QStandardPaths>
 
@@ -48,6 +49,12 @@ Result<std::string> card_bytes(const Design& design, const Block& block, const s
     if (lower_extension(path) == ".wif") return write_wif(design, block, card);
     WEAVE_TRY(const BitmapFormat format, bitmap_format_of(path));
     return write_proven_bitmap(card, format);
+}
+
+Status write_png(const QImage& picture, const QString& path) {
+    QSaveFile file(path);
+    if (file.open(QIODevice::WriteOnly) && picture.save(&file, "PNG") && file.commit()) return {};
+    return system_fault("the picture cannot be written: " + file.errorString().toStdString(), path.toStdString());
 }
 
 Status export_to(const Design& design, const Block& block, const std::filesystem::path& path) {
@@ -110,6 +117,17 @@ void DesignFiles::export_card(const Document& document) {
         [this, path](Status done) {
             if (!done) return failed(QString::fromStdString(done.error().text()));
             Q_EMIT told(tr("The card image is in %1. It is a sample: only a release goes to a loom").arg(path));
+        });
+}
+
+void DesignFiles::save_picture(const QImage& picture) {
+    const QString path = ask_for_file(m_window, tr("Save picture"), last_folder() + "/" + tr("cloth.png"), tr("Pictures (*.png)"), "png");
+    if (path.isEmpty()) return;
+    in_background(
+        this, [picture, path] { return write_png(picture, path); },
+        [this, path](const Status& done) {
+            if (!done) return failed(QString::fromStdString(done.error().text()));
+            Q_EMIT told(tr("The picture is in %1").arg(path));
         });
 }
 

@@ -2,6 +2,7 @@
 
 #include <weave/design/design.hpp>
 
+#include <QImage>
 #include <QObject>
 #include <QString>
 #include <QStringList>
@@ -24,6 +25,8 @@ class DesignFiles : public QObject {
     bool save_as(Document& document);
     /// The card as a picture or WIF, by the ending that is chosen.
     void export_card(const Document& document);
+    /// What is seen in space, as a PNG.
+    void save_picture(const QImage& picture);
 
   Q_SIGNALS:
     /// `path` is empty where the design was made from a file of another kind, and is to be saved anew.

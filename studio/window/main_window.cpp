@@ -79,6 +79,7 @@ MainWindow::MainWindow(QWidget* parent)
     connect(m_files, &DesignFiles::opened, this, &MainWindow::opened);
     connect(m_files, &DesignFiles::failed, this, &MainWindow::warn);
     connect(m_files, &DesignFiles::told, this, &MainWindow::tell);
+    connect(m_viewer, &ViewerPanel::picture_taken, m_files, &DesignFiles::save_picture);
     qApp->installEventFilter(this);
     const QSettings settings;
     restoreGeometry(settings.value("window").toByteArray());
@@ -352,8 +353,8 @@ void MainWindow::show_design(Design design, const QString& path, bool is_saved) 
     take(std::make_unique<Document>(std::move(design), path, is_saved));
 }
 
-void MainWindow::recover(Recovery recovery) {
-    take(std::make_unique<Document>(std::move(recovery)));
+void MainWindow::recover(std::unique_ptr<Document> left) {
+    take(std::move(left));
     const int steps = m_document->undo_stack().index();
     m_messages->tell(MessageBar::Kind::note, tr("The studio was ended before this design was saved. All of it is here again, with its last %n step(s); undo takes them back.", nullptr, steps));
 }

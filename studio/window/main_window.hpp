@@ -49,8 +49,10 @@ class MainWindow : public QMainWindow {
     [[nodiscard]] Document* document() { return m_document.get(); }
     /// From now on this design; what was here is closed without a question.
     void show_design(Design design, const QString& path, bool is_saved);
-    /// Goes on where a program was ended.
-    void recover(Recovery recovery);
+    /// Goes on where a program was ended, with what it left.
+    void recover(std::unique_ptr<Document> left);
+    /// Says something in passing.
+    void tell(const QString& words);
     /// Tells where unsaved work lies that could not be read.
     void tell_set_aside(const QStringList& folders);
     void open_file(const QString& path);
@@ -86,7 +88,6 @@ class MainWindow : public QMainWindow {
     void follow_document();
     void show_title();
     void show_undo();
-    void tell(const QString& words);
     void warn(const QString& reason);
     void flip(const CardPlace& place);
     void go_to(const CardPlace& place);
