@@ -118,6 +118,9 @@ TEST_CASE("recent: docks, their sizes and the corner of pick 1 are found again")
     int wide = 0;
     {
         Desk desk("twill-2-2");
+        desk.window.resize(1900, 1100);
+        QCoreApplication::processEvents();
+        const int before = desk.find<QTabWidget>("editors").width();
         desk.find<QDockWidget>("findings-dock").close();
         desk.find<QDockWidget>("yarns-dock").raise();
         auto* work = desk.find<QTabWidget>("editors").parentWidget();
@@ -127,6 +130,7 @@ TEST_CASE("recent: docks, their sizes and the corner of pick 1 are found again")
         QTest::mouseMove(&handle, grip + QPoint(60, 0));
         QTest::mouseRelease(&handle, Qt::LeftButton, {}, grip + QPoint(60, 0));
         wide = desk.find<QTabWidget>("editors").width();
+        CHECK(wide > before + 30);
         choose(desk.window, {"View", "Corner of pick 1 and end 1", "Top left"});
         REQUIRE(desk.window.close());
     }
