@@ -66,6 +66,7 @@ StartPage::StartPage(QWidget* parent) : QWidget(parent), m_recent(new QListWidge
     columns->setSpacing(36);
     auto* left = new QVBoxLayout;
     auto* right = new QVBoxLayout;
+    for (QVBoxLayout* column : {left, right}) column->setSpacing(8);  // else that between the columns
     columns->addLayout(left, 2);
     columns->addLayout(right, 5);
     add_beginnings(*left);
@@ -76,6 +77,7 @@ void StartPage::add_beginnings(QVBoxLayout& column) {
     column.addWidget(heading(tr("Weave"), 2));
     auto* what = new QLabel(tr("Draw multilayer cloth, see it relax, and send it to the loom."));
     what->setWordWrap(true);
+    what->setSizePolicy(QSizePolicy::Preferred, QSizePolicy::Maximum);  // the room is for the designs of late
     column.addWidget(what);
     column.addSpacing(8);
     const auto way = [&](const QString& name, const QString& text, const QString& about, void (StartPage::*wanted)()) {
