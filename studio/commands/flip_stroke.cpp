@@ -14,6 +14,10 @@ namespace weave::studio {
 
 namespace {
 
+struct Words {
+    Q_DECLARE_TR_FUNCTIONS(commands)
+};
+
 /// The stacks of a stroke as its flips leave them, by their first pick and end.
 class Stacks {
   public:
@@ -66,8 +70,8 @@ FlippedStroke flip_stroke(const Document& document, std::span<const CardPlace> p
         ++flipped.flipped;
     }
     flipped.step.text = flipped.flipped == 1 && !places.empty()
-                            ? QCoreApplication::translate("commands", "Flip pick %1, end %2").arg(places[0].pick + 1).arg(places[0].end + 1)
-                            : QCoreApplication::translate("commands", "Flip %1 crossings").arg(flipped.flipped);
+                            ? Words::tr("Flip pick %1, end %2").arg(places[0].pick + 1).arg(places[0].end + 1)
+                            : Words::tr("Flip %n crossing(s)", nullptr, static_cast<int>(flipped.flipped));
     return flipped;
 }
 

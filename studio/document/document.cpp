@@ -65,7 +65,7 @@ class Document::StepCommand : public QUndoCommand {
 };
 
 Document::Document(Design design, const QString& path, bool is_saved, const std::filesystem::path& recoveries)
-    : m_design(std::move(design)), m_path(path), m_keeper(recoveries) {
+    : m_design(std::move(design)), m_path(path), m_keeper(recoveries, this) {
     if (!is_saved) m_saved_state.reset();
     m_keeper.begin(m_design, m_path, is_saved);
     m_focus.show_block(m_design.root);
@@ -74,7 +74,7 @@ Document::Document(Design design, const QString& path, bool is_saved, const std:
 }
 
 Document::Document(Recovery recovery, const std::filesystem::path& recoveries)
-    : m_design(std::move(recovery.base)), m_path(recovery.path), m_keeper(recoveries) {
+    : m_design(std::move(recovery.base)), m_path(recovery.path), m_keeper(recoveries, this) {
     if (!recovery.base_was_saved) m_saved_state.reset();
     recovery.base = m_design;  // the keeper asks what the file held
     m_focus.show_block(m_design.root);

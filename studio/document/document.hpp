@@ -29,7 +29,8 @@ class Document : public QObject {
   public:
     /// A design opened from `path`, or a new one (empty path). `is_saved`: closing it would lose nothing.
     Document(Design design, const QString& path, bool is_saved, const std::filesystem::path& recoveries = Keeper::usual_folder());
-    /// Goes on where a program was ended, undoing included.
+    /// Goes on where a program was ended, undoing included. All that was done is done again, which may take its time: made in another
+    /// thread, it is to be moved to that of its window.
     explicit Document(Recovery recovery, const std::filesystem::path& recoveries = Keeper::usual_folder());
     ~Document() override;
 
@@ -105,13 +106,13 @@ class Document : public QObject {
     std::optional<std::uint64_t> m_saved_state = 0;  ///< that the file holds; none: no state that there is
     std::deque<std::uint64_t> m_saving;              ///< states that are being saved
     std::uint64_t m_stroke = 0;
-    QUndoStack m_undo;
-    Focus m_focus;
+    QUndoStack m_undo{this};  // these go with it into another thread
+    Focus m_focus{this};
     Cloth m_shown, m_whole;
     std::string m_shown_block;
     std::map<std::string, QImage> m_thumbnails;
     std::map<std::string, BlockGrid> m_grids;
-    ClothMaker m_maker;
+    ClothMaker m_maker{this};
     Keeper m_keeper;
 };
 

@@ -163,7 +163,7 @@ void CardEditor::show_block() {
         m_layers = layer_count(*m_block);
         list_modes();
     }
-    m_modes->setToolTip(tr("What is shown of the block: %1 picks × %2 ends").arg(m_block->picks()).arg(m_block->ends()));
+    m_modes->setToolTip(tr("What is shown of the block: %1 × %2").arg(tr("%n pick(s)", nullptr, static_cast<int>(m_block->picks())), tr("%n end(s)", nullptr, static_cast<int>(m_block->ends()))));
     const std::uint64_t wanted = ++m_wanted;
     if (m_mode == CardMode::card) return show_picture(CellPicture(shown.card), m_mode);
     in_background(
@@ -241,7 +241,7 @@ void CardEditor::flip(const std::vector<GridCell>& cells) {
 void CardEditor::explain(std::span<const RefusedCrossing> refused, std::size_t flipped) {
     const RefusedCrossing& first = refused.front();
     QString words = QString::fromStdString(first.reason.text());
-    if (refused.size() > 1 || flipped > 0) words = tr("%1 of %2 crossings stay as they are. The first: %3").arg(refused.size()).arg(refused.size() + flipped).arg(words);
+    if (refused.size() > 1 || flipped > 0) words = tr("%1 of %n crossing(s) stay as they are. The first: %2", nullptr, static_cast<int>(refused.size() + flipped)).arg(refused.size()).arg(words);
     std::vector<GridCell> cells;
     for (const RefusedCrossing& one : refused) cells.push_back(cell_of(one.place));
     m_canvas->mark_refused(cells);

@@ -8,8 +8,12 @@ namespace weave::studio {
 
 namespace {
 
-QString tr(const char* text) {
-    return QCoreApplication::translate("weave::studio::SliceEdits", text);
+struct Words {
+    Q_DECLARE_TR_FUNCTIONS(SliceEdits)
+};
+
+int counted(const ChosenYarns& chosen) {
+    return static_cast<int>(chosen.size());
 }
 
 bool is_weft(const Slice& slice, const SliceYarnId& yarn) {
@@ -21,14 +25,14 @@ Result<SliceEdit> edited(Result<Slice> slice, const QString& what, ChosenYarns c
     return SliceEdit{std::move(slice).value(), what, std::move(chosen)};
 }
 
-/// `Remove weft 3 of position 2`, `Remove 4 yarns`.
+/// `Remove weft 3 of position 2`, `Remove 4 yarns`; `many` has their number.
 QString named(const QString& one, const QString& many, const Slice& slice, const ChosenYarns& chosen) {
-    return chosen.size() == 1 ? one.arg(words_of(slice, *chosen.begin())) : many.arg(chosen.size());
+    return chosen.size() == 1 ? one.arg(words_of(slice, *chosen.begin())) : many;
 }
 
 Status check_chosen(const ChosenYarns& chosen) {
     if (!chosen.empty()) return {};
-    return invalid(tr("no yarn is chosen; click on one first").toStdString());
+    return invalid(Words::tr("no yarn is chosen; click on one first").toStdString());
 }
 
 Result<std::size_t> stepped(std::size_t number, int step, const QString& beyond) {
@@ -39,30 +43,30 @@ Result<std::size_t> stepped(std::size_t number, int step, const QString& beyond)
 }  // namespace
 
 QString kind_of_dots(const Slice& slice) {
-    return slice.dots == System::weft ? tr("weft") : tr("warp");
+    return slice.dots == System::weft ? Words::tr("weft") : Words::tr("warp");
 }
 QString kind_of_paths(const Slice& slice) {
-    return slice.dots == System::weft ? tr("warp") : tr("weft");
+    return slice.dots == System::weft ? Words::tr("warp") : Words::tr("weft");
 }
 
 QString words_of(const Slice& slice, const SliceYarnId& yarn) {
     const QString kind = yarn.path ? kind_of_paths(slice) : kind_of_dots(slice);
-    if (yarn.path) return tr("%1 %2").arg(kind).arg(yarn.number + 1);
-    return tr("%1 %2 of position %3").arg(kind).arg(yarn.number + 1).arg(yarn.position + 1);
+    if (yarn.path) return Words::tr("%1 %2").arg(kind).arg(yarn.number + 1);
+    return Words::tr("%1 %2 of position %3").arg(kind).arg(yarn.number + 1).arg(yarn.position + 1);
 }
 
 QString told(const Slice& slice, const SliceYarnId& yarn) {
     const auto number = card_numbers(slice).of(yarn);
-    QString what = tr("disabled, not woven");
+    QString what = Words::tr("disabled, not woven");
     if (number)
-        what = (is_weft(slice, yarn) ? tr("pick %1 on the loom") : tr("end %1 on the card")).arg(*number + 1);
-    return tr("%1: %2").arg(words_of(slice, yarn), what);
+        what = (is_weft(slice, yarn) ? Words::tr("pick %1 on the loom") : Words::tr("end %1 on the card")).arg(*number + 1);
+    return Words::tr("%1: %2").arg(words_of(slice, yarn), what);
 }
 
 Result<SliceEdit> remove_chosen(const Slice& slice, const ChosenYarns& chosen) {
     WEAVE_CHECK_OK(check_chosen(chosen));
     const std::vector<SliceYarnId> list(chosen.begin(), chosen.end());
-    return edited(remove_yarns(slice, list), named(tr("Remove %1"), tr("Remove %1 yarns"), slice, chosen),
+    return edited(remove_yarns(slice, list), named(Words::tr("Remove %1"), Words::tr("Remove %n yarn(s)", nullptr, counted(chosen)), slice, chosen),
                   {});
 }
 
@@ -82,14 +86,14 @@ Result<SliceEdit> duplicate_chosen(const Slice& slice, const ChosenYarns& chosen
         copy.number += 1 + static_cast<std::size_t>(before);
         copies.insert(copy);
     }
-    return edited(std::move(result), named(tr("Duplicate %1"), tr("Duplicate %1 yarns"), slice, chosen),
+    return edited(std::move(result), named(Words::tr("Duplicate %1"), Words::tr("Duplicate %n yarn(s)", nullptr, counted(chosen)), slice, chosen),
                   copies);
 }
 
 Result<SliceEdit> move_chosen(const Slice& slice, const ChosenYarns& chosen, int up, int right) {
     WEAVE_CHECK_OK(check_chosen(chosen));
     if (right != 0 && chosen.size() > 1)
-        return invalid(tr("only one yarn at a time can go to another position").toStdString());
+        return invalid(Words::tr("only one yarn at a time can go to another position").toStdString());
     std::vector<SliceYarnId> list(chosen.begin(), chosen.end());
     std::ranges::sort(list, [&](const SliceYarnId& a, const SliceYarnId& b) {  // who goes ahead makes room
         return up > 0 ? level_of(slice, a, 0) > level_of(slice, b, 0)
@@ -100,7 +104,7 @@ Result<SliceEdit> move_chosen(const Slice& slice, const ChosenYarns& chosen, int
     for (const SliceYarnId& yarn : list) {
         const std::size_t here = level_of(result, yarn, 0).value_or(0);
         WEAVE_TRY(const std::size_t level,
-                  stepped(here, up, tr("%1 lies at the bottom already").arg(words_of(slice, yarn))));
+                  stepped(here, up, Words::tr("%1 lies at the bottom already").arg(words_of(slice, yarn))));
         if (right == 0) {
             WEAVE_TRY(result, move_dot(result, yarn, level));
             moved.insert(yarn);
@@ -108,11 +112,11 @@ Result<SliceEdit> move_chosen(const Slice& slice, const ChosenYarns& chosen, int
         }
         WEAVE_TRY(const std::size_t position,
                   stepped(yarn.position, right,
-                          tr("%1 is at the first position already").arg(words_of(slice, yarn))));
+                          Words::tr("%1 is at the first position already").arg(words_of(slice, yarn))));
         WEAVE_TRY(result, move_dot_to_position(result, yarn, position, level));
         moved.insert(SliceYarnId::dot(position, dots_at(result, position) - 1));
     }
-    return edited(std::move(result), named(tr("Move %1"), tr("Move %1 yarns"), slice, chosen), moved);
+    return edited(std::move(result), named(Words::tr("Move %1"), Words::tr("Move %n yarn(s)", nullptr, counted(chosen)), slice, chosen), moved);
 }
 
 Result<SliceEdit> move_path(const Slice& slice, std::size_t path, std::size_t position, int up) {
@@ -120,12 +124,12 @@ Result<SliceEdit> move_path(const Slice& slice, std::size_t path, std::size_t po
     const QString dots = kind_of_dots(slice);
     const std::size_t gap = gap_of(slice, path, position);
     if (up > 0 && gap == dots_at(slice, position))
-        return invalid(tr("%1 runs above every %2 of position %3 already")
+        return invalid(Words::tr("%1 runs above every %2 of position %3 already")
                            .arg(words_of(slice, yarn), dots)
                            .arg(position + 1)
                            .toStdString());
     WEAVE_TRY(const std::size_t to, stepped(gap, up,
-                                            tr("%1 runs below every %2 of position %3 already")
+                                            Words::tr("%1 runs below every %2 of position %3 already")
                                                 .arg(words_of(slice, yarn), dots)
                                                 .arg(position + 1)));
     return draw_path(slice, path, {{position, to, {}}});
@@ -134,16 +138,16 @@ Result<SliceEdit> move_path(const Slice& slice, std::size_t path, std::size_t po
 Result<SliceEdit> renumber_chosen(const Slice& slice, const ChosenYarns& chosen, int later) {
     WEAVE_CHECK_OK(check_chosen(chosen));
     if (chosen.size() > 1)
-        return invalid(tr("choose one yarn alone to change its place in the order").toStdString());
+        return invalid(Words::tr("choose one yarn alone to change its place in the order").toStdString());
     SliceYarnId yarn = *chosen.begin();
     const std::size_t yarns = yarn.path ? paths_of(slice) : dots_at(slice, yarn.position);
-    const QString first = yarn.path ? tr("%1 is the first on the loom already")
-                                    : tr("%1 is the first of its position on the loom already");
-    const QString last = yarn.path ? tr("%1 is the last on the loom already")
-                                   : tr("%1 is the last of its position on the loom already");
+    const QString first = yarn.path ? Words::tr("%1 is the first on the loom already")
+                                    : Words::tr("%1 is the first of its position on the loom already");
+    const QString last = yarn.path ? Words::tr("%1 is the last on the loom already")
+                                   : Words::tr("%1 is the last of its position on the loom already");
     if (later > 0 && yarn.number + 1 >= yarns) return invalid(last.arg(words_of(slice, yarn)).toStdString());
     WEAVE_TRY(const std::size_t number, stepped(yarn.number, later, first.arg(words_of(slice, yarn))));
-    const QString what = tr("Renumber %1").arg(words_of(slice, yarn));
+    const QString what = Words::tr("Renumber %1").arg(words_of(slice, yarn));
     Result<Slice> result = renumber_yarn(slice, yarn, number);
     yarn.number = number;
     return edited(std::move(result), what, {yarn});
@@ -157,9 +161,10 @@ Result<SliceEdit> enable_chosen(const Slice& slice, const ChosenYarns& chosen) {
     for (const SliceYarnId& yarn : chosen) {
         WEAVE_TRY(result, set_enabled(result, yarn, enable));
     }
-    const QString one = enable ? tr("Enable %1") : tr("Disable %1");
+    const QString one = enable ? Words::tr("Enable %1") : Words::tr("Disable %1");
+    const QString many = enable ? Words::tr("Enable %n weft(s)", nullptr, counted(chosen)) : Words::tr("Disable %n weft(s)", nullptr, counted(chosen));
     return edited(std::move(result),
-                  named(one, enable ? tr("Enable %1 wefts") : tr("Disable %1 wefts"), slice, chosen), chosen);
+                  named(one, many, slice, chosen), chosen);
 }
 
 Result<SliceEdit> add_like(const Slice& slice, const ChosenYarns& chosen) {
@@ -174,17 +179,17 @@ Result<SliceEdit> add_like(const Slice& slice, const ChosenYarns& chosen) {
 
 Result<SliceEdit> add_dot_at(const Slice& slice, std::size_t position, std::size_t level) {
     const std::size_t number = position < slice.positions.size() ? dots_at(slice, position) : 0;
-    const QString what = tr("Add %1 to position %2").arg(kind_of_dots(slice)).arg(position + 1);
+    const QString what = Words::tr("Add %1 to position %2").arg(kind_of_dots(slice)).arg(position + 1);
     return edited(add_dot(slice, position, level), what, {SliceYarnId::dot(position, number)});
 }
 
 Result<SliceEdit> draw_path(const Slice& slice, std::size_t path, const std::vector<PathStep>& steps) {
     const SliceYarnId yarn = SliceYarnId::run(path);
-    return edited(route_path(slice, path, steps), tr("Draw %1").arg(words_of(slice, yarn)), {yarn});
+    return edited(route_path(slice, path, steps), Words::tr("Draw %1").arg(words_of(slice, yarn)), {yarn});
 }
 
 Result<SliceEdit> draw_new_path(const Slice& slice, const std::vector<PathStep>& steps) {
-    return edited(add_path(slice, steps), tr("Add a %1").arg(kind_of_paths(slice)),
+    return edited(add_path(slice, steps), Words::tr("Add a %1").arg(kind_of_paths(slice)),
                   {SliceYarnId::run(paths_of(slice))});
 }
 
@@ -193,33 +198,33 @@ Result<SliceEdit> edit_position(const Slice& slice, PositionEdit edit, std::size
     const auto name = [&](const QString& words) { return words.arg(position + 1); };
     switch (edit) {
         case PositionEdit::insert:
-            return edited(insert_position(slice, position + 1), tr("Insert position %1").arg(position + 2),
+            return edited(insert_position(slice, position + 1), Words::tr("Insert position %1").arg(position + 2),
                           {});
         case PositionEdit::duplicate:
-            return edited(duplicate_position(slice, position), name(tr("Duplicate position %1")), {});
+            return edited(duplicate_position(slice, position), name(Words::tr("Duplicate position %1")), {});
         case PositionEdit::remove:
-            return edited(remove_position(slice, position), name(tr("Remove position %1")), {});
+            return edited(remove_position(slice, position), name(Words::tr("Remove position %1")), {});
         case PositionEdit::earlier: {
-            WEAVE_TRY(const std::size_t to, stepped(position, -1, tr("it is the first position already")));
-            return edited(move_position(slice, position, to), name(tr("Move position %1")), {});
+            WEAVE_TRY(const std::size_t to, stepped(position, -1, Words::tr("it is the first position already")));
+            return edited(move_position(slice, position, to), name(Words::tr("Move position %1")), {});
         }
         case PositionEdit::later:
             if (position + 1 >= slice.positions.size())
-                return invalid(tr("it is the last position already").toStdString());
-            return edited(move_position(slice, position, position + 1), name(tr("Move position %1")), {});
+                return invalid(Words::tr("it is the last position already").toStdString());
+            return edited(move_position(slice, position, position + 1), name(Words::tr("Move position %1")), {});
         case PositionEdit::raise:
-            return edited(raise(slice, position, level), name(tr("Raise yarns of position %1")), {});
+            return edited(raise(slice, position, level), name(Words::tr("Raise yarns of position %1")), {});
         case PositionEdit::lower:
             break;
     }
-    return edited(lower(slice, position, level), name(tr("Lower yarns of position %1")), {});
+    return edited(lower(slice, position, level), name(Words::tr("Lower yarns of position %1")), {});
 }
 
 Result<SliceEdit> close_up_levels(const Slice& slice) {
     Slice closed = without_empty_levels(slice);
     if (levels_of(closed) == levels_of(slice))
-        return invalid(tr("no level is empty all along").toStdString());
-    return edited(std::move(closed), tr("Close up empty levels"), {});
+        return invalid(Words::tr("no level is empty all along").toStdString());
+    return edited(std::move(closed), Words::tr("Close up empty levels"), {});
 }
 
 Result<SliceEdit> turn(const Slice& slice) {
@@ -233,7 +238,7 @@ Result<SliceEdit> turn(const Slice& slice) {
         }
     }
     if (const Result<Block> block = to_block(turned); !block) return block.error();
-    const QString what = turned.dots == System::weft ? tr("Draw along the warp") : tr("Draw along the weft");
+    const QString what = turned.dots == System::weft ? Words::tr("Draw along the warp") : Words::tr("Draw along the weft");
     return SliceEdit{std::move(turned), what, {}};
 }
 

@@ -12,9 +12,9 @@ namespace weave::studio {
 
 namespace {
 
-QString word(const char* text) {
-    return QCoreApplication::translate("weave::studio::SlicePainter", text);
-}
+struct Words {
+    Q_DECLARE_TR_FUNCTIONS(SlicePainter)
+};
 
 QColor mixed(const QColor& a, const QColor& b, double share) {
     const auto part = [&](int one, int other) {
@@ -236,8 +236,8 @@ class SlicePainter {
         if (!is_fine()) return;
         const double length = m_view.radius();
         if (turn.from) arrow(tip + QPointF(out * 2, 0), {out, 0}, length, colour);
-        QString words = (turn.from ? word("to %1") : word("from %1")).arg(turn.other_pick + 1);
-        if (!turn.caught) words += " " + word("(not caught)");
+        QString words = (turn.from ? Words::tr("to %1") : Words::tr("from %1")).arg(turn.other_pick + 1);
+        if (!turn.caught) words += " " + Words::tr("(not caught)");
         write(words, tip + QPointF(out * 6, turn.from ? -m_view.radius() : m_view.radius()),
               turn.right ? Qt::AlignLeft : Qt::AlignRight, mixed(m_ink, m_paper, 0.3), 0.72, false);
     }
@@ -299,7 +299,7 @@ class SlicePainter {
     }
 
     [[nodiscard]] QString name_of(const ScenePath& path) const {
-        return path.number ? QString::number(*path.number + 1) : word("off");
+        return path.number ? QString::number(*path.number + 1) : Words::tr("off");
     }
 
     /// The path's number at the edges it runs to, on the yarn where it turns, and now and then along a long
@@ -421,9 +421,9 @@ void paint_ruler(QPainter& painter, const SliceView& view, const SliceScene& sce
     const bool rows = scene.dots == System::weft;
     painter.setPen(palette.color(QPalette::WindowText));
     const double margin = metrics.averageCharWidth();
-    const QString words[] = {rows ? word("Along the warp → position = row of wefts (picks one above the other)")
-                                  : word("Along the weft → position = column of warps (ends one above the other)"),
-                             rows ? word("Along the warp → rows") : word("Along the weft → columns")};
+    const QString words[] = {rows ? Words::tr("Along the warp → position = row of wefts (picks one above the other)")
+                                  : Words::tr("Along the weft → position = column of warps (ends one above the other)"),
+                             rows ? Words::tr("Along the warp → rows") : Words::tr("Along the weft → columns")};
     const bool fits = metrics.horizontalAdvance(words[0]) + 2 * margin <= ruler.width();
     painter.drawText(QPointF(ruler.left() + margin, ruler.bottom() - metrics.descent() - 2), words[fits ? 0 : 1]);
     painter.restore();

@@ -141,8 +141,7 @@ void PictureMapDialog::check() {
     const QString obstacle = chosen.empty() ? QString() : m_obstacle(chosen);
     const std::size_t open = m_boxes.size() - chosen.size();
     m_trouble->setText(!obstacle.isEmpty() ? obstacle
-                       : open > 0          ? (open == 1 ? tr("1 colour is still without a block")
-                                                        : tr("%1 colours are still without a block").arg(open))
+                       : open > 0          ? tr("%n colour(s) are still without a block", nullptr, static_cast<int>(open))
                                            : QString());
     m_accept->setEnabled(open == 0 && obstacle.isEmpty());
 }

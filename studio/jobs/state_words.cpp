@@ -7,6 +7,7 @@
 #include <QCoreApplication>
 
 #include <algorithm>
+#include <limits>
 #include <cmath>
 
 namespace weave::studio {
@@ -32,13 +33,13 @@ QString percent(double share) {
     return Words::tr("%1 %").arg(100 * share, 0, 'f', 1);
 }
 
-/// `one` has the number written out, `many` has it as %1.
-QString counted(std::uint64_t count, const QString& one, const QString& many) {
-    return count == 1 ? one : many.arg(count);
+/// A count as texts with a plural take it.
+int counted(std::uint64_t count) {
+    return static_cast<int>(std::min<std::uint64_t>(count, std::numeric_limits<int>::max()));
 }
 
 QString steps(std::uint64_t count) {
-    return counted(count, Words::tr("1 step"), Words::tr("%1 steps"));
+    return Words::tr("%n step(s)", nullptr, counted(count));
 }
 
 QString name_of(System system) {
@@ -63,8 +64,7 @@ QString running_words(const Progress& progress) {
                        .arg(small(progress.residual));
     if (progress.seconds_left) text += Words::tr(", %1 to go").arg(duration_words(*progress.seconds_left));
     if (const std::uint64_t lost = progress.lost_crossings.value_or(0); lost > 0)
-        text += counted(lost, Words::tr("; 1 crossing no longer lies as the card says"),
-                        Words::tr("; %1 crossings no longer lie as the card says"));
+        text += Words::tr("; %n crossing(s) no longer lie as the card says", nullptr, counted(lost));
     return text;
 }
 
@@ -89,8 +89,7 @@ QString paused_words(const RunState& state) {
 
 QString changed_words(const std::vector<ChangedCrossing>& changed) {
     const ChangedCrossing& first = changed.front();
-    return counted(changed.size(), Words::tr("1 crossing no longer lies as the card says"),
-                   Words::tr("%1 crossings no longer lie as the card says")) +
+    return Words::tr("%n crossing(s) no longer lie as the card says", nullptr, counted(changed.size())) +
            Words::tr(" (%1%2)").arg(crossing({first.pick, first.end}),
                                     changed.size() > 1 ? QStringLiteral(" …") : QString());
 }
@@ -98,8 +97,7 @@ QString changed_words(const std::vector<ChangedCrossing>& changed) {
 QString jammed_words(const std::vector<JammedYarn>& jammed) {
     const JammedYarn& worst = jammed.front();
     const QString place = crossing(place_of(worst.yarn, worst.between[0]));
-    if (jammed.size() == 1) return Words::tr("1 yarn is jammed at %1").arg(place);
-    return Words::tr("%1 yarns are jammed, tightest at %2").arg(number(jammed.size()), place);
+    return Words::tr("%n yarn(s) are jammed, tightest at %1", nullptr, counted(jammed.size())).arg(place);
 }
 
 QString rest_words(const RunState& state) {
@@ -261,7 +259,7 @@ std::vector<StateLine> inspection_words(const Inspection& inspection) {
     add_crossings(lines, inspection);
     if (inspection.sheets.size() > 1)
         lines.push_back(
-            {Words::tr("Falls apart into %1 cloths that nothing binds").arg(inspection.sheets.size()), {}});
+            {Words::tr("Falls apart into %n cloth(s) that nothing binds", nullptr, counted(inspection.sheets.size())), {}});
     add_leaning(lines, inspection);
     add_jammed(lines, inspection);
     add_bunched(lines, inspection);
@@ -272,8 +270,9 @@ std::vector<StateLine> inspection_words(const Inspection& inspection) {
 
 std::vector<QString> plan_words(const PlanSummary& plan) {
     std::vector<QString> lines;
-    lines.push_back(Words::tr("%1 control points on %2 yarns; about %3 of memory while it relaxes")
-                        .arg(number(plan.points), number(plan.yarns),
+    lines.push_back(Words::tr("%1 on %2; about %3 of memory while it relaxes")
+                        .arg(Words::tr("%n control point(s)", nullptr, counted(plan.points)),
+                             Words::tr("%n yarn(s)", nullptr, counted(plan.yarns)),
                              QString::fromStdString(sim::memory_text(plan.expected_bytes))));
     for (const sim::PlanLine& line : plan.lines) {
         lines.push_back(Words::tr("%1: %2 – %3")

@@ -22,15 +22,14 @@ int reached(const QString& state) {
 }  // namespace
 
 QString state_in_words(const QString& state) {
-    const auto told = [](const char* text) { return QCoreApplication::translate("ApprovalFlow", text); };
-    if (state == "draft") return told("saved, not submitted");
-    if (state == "submitted") return told("submitted, waits for approval");
-    if (state == "changes_requested") return told("rejected: changes are asked for");
-    if (state == "approved") return told("approved");
-    if (state == "released") return told("released to a loom");
-    if (state == "superseded") return told("superseded by a later release");
-    if (state == "withdrawn") return told("withdrawn from the looms");
-    return state.isEmpty() ? told("not saved yet") : state;
+    if (state == "draft") return ApprovalFlow::tr("saved, not submitted");
+    if (state == "submitted") return ApprovalFlow::tr("submitted, waits for approval");
+    if (state == "changes_requested") return ApprovalFlow::tr("rejected: changes are asked for");
+    if (state == "approved") return ApprovalFlow::tr("approved");
+    if (state == "released") return ApprovalFlow::tr("released to a loom");
+    if (state == "superseded") return ApprovalFlow::tr("superseded by a later release");
+    if (state == "withdrawn") return ApprovalFlow::tr("withdrawn from the looms");
+    return state.isEmpty() ? ApprovalFlow::tr("not saved yet") : state;
 }
 
 ApprovalFlow::ApprovalFlow(QWidget* parent) : QWidget(parent) {

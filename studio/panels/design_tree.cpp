@@ -3,9 +3,12 @@
 #include <QContextMenuEvent>
 #include <QCoreApplication>
 #include <QDropEvent>
+#include <QHeaderView>
 #include <QPixmap>
 #include <QScopedValueRollback>
+#include <QScrollBar>
 
+#include <algorithm>
 #include <set>
 #include <studio/panels/plain_tip.hpp>
 
@@ -14,7 +17,7 @@ namespace weave::studio {
 namespace {
 
 constexpr int name_role = Qt::UserRole;
-constexpr int deepest = 12, most_items = 4000;  ///< of what is unfolded: a block may be used in many places
+constexpr int deepest_again = 12, most_items = 4000;  ///< up to there a block unfolds wherever it is used
 
 QString words(const std::string& text) {
     return QString::fromStdString(text);
@@ -33,7 +36,7 @@ struct MadeBy {
         static const std::vector<QString> where{tr("after the last pick"), tr("before the first pick"), tr("after the last end"), tr("before the first end"), tr("on top"), tr("below")};
         return tr("attached %1").arg(where[static_cast<std::size_t>(attach.face)]);
     }
-    QString operator()(const StencilOperation& stencil) const { return tr("stencil of %1 blocks").arg(stencil.of.size()); }
+    QString operator()(const StencilOperation& stencil) const { return tr("stencil of %n block(s)", nullptr, static_cast<int>(stencil.of.size())); }
     QString operator()(const RenumberOperation&) const { return tr("renumbered"); }
 };
 
@@ -118,6 +121,7 @@ void DesignTree::rebuild() {
     clear();
     m_items.clear();
     m_nodes.clear();
+    m_depth = 0;
     if (m_document == nullptr) return;
     const Design& design = m_document->design();
     m_root = design.root;
@@ -128,17 +132,33 @@ void DesignTree::rebuild() {
     for (const auto& [name, node] : design.blocks) {
         if (!in_cloth.contains(name) && !m_items.contains(name)) add(name, nullptr, 0);
     }
+    header()->setMinimumSectionSize((m_depth + 1) * indentation() + room_for_name());
     expandToDepth(2);
     const auto shown = m_items.find(m_document->shown_block());
     if (shown != m_items.end()) setCurrentItem(shown->second);
 }
 
+/// However deep a block lies, so much of it can be seen.
+int DesignTree::room_for_name() const {
+    return iconSize().width() + 16 * fontMetrics().averageCharWidth();
+}
+
+/// Qt scrolls to where the column begins, which says nothing of a block that lies deep.
+void DesignTree::scrollTo(const QModelIndex& index, ScrollHint hint) {
+    QTreeWidget::scrollTo(index, hint);
+    const int beyond = visualRect(index).left() + room_for_name() - viewport()->width();
+    if (beyond > 0) horizontalScrollBar()->setValue(horizontalScrollBar()->value() + beyond);
+}
+
+/// A block that several are made from unfolds under each of them, unless that would be without end: then under the first alone.
 void DesignTree::add(const std::string& block, QTreeWidgetItem* above, int depth) {
-    if (depth > deepest || static_cast<int>(m_items.size()) > most_items) return;
+    const bool unfolds = !m_items.contains(block) || (depth <= deepest_again && static_cast<int>(m_items.size()) <= most_items);
     auto* item = above == nullptr ? new QTreeWidgetItem(this) : new QTreeWidgetItem(above);
     item->setData(0, name_role, words(block));
     m_items.emplace(block, item);
     dress(*item, block);
+    m_depth = std::max(m_depth, depth);
+    if (!unfolds) return;
     std::set<std::string> listed;
     for (const std::string& child : children_of(*m_document->design().blocks.at(block))) {
         if (listed.insert(child).second) add(child, item, depth + 1);

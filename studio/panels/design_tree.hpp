@@ -21,6 +21,7 @@ class DesignTree : public QTreeWidget {
     /// The block that is chosen; empty where none is.
     [[nodiscard]] std::string chosen() const;
     void choose(const std::string& block);
+    void scrollTo(const QModelIndex& index, ScrollHint hint = EnsureVisible) override;
 
   Q_SIGNALS:
     /// One block was dropped on another.
@@ -37,12 +38,14 @@ class DesignTree : public QTreeWidget {
     void follow_edit();
     void rebuild();
     void add(const std::string& block, QTreeWidgetItem* above, int depth);
+    [[nodiscard]] int room_for_name() const;
     void dress(QTreeWidgetItem& item, const std::string& block);
     void refresh(const QString& block);
 
     Document* m_document = nullptr;
     std::multimap<std::string, QTreeWidgetItem*> m_items;
     std::string m_root;
+    int m_depth = 0;  ///< of what is listed
     std::map<std::string, NodePtr> m_nodes;  ///< as they are shown
     bool m_is_building = false;
 };

@@ -45,7 +45,7 @@ EvidenceBox::EvidenceBox(QWidget* parent)
       m_simulate(named_button<QPushButton>(
           "simulate", tr("Simulate …"),
           tr("Lets the yarns come to rest; a mill may ask for it before it approves"))),
-      m_file(named_button<QPushButton>("file_evidence", {},
+      m_file(named_button<QPushButton>("file_evidence", QString(),
                                        tr("Files what was signed for the revision that the mill has"))),
       m_cancel(named_button<QPushButton>("cancel_evidence", tr("Cancel"),
                                          tr("Ends the simulation on the server"))),

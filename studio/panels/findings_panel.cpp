@@ -124,16 +124,18 @@ void FindingsPanel::list_looms() {
 
 void FindingsPanel::open_profile() {
     const QString path = QFileDialog::getOpenFileName(this, tr("Loom profile"), {}, tr("Loom profiles (*.json)"));
-    auto profile = path.isEmpty() ? Result<LoomProfile>(Error{}) : load_profile(path.toStdString());
-    if (!profile) {
-        m_looms->setCurrentIndex(m_chosen);
-        if (!path.isEmpty()) QMessageBox::warning(this, tr("Loom profile"), plain_tip(words(profile.error().text())));
-        return;
-    }
-    m_looms->insertItem(static_cast<int>(m_profiles.size()), words(profile->name));
+    m_looms->setCurrentIndex(m_chosen);
+    if (path.isEmpty()) return;
+    in_background(
+        this, [path] { return load_profile(path.toStdString()); }, [this](const Result<LoomProfile>& read) { take_profile(read); });
+}
+
+void FindingsPanel::take_profile(const Result<LoomProfile>& read) {
+    if (!read) return static_cast<void>(QMessageBox::warning(this, tr("Loom profile"), plain_tip(words(read.error().text()))));
+    m_looms->insertItem(static_cast<int>(m_profiles.size()), words(read->name));
     m_chosen = static_cast<int>(m_profiles.size());
     m_looms->setCurrentIndex(m_chosen);
-    m_profiles.push_back(std::move(*profile));
+    m_profiles.push_back(*read);
     check_soon();
 }
 
@@ -211,8 +213,9 @@ void FindingsPanel::show_report(const CheckReport& report) {
     }
     add_not_evaluated();
     const std::size_t errors = report.count(Severity::error), warnings = report.count(Severity::warning);
-    m_summary->setText(errors + warnings == 0 ? tr("Nothing stands in the way of weaving this (%1 rules held)").arg(report.passed.size())
-                                              : tr("%1 error(s), %2 warning(s); %3 rules held").arg(errors).arg(warnings).arg(report.passed.size()));
+    const QString held = tr("%n rule(s) held", nullptr, static_cast<int>(report.passed.size()));
+    m_summary->setText(errors + warnings == 0 ? tr("Nothing stands in the way of weaving this (%1)").arg(held)
+                                              : tr("%1, %2; %3").arg(tr("%n error(s)", nullptr, static_cast<int>(errors)), tr("%n warning(s)", nullptr, static_cast<int>(warnings)), held));
     Q_EMIT counted(errors, warnings);
 }
 

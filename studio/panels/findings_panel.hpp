@@ -41,6 +41,7 @@ class FindingsPanel : public QWidget {
   private:
     void list_looms();
     void open_profile();
+    void take_profile(const Result<LoomProfile>& read);
     void check_soon();
     void check();
     void show_report(const CheckReport& report);

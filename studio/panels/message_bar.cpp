@@ -1,5 +1,6 @@
 #include <studio/panels/message_bar.hpp>
 
+#include <QAction>
 #include <QHBoxLayout>
 #include <QLabel>
 #include <QStyle>
@@ -8,12 +9,13 @@
 namespace weave::studio {
 
 MessageBar::MessageBar(QWidget* parent)
-    : QFrame(parent), m_icon(new QLabel(this)), m_words(new QLabel(this)), m_close(new QToolButton(this)) {
+    : QFrame(parent), m_icon(new QLabel(this)), m_words(new QLabel(this)), m_offer(new QToolButton(this)), m_close(new QToolButton(this)) {
     setFrameShape(QFrame::StyledPanel);
     setAutoFillBackground(true);
     auto* line = new QHBoxLayout(this);
     line->addWidget(m_icon, 0, Qt::AlignTop);
     line->addWidget(m_words, 1);
+    line->addWidget(m_offer, 0, Qt::AlignTop);
     line->addWidget(m_close, 0, Qt::AlignTop);
     m_words->setWordWrap(true);
     m_words->setTextFormat(Qt::PlainText);
@@ -22,12 +24,15 @@ MessageBar::MessageBar(QWidget* parent)
     m_close->setAutoRaise(true);
     m_close->setToolTip(tr("Close this message"));
     m_close->setAccessibleName(m_close->toolTip());
+    m_offer->setObjectName("offer");
+    m_offer->setToolButtonStyle(Qt::ToolButtonTextBesideIcon);
     connect(m_close, &QToolButton::clicked, this, &MessageBar::clear);
     hide();
 }
 
-void MessageBar::tell(Kind kind, const QString& words) {
+void MessageBar::tell(Kind kind, const QString& words, QAction* offer) {
     m_kind = kind;
+    show_offer(offer);
     // All three grounds bear black text: 12:1 and more.
     QPalette colours = palette();
     colours.setColor(QPalette::Window, kind == Kind::error ? QColor(0xff, 0xd9, 0xb8) : kind == Kind::warning ? QColor(0xff, 0xf0, 0xc2) : QColor(0xd4, 0xea, 0xf7));
@@ -43,7 +48,18 @@ void MessageBar::tell(Kind kind, const QString& words) {
     show();
 }
 
+void MessageBar::show_offer(QAction* offer) {
+    if (QAction* before = m_offer->defaultAction()) {
+        before->disconnect(this);
+        m_offer->removeAction(before);
+    }
+    m_offer->setDefaultAction(offer);
+    m_offer->setVisible(offer != nullptr);
+    if (offer != nullptr) connect(offer, &QAction::triggered, this, &MessageBar::clear);
+}
+
 void MessageBar::clear() {
+    show_offer(nullptr);
     m_words->clear();
     hide();
 }

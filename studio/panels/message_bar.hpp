@@ -4,6 +4,7 @@
 
 #include <cstdint>
 
+class QAction;
 class QLabel;
 class QToolButton;
 
@@ -18,15 +19,18 @@ class MessageBar : public QFrame {
 
     explicit MessageBar(QWidget* parent = nullptr);
 
-    void tell(Kind kind, const QString& words);
+    /// `offer`: what can be done about it, as a button; once it is done, however, there is nothing left to say.
+    void tell(Kind kind, const QString& words, QAction* offer = nullptr);
     void clear();
     [[nodiscard]] QString words() const;
     [[nodiscard]] Kind kind() const { return m_kind; }
 
   private:
+    void show_offer(QAction* offer);
+
     Kind m_kind = Kind::note;
     QLabel *m_icon, *m_words;
-    QToolButton* m_close;
+    QToolButton *m_offer, *m_close;
 };
 
 }  // namespace weave::studio

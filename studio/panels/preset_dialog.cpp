@@ -146,7 +146,7 @@ void PresetDialog::try_out() {
         m_picture->setText(tr("no such weave"));
         return;
     }
-    m_verdict->setText(tr("%1 picks × %2 ends in a repeat").arg(block->picks()).arg(block->ends()));
+    m_verdict->setText(tr("%1 × %2 in a repeat").arg(tr("%n pick(s)", nullptr, static_cast<int>(block->picks())), tr("%n end(s)", nullptr, static_cast<int>(block->ends()))));
     m_picture->setPixmap(picture_of(block->card_image()));
 }
 

@@ -424,19 +424,19 @@ void SubmitPanel::judge() {
 }
 
 void SubmitPanel::tell_what() {
-    const QLocale locale;
     if (!m_design)
         m_size->setText(tr("No design is open."));
     else if (!m_cloth)
         m_size->setText(tr("The design makes no cloth yet."));
     else
-        m_size->setText(tr("The open design: %1 picks, %2 ends")
-                            .arg(locale.toString(static_cast<qulonglong>(m_cloth->picks())),
-                                 locale.toString(static_cast<qulonglong>(m_cloth->ends()))));
+        m_size->setText(tr("The open design: %1, %2")
+                            .arg(tr("%Ln pick(s)", nullptr, static_cast<int>(m_cloth->picks())),
+                                 tr("%Ln end(s)", nullptr, static_cast<int>(m_cloth->ends()))));
     QString findings = tr("Findings: not looked for yet");
     if (m_has_findings && m_errors + m_warnings == 0) findings = tr("Findings: none");
     if (m_has_findings && m_errors + m_warnings > 0)
-        findings = tr("Findings: %1 error(s), %2 warning(s)").arg(m_errors).arg(m_warnings);
+        findings = tr("Findings: %1, %2").arg(tr("%n error(s)", nullptr, static_cast<int>(m_errors)),
+                                            tr("%n warning(s)", nullptr, static_cast<int>(m_warnings)));
     if (m_has_findings && !m_findings_text.isEmpty()) findings += "\n" + m_findings_text;
     m_findings->setText(findings);
     m_show_findings->setVisible(m_has_findings && m_errors + m_warnings > 0);

@@ -12,23 +12,20 @@ namespace weave::studio {
 
 namespace {
 
-QString tr(const char* words) {
-    return QCoreApplication::translate("ViewerPanel", words);
-}
-
 FoundGl find_gl() {
     QSurfaceFormat format;
     format.setVersion(3, 3);
     format.setProfile(QSurfaceFormat::CoreProfile);
     QOpenGLContext context;
     context.setFormat(format);
-    if (!context.create()) return {tr("this display has no OpenGL"), false};
+    if (!context.create()) return {QCoreApplication::translate("ViewerPanel", "this display has no OpenGL"), false};
     QOffscreenSurface surface;
     surface.setFormat(context.format());
     surface.create();
-    if (!context.makeCurrent(&surface)) return {tr("OpenGL does not start on this display"), false};
+    if (!context.makeCurrent(&surface)) return {QCoreApplication::translate("ViewerPanel", "OpenGL does not start on this display"), false};
     const auto version = context.format().version();
-    if (version < std::pair(3, 3)) return {tr("this display has OpenGL %1.%2, and 3.3 is needed").arg(version.first).arg(version.second), false};
+    if (version < std::pair(3, 3))
+        return {QCoreApplication::translate("ViewerPanel", "this display has OpenGL %1.%2, and 3.3 is needed").arg(version.first).arg(version.second), false};
     return {{}, is_software_renderer(QString::fromUtf8(reinterpret_cast<const char*>(context.functions()->glGetString(GL_RENDERER))))};
 }
 

@@ -16,9 +16,9 @@ namespace weave::studio {
 
 namespace {
 
-QString tr(const char* text) {
-    return QCoreApplication::translate("Viewport", text);
-}
+struct Words {
+    Q_DECLARE_TR_FUNCTIONS(Viewport)
+};
 
 QColor colour_of(Colour colour) {
     return {colour.red, colour.green, colour.blue};
@@ -77,7 +77,7 @@ void Overlay::legend(const TubeModel& model, double top) {
     for (const double mark : marks)
         widest = std::max(widest, metrics.horizontalAdvance(QString::fromStdString(short_number(mark))));
     const QString title = scale_title(model.colour()),
-                  note = model.values_are_old() ? tr("before it moved") : QString();
+                  note = model.values_are_old() ? Words::tr("before it moved") : QString();
     const double bar = 0.9 * em(), gap = 0.5 * em();
     const double height = std::min(11 * em(), m_area.bottom() - top - 5.5 * em());
     if (height < 3 * em()) return;  // no room for numbers that can be read
@@ -126,7 +126,7 @@ void Overlay::scale_bar(const Camera& camera) {
     m_painter.drawLine(start - QPointF(0, tick), start + QPointF(0, tick));
     m_painter.drawLine(end - QPointF(0, tick), end + QPointF(0, tick));
     m_painter.drawText(QRectF(start.x() - 2 * em(), end.y() - 1.5 * em(), width + 4 * em(), 1.2 * em()),
-                       Qt::AlignCenter, tr("%1 mm").arg(QString::fromStdString(short_number(length))));
+                       Qt::AlignCenter, Words::tr("%1 mm").arg(QString::fromStdString(short_number(length))));
 }
 
 void Overlay::caption(const QString& text) {
@@ -138,7 +138,7 @@ void Overlay::caption(const QString& text) {
 
 void Overlay::padlock() {
     const double size = em();
-    const QString text = QStringLiteral("      ") + tr("View locked");
+    const QString text = QStringLiteral("      ") + Words::tr("View locked");
     const QRectF place = plate({m_area.left() + 0.8 * em(), m_left_top}, text, m_ink);
     const QPointF foot(place.left() + 0.95 * size, place.center().y() + 0.36 * size);
     m_painter.setPen(QPen(m_accent, 0.13 * size));
@@ -180,9 +180,9 @@ void Overlay::axes(const Camera& camera) {
         m_painter.strokePath(letters, QPen(halo, 0.22 * em(), Qt::SolidLine, Qt::RoundCap, Qt::RoundJoin));
         m_painter.fillPath(letters, colour);
     };
-    arrow(Vec3::UnitX(), tr("picks"), picks);  // as the rulers of the card: the way in which they are counted
-    arrow(Vec3::UnitY(), tr("ends"), ends);
-    arrow(Vec3::UnitZ(), tr("face"), m_faint);
+    arrow(Vec3::UnitX(), Words::tr("picks"), picks);  // as the rulers of the card: the way in which they are counted
+    arrow(Vec3::UnitY(), Words::tr("ends"), ends);
+    arrow(Vec3::UnitZ(), Words::tr("face"), m_faint);
 }
 
 void Overlay::box(const Box& box, const Camera& camera, std::optional<Face> marked, const QString& label) {

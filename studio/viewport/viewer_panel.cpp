@@ -4,7 +4,6 @@
 
 #include <QComboBox>
 #include <QLabel>
-#include <QSaveFile>
 #include <QSignalBlocker>
 #include <QSlider>
 #include <QSpinBox>
@@ -17,8 +16,6 @@
 namespace weave::studio {
 
 namespace {
-
-constexpr std::string_view colour_words[colourings]{"yarn", "system", "strain", "contact", "moved"};
 
 bool needs_relaxed(ColourBy colour) {
     return colour >= ColourBy::strain;
@@ -220,58 +217,6 @@ void ViewerPanel::apply_clip() {
     const Box box = m_viewport->shown_box();
     const double at = box.low[axis] + box.size()[axis] * m_clip_at->value() / m_clip_at->maximum();
     m_viewport->set_clip(Plane{Vec3::Unit(axis) * m_clip_side, at * m_clip_side});
-}
-
-// ---- For documents and files ----
-
-Json ViewerPanel::state() const {
-    return {{"camera", m_viewport->camera().to_json()},
-            {"mode", m_mode == Mode::planned ? "planned" : "relaxed"},
-            {"colour", std::string(colour_words[static_cast<std::size_t>(m_colour)])},
-            {"repeat", {m_along_ends->value(), m_along_picks->value()}},
-            {"locked", m_viewport->is_locked()}};
-}
-
-Status ViewerPanel::set_state(const Json& json) {
-    if (!json.is_object()) return bad_input("a view is an object", "view");
-    if (const auto found = json.find("camera"); found != json.end()) {
-        Camera camera;
-        if (Status read = camera.from_json(*found); !read) return std::move(read).error().under("camera");
-        m_viewport->set_camera(camera);
-    }
-    const auto text = [&](const char* name) {
-        const auto found = json.find(name);
-        return found != json.end() && found->is_string() ? found->get<std::string>() : std::string();
-    };
-    if (const std::string mode = text("mode"); !mode.empty())
-        set_mode(mode == "relaxed" ? Mode::relaxed : Mode::planned);
-    for (std::size_t k = 0; k < colourings; ++k) {
-        if (text("colour") == colour_words[k]) set_colour(static_cast<ColourBy>(k));
-    }
-    if (const auto found = json.find("repeat");
-        found != json.end() && found->is_array() && found->size() == 2) {
-        const auto times = [&](std::size_t k) {
-            const Json& number = (*found)[k];
-            return number.is_number_integer() ? static_cast<int>(std::clamp<std::int64_t>(
-                                                    number.get<std::int64_t>(), 1, most_repeats))
-                                              : 1;
-        };
-        m_along_ends->setValue(times(0));
-        m_along_picks->setValue(times(1));
-    }
-    if (const auto found = json.find("locked"); found != json.end() && found->is_boolean())
-        m_viewport->set_locked(found->get<bool>());
-    return {};
-}
-
-Status ViewerPanel::save_picture(const QString& path) {
-    const QImage image = m_viewport->picture(2);
-    if (image.isNull()) return invalid("there is nothing to save yet");
-    QSaveFile file(path);
-    if (!file.open(QIODevice::WriteOnly) || !image.save(&file, "PNG") || !file.commit())
-        return system_fault("the picture cannot be written: " + file.errorString().toStdString(),
-                            path.toStdString());
-    return {};
 }
 
 }  // namespace weave::studio

@@ -3,6 +3,7 @@
 #include <studio/viewport/model_maker.hpp>
 #include <studio/viewport/viewport.hpp>
 
+#include <QImage>
 #include <QList>
 #include <QWidget>
 
@@ -50,17 +51,17 @@ class ViewerPanel : public QWidget {
     /// For a menu: lock, attach, save the picture.
     [[nodiscard]] QList<QAction*> menu_actions() const { return {m_lock, m_attach, m_save}; }
 
-    /// View, mode, colours, repeats and lock, for a document; what it does not know of it leaves as it is.
+    /// Camera, mode, colours, repeats, cut and lock, to be found again; what it does not know of it leaves as it
+    /// is.
     [[nodiscard]] Json state() const;
     Status set_state(const Json& json);
-    /// Writes what is seen as PNG, twice as fine as on a plain display. Errors: nothing shown, a file that
-    /// cannot be written.
-    Status save_picture(const QString& path);
 
   Q_SIGNALS:
     void mode_changed(weave::studio::ViewerPanel::Mode mode);
     /// A model that was asked for is shown, or cannot be.
     void model_shown();
+    /// A picture of what is seen is to be saved, twice as fine as on a plain display.
+    void picture_taken(const QImage& picture);
 
   private:
     void build_tools();
@@ -79,7 +80,7 @@ class ViewerPanel : public QWidget {
     void apply_repeat();
     void apply_clip();
     void choose_clip(int axis);
-    void ask_for_picture();
+    void set_cut(const Json& cut);
 
     ModelMaker m_maker;
     QStackedWidget* m_pages = nullptr;

@@ -5,11 +5,9 @@
 
 #include <QAction>
 #include <QComboBox>
-#include <QFileDialog>
 #include <QHBoxLayout>
 #include <QLabel>
 #include <QMenu>
-#include <QMessageBox>
 #include <QSlider>
 #include <QSpinBox>
 #include <QStyle>
@@ -168,17 +166,9 @@ void ViewerPanel::add_rest() {
     connect(m_viewport, &Viewport::attach_mode_changed, m_attach, &QAction::setChecked);
     m_save = add_action(static_cast<int>(ViewIcon::picture), tr("Save picture"),
                         tr("Saves what is seen as a PNG, twice as fine"));
-    connect(m_save, &QAction::triggered, this, &ViewerPanel::ask_for_picture);
-}
-
-void ViewerPanel::ask_for_picture() {
-    QFileDialog dialog(this, tr("Save picture"), {}, tr("Pictures (*.png)"));
-    dialog.setAcceptMode(QFileDialog::AcceptSave);
-    dialog.setDefaultSuffix(QStringLiteral("png"));  // known to the dialog, so that it asks before it writes over a file
-    dialog.selectFile(tr("cloth.png"));
-    if (dialog.exec() != QDialog::Accepted) return;
-    if (const Status saved = save_picture(dialog.selectedFiles().value(0)); !saved)
-        QMessageBox::warning(this, tr("Save picture"), QString::fromStdString(saved.error().text()));
+    connect(m_save, &QAction::triggered, this, [this] {
+        if (const QImage picture = m_viewport->picture(2); !picture.isNull()) Q_EMIT picture_taken(picture);
+    });
 }
 
 }  // namespace weave::studio

@@ -6,83 +6,83 @@ namespace weave::studio {
 
 namespace {
 
-QString tr(const char* text) {
-    return QCoreApplication::translate("Viewport", text);
-}
+struct Words {
+    Q_DECLARE_TR_FUNCTIONS(Viewport)
+};
 
 }  // namespace
 
 QString yarn_words(const TubeModel& model, std::uint32_t yarn, const Vec3& place) {
     const ModelYarn& of = model.yarns()[yarn];
     const qulonglong number = model.number_at(yarn, place) + 1;
-    if (of.system == System::weft) return tr("pick %1").arg(number);
-    return tr("end %1 · beam %2").arg(number).arg(of.beam + 1);
+    if (of.system == System::weft) return Words::tr("pick %1").arg(number);
+    return Words::tr("end %1 · beam %2").arg(number).arg(of.beam + 1);
 }
 
 QString crossing_words(const ModelCrossing& crossing) {
-    return tr("pick %1 and end %2").arg(qulonglong{crossing.pick + 1}).arg(qulonglong{crossing.end + 1});
+    return Words::tr("pick %1 and end %2").arg(qulonglong{crossing.pick + 1}).arg(qulonglong{crossing.end + 1});
 }
 
 QString face_name(Face face) {
     switch (face) {
         case Face::plus_x:
-            return tr("Last pick");
+            return Words::tr("Last pick");
         case Face::minus_x:
-            return tr("Pick 1");
+            return Words::tr("Pick 1");
         case Face::plus_y:
-            return tr("Last end");
+            return Words::tr("Last end");
         case Face::minus_y:
-            return tr("End 1");
+            return Words::tr("End 1");
         case Face::plus_z:
-            return tr("Face");
+            return Words::tr("Face");
         case Face::minus_z:
             break;
     }
-    return tr("Back");
+    return Words::tr("Back");
 }
 
 QString attach_words(Face face) {
     switch (face) {
         case Face::plus_x:
-            return tr("attach here: after the last pick (+x)");
+            return Words::tr("attach here: after the last pick (+x)");
         case Face::minus_x:
-            return tr("attach here: before pick 1 (−x)");
+            return Words::tr("attach here: before pick 1 (−x)");
         case Face::plus_y:
-            return tr("attach here: right of the last end (+y)");
+            return Words::tr("attach here: right of the last end (+y)");
         case Face::minus_y:
-            return tr("attach here: left of end 1 (−y)");
+            return Words::tr("attach here: left of end 1 (−y)");
         case Face::plus_z:
-            return tr("attach here: on the face (+z)");
+            return Words::tr("attach here: on the face (+z)");
         case Face::minus_z:
             break;
     }
-    return tr("attach here: on the back (−z)");
+    return Words::tr("attach here: on the back (−z)");
 }
 
 QString colour_name(ColourBy colour) {
     switch (colour) {
         case ColourBy::yarn:
-            return tr("Yarn");
+            return Words::tr("Yarn");
         case ColourBy::system:
-            return tr("Warp and weft");
+            return Words::tr("Warp and weft");
         case ColourBy::strain:
-            return tr("Strain");
+            return Words::tr("Strain");
         case ColourBy::contact:
-            return tr("Contact force");
+            return Words::tr("Contact force");
         case ColourBy::moved:
             break;
     }
-    return tr("Distance from the plan");
+    return Words::tr("Distance from the plan");
 }
 
 QString scale_title(ColourBy colour) {
     switch (colour) {
         case ColourBy::strain:
-            return tr("strain, %");
+            return Words::tr("strain, %");
         case ColourBy::contact:
-            return tr("contact force, N");
+            return Words::tr("contact force, N");
         case ColourBy::moved:
-            return tr("from the plan, mm");
+            return Words::tr("from the plan, mm");
         case ColourBy::yarn:
         case ColourBy::system:
             break;
@@ -93,19 +93,19 @@ QString scale_title(ColourBy colour) {
 QString view_name(StandardView view) {
     switch (view) {
         case StandardView::face:
-            return tr("Face");
+            return Words::tr("Face");
         case StandardView::back:
-            return tr("Back");
+            return Words::tr("Back");
         case StandardView::warp_side:
-            return tr("Warp side (ends run left to right)");
+            return Words::tr("Warp side (ends run left to right)");
         case StandardView::weft_side:
-            return tr("Weft side (picks run left to right)");
+            return Words::tr("Weft side (picks run left to right)");
         case StandardView::corner:
-            return tr("Corner");
+            return Words::tr("Corner");
         case StandardView::opposite_corner:
             break;
     }
-    return tr("Opposite corner, from below");
+    return Words::tr("Opposite corner, from below");
 }
 
 }  // namespace weave::studio

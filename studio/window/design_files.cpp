@@ -9,17 +9,17 @@
 #include <QFileInfo>
 #include <QPointer>
 #include <QRegularExpression>
+#include <QSaveFile>
 #include <QSettings>
 #include <QStandardPaths>
 
 #include <optional>
 #include <studio/jobs/background.hpp>
+#include <studio/window/recent_designs.hpp>
 
 namespace weave::studio {
 
 namespace {
-
-constexpr int most_recent = 12;
 
 /// Where the person opened or saved last; at first, where documents lie.
 QString last_folder() {
@@ -51,6 +51,12 @@ Result<std::string> card_bytes(const Design& design, const Block& block, const s
     return write_proven_bitmap(card, format);
 }
 
+Status write_png(const QImage& picture, const QString& path) {
+    QSaveFile file(path);
+    if (file.open(QIODevice::WriteOnly) && picture.save(&file, "PNG") && file.commit()) return {};
+    return system_fault("the picture cannot be written: " + file.errorString().toStdString(), path.toStdString());
+}
+
 Status export_to(const Design& design, const Block& block, const std::filesystem::path& path) {
     WEAVE_TRY(const std::string bytes, card_bytes(design, block, path));
     return write_file(path, bytes);
@@ -77,7 +83,7 @@ void DesignFiles::open_file(const QString& path) {
             }
             QStringList warnings;
             for (const std::string& warning : read->warnings) warnings.push_back(QString::fromStdString(warning));
-            if (read->is_document) note_recent(path);
+            if (read->is_document) recent_designs::note(path);
             if (!read->is_document && read->design.title.empty()) read->design.title = QFileInfo(path).completeBaseName().toStdString();
             Q_EMIT opened(read->design, read->is_document ? path : QString(), warnings);
         });
@@ -86,7 +92,6 @@ void DesignFiles::open_file(const QString& path) {
 bool DesignFiles::save(Document& document) {
     if (document.path().isEmpty()) return save_as(document);
     document.save(document.path());
-    note_recent(document.path());
     return true;
 }
 
@@ -97,7 +102,6 @@ bool DesignFiles::save_as(Document& document) {
     if (path.isEmpty() || !still) return false;
     QSettings().setValue("folder", QFileInfo(path).absolutePath());
     document.save(path);
-    note_recent(path);
     return true;
 }
 
@@ -116,17 +120,15 @@ void DesignFiles::export_card(const Document& document) {
         });
 }
 
-QStringList DesignFiles::recent() {
-    return QSettings().value("recent").toStringList();
-}
-
-void DesignFiles::note_recent(const QString& path) {
-    QStringList paths = recent();
-    const QString whole = QFileInfo(path).absoluteFilePath();
-    paths.removeAll(whole);
-    paths.prepend(whole);
-    while (paths.size() > most_recent) paths.removeLast();
-    QSettings().setValue("recent", paths);
+void DesignFiles::save_picture(const QImage& picture) {
+    const QString path = ask_for_file(m_window, tr("Save picture"), last_folder() + "/" + tr("cloth.png"), tr("Pictures (*.png)"), "png");
+    if (path.isEmpty()) return;
+    in_background(
+        this, [picture, path] { return write_png(picture, path); },
+        [this, path](const Status& done) {
+            if (!done) return failed(QString::fromStdString(done.error().text()));
+            Q_EMIT told(tr("The picture is in %1").arg(path));
+        });
 }
 
 }  // namespace weave::studio

@@ -2,6 +2,7 @@
 
 #include <weave/design/design.hpp>
 
+#include <QImage>
 #include <QObject>
 #include <QString>
 #include <QStringList>
@@ -11,7 +12,7 @@
 
 namespace weave::studio {
 
-/// Opens, saves and exports designs for a window: the dialogs, the reading in the background, and the list of those of late.
+/// Opens, saves and exports designs for a window: the dialogs, and the reading in the background.
 class DesignFiles : public QObject {
     Q_OBJECT
   public:
@@ -24,8 +25,8 @@ class DesignFiles : public QObject {
     bool save_as(Document& document);
     /// The card as a picture or WIF, by the ending that is chosen.
     void export_card(const Document& document);
-    [[nodiscard]] static QStringList recent();
-    static void note_recent(const QString& path);
+    /// What is seen in space, as a PNG.
+    void save_picture(const QImage& picture);
 
   Q_SIGNALS:
     /// `path` is empty where the design was made from a file of another kind, and is to be saved anew.

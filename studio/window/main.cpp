@@ -1,13 +1,13 @@
 #include <studio/window/windows.hpp>
 
+#include <studio/window/language.hpp>
+
 #include <weave/core/log.hpp>
 
 #include <QApplication>
 #include <QCommandLineParser>
 #include <QIcon>
-#include <QLibraryInfo>
 #include <QLocale>
-#include <QTranslator>
 
 #include <clocale>
 #include <cstdio>
@@ -21,9 +21,7 @@ int main(int argc, char* argv[]) {
     QApplication::setApplicationVersion(WEAVE_VERSION);
     QApplication::setDesktopFileName("weave-studio");
     Q_INIT_RESOURCE(window);
-    QTranslator of_qt, of_studio;  // where there are none for the desk's language, it speaks English
-    if (of_qt.load(QLocale(), "qtbase", "_", QLibraryInfo::path(QLibraryInfo::TranslationsPath))) QApplication::installTranslator(&of_qt);
-    if (of_studio.load(QLocale(), "studio", "_", ":/translations")) QApplication::installTranslator(&of_studio);
+    speak_language_of(QLocale());
     QApplication::setWindowIcon(QIcon(":/studio/icon.svg"));
     weave::set_log_sink([](weave::LogLevel level, std::string_view message) {
         if (level == weave::LogLevel::warning) std::fprintf(stderr, "studio: %.*s\n", static_cast<int>(message.size()), message.data());

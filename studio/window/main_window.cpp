@@ -31,6 +31,7 @@
 #include <studio/editors/card_editor.hpp>
 #include <studio/editors/slice_editor.hpp>
 #include <studio/editors/stencil_editor.hpp>
+#include <studio/jobs/background.hpp>
 #include <studio/panels/design_tree.hpp>
 #include <studio/panels/findings_panel.hpp>
 #include <studio/panels/message_bar.hpp>
@@ -43,6 +44,7 @@
 #include <studio/window/block_actions.hpp>
 #include <studio/window/design_files.hpp>
 #include <studio/window/help_window.hpp>
+#include <studio/window/recent_designs.hpp>
 #include <studio/window/simulation_desk.hpp>
 #include <studio/window/slice_desk.hpp>
 #include <studio/window/start_page.hpp>
@@ -52,6 +54,13 @@
 #include <studio/window/viewer_desk.hpp>
 
 namespace weave::studio {
+
+namespace {
+
+/// Of the docks and tool bars that there are; one more is another version, as places that know nothing of it would leave it hidden.
+constexpr int places_version = 1;
+
+}  // namespace
 
 MainWindow::MainWindow(QWidget* parent)
     : QMainWindow(parent), m_files(new DesignFiles(this)), m_pages(new QStackedWidget), m_work(new QSplitter), m_start(new StartPage),
@@ -70,8 +79,12 @@ MainWindow::MainWindow(QWidget* parent)
     connect(m_files, &DesignFiles::opened, this, &MainWindow::opened);
     connect(m_files, &DesignFiles::failed, this, &MainWindow::warn);
     connect(m_files, &DesignFiles::told, this, &MainWindow::tell);
+    connect(m_viewer, &ViewerPanel::picture_taken, m_files, &DesignFiles::save_picture);
     qApp->installEventFilter(this);
-    restoreGeometry(QSettings().value("window").toByteArray());
+    const QSettings settings;
+    restoreGeometry(settings.value("window").toByteArray());
+    m_work->restoreState(settings.value("work").toByteArray());
+    m_places = settings.value("places").toByteArray();
     show_start_page();
 }
 
@@ -133,6 +146,7 @@ void MainWindow::make_workspace() {
     connect(m_stencil_desk, &StencilDesk::failed, this, &MainWindow::warn);
     connect(m_stencil_desk, &StencilDesk::is_stencil, this, [this](bool is) { m_editors->setTabVisible(m_editors->indexOf(m_stencil), is); });
     connect(m_simulation_desk, &SimulationDesk::failed, this, &MainWindow::warn);
+    connect(m_simulation_desk, &SimulationDesk::outgrown, this, [this](const QString& words) { m_messages->tell(MessageBar::Kind::note, words, m_simulation->run_action()); });
     connect(m_simulation_desk, &SimulationDesk::told, this, &MainWindow::tell);
     connect(m_simulation_desk, &SimulationDesk::place_wanted, this, &MainWindow::go_to);
     connect(m_start, &StartPage::open_wanted, m_files, &DesignFiles::open);
@@ -248,7 +262,8 @@ void MainWindow::flip(const CardPlace& place) {
 // ---- Documents ----
 
 void MainWindow::show_start_page() {
-    m_start->list_recent(DesignFiles::recent());
+    m_start->list_recent();
+    if (m_pages->currentWidget() == m_work) m_places = saveState(places_version);
     m_pages->setCurrentWidget(m_start);
     for (QDockWidget* dock : findChildren<QDockWidget*>()) dock->hide();
     m_tool_bar->hide();
@@ -256,8 +271,44 @@ void MainWindow::show_start_page() {
     show_undo();
 }
 
+/// Where its docks were last; what nobody has placed yet, or nobody can read, stands where make_docks() puts it.
+void MainWindow::show_workspace() {
+    if (m_pages->currentWidget() != m_work) {
+        m_pages->setCurrentWidget(m_work);
+        if (!restoreState(m_places, places_version)) {
+            for (QDockWidget* dock : findChildren<QDockWidget*>()) dock->show();
+            m_simulation_dock->raise();
+        }
+        m_tool_bar->show();
+    }
+    m_tutorial_dock->setVisible(m_is_learning);
+}
+
+void MainWindow::keep_places() {
+    if (m_pages->currentWidget() == m_work) m_places = saveState(places_version);
+    QSettings settings;
+    settings.setValue("window", saveGeometry());
+    settings.setValue("work", m_work->saveState());
+    settings.setValue("places", m_places);
+}
+
+/// For the list of recent designs: how it is looked at, and its picture where that is of what its file holds.
+void MainWindow::keep_looks() {
+    const QString path = m_document->path();
+    if (path.isEmpty()) return;
+    if (const Json view = m_viewer_desk->view(); !view.empty()) recent_designs::keep_view(path, view);
+    const QImage picture = m_document->thumbnail_of(m_document->design().root);
+    if (m_document->is_modified() || picture.isNull()) return;
+    in_background(
+        this, [path, picture] { recent_designs::keep_picture(path, picture); return true; },
+        [this](bool) {
+            if (m_pages->currentWidget() == m_start) m_start->list_recent();
+        });
+}
+
 void MainWindow::close_document() {
     if (!m_document) return;
+    keep_looks();
     show_in_parts(nullptr);
     m_is_learning = false;  // it leads through its own design
     m_blocks = nullptr;
@@ -275,10 +326,7 @@ void MainWindow::take(std::unique_ptr<Document> document) {
     connect(m_blocks, &BlockActions::noted, this, [this](const QString& words) { m_messages->tell(MessageBar::Kind::note, words); });
     follow_document();
     show_in_parts(m_document.get());
-    m_pages->setCurrentWidget(m_work);
-    for (QDockWidget* dock : findChildren<QDockWidget*>()) dock->setVisible(dock != m_tutorial_dock || m_is_learning);
-    m_simulation_dock->raise();
-    m_tool_bar->show();
+    show_workspace();
     show_title();
     show_undo();
 }
@@ -289,7 +337,11 @@ void MainWindow::follow_document() {
     connect(&document->undo_stack(), &QUndoStack::indexChanged, this, &MainWindow::show_undo);
     connect(document, &Document::path_changed, this, &MainWindow::show_title);
     connect(document, &Document::modified_changed, this, &MainWindow::show_title);
-    connect(&document->keeper(), &Keeper::saved, this, [this](const QString& path) { tell(tr("Saved as %1").arg(path)); });
+    connect(&document->keeper(), &Keeper::saved, this, [this, document](const QString& path) {
+        tell(tr("Saved as %1").arg(path));
+        recent_designs::note(path);
+        if (m_document.get() == document) keep_looks();
+    });
     connect(&document->keeper(), &Keeper::not_saved, this, [this](const QString& path, const QString& reason) { warn(tr("%1 was not saved: %2").arg(path, reason)); });
     connect(&document->keeper(), &Keeper::changed_outside, this, [this, document](const QString& path) {
         if (m_document.get() == document) ask_to_save_over(path);
@@ -303,8 +355,8 @@ void MainWindow::show_design(Design design, const QString& path, bool is_saved) 
     take(std::make_unique<Document>(std::move(design), path, is_saved));
 }
 
-void MainWindow::recover(Recovery recovery) {
-    take(std::make_unique<Document>(std::move(recovery)));
+void MainWindow::recover(std::unique_ptr<Document> left) {
+    take(std::move(left));
     const int steps = m_document->undo_stack().index();
     m_messages->tell(MessageBar::Kind::note, tr("The studio was ended before this design was saved. All of it is here again, with its last %n step(s); undo takes them back.", nullptr, steps));
 }
@@ -328,6 +380,7 @@ void MainWindow::opened(const Design& design, const QString& path, const QString
     }
     if (!may_close()) return;
     show_design(design, path, !path.isEmpty());
+    if (!path.isEmpty()) m_viewer_desk->show_view(recent_designs::view(path));
     if (!warnings.isEmpty()) m_messages->tell(MessageBar::Kind::note, warnings.join('\n'));
     if (path.isEmpty()) m_blocks->look_for_layers(m_document->design().root);
     tell(path.isEmpty() ? tr("Imported; save it as a design to keep it") : tr("Opened %1").arg(path));
@@ -378,7 +431,7 @@ void MainWindow::ask_to_save_over(const QString& path) {
 
 void MainWindow::closeEvent(QCloseEvent* event) {
     if (!may_close()) return event->ignore();
-    QSettings().setValue("window", saveGeometry());
+    keep_places();
     close_document();
     event->accept();
 }

@@ -49,8 +49,10 @@ class MainWindow : public QMainWindow {
     [[nodiscard]] Document* document() { return m_document.get(); }
     /// From now on this design; what was here is closed without a question.
     void show_design(Design design, const QString& path, bool is_saved);
-    /// Goes on where a program was ended.
-    void recover(Recovery recovery);
+    /// Goes on where a program was ended, with what it left.
+    void recover(std::unique_ptr<Document> left);
+    /// Says something in passing.
+    void tell(const QString& words);
     /// Tells where unsaved work lies that could not be read.
     void tell_set_aside(const QStringList& folders);
     void open_file(const QString& path);
@@ -77,13 +79,15 @@ class MainWindow : public QMainWindow {
     void close_document();
     void show_in_parts(Document* document);
     void show_start_page();
+    void show_workspace();
+    void keep_places();
+    void keep_looks();
     void begin_tutorial();
     void show_help(const QString& heading);
     void show_where(std::size_t step);
     void follow_document();
     void show_title();
     void show_undo();
-    void tell(const QString& words);
     void warn(const QString& reason);
     void flip(const CardPlace& place);
     void go_to(const CardPlace& place);
@@ -127,6 +131,7 @@ class MainWindow : public QMainWindow {
     QList<QAction*> m_design_actions;  ///< that need a design
     QAction* m_repeat = nullptr;
     QList<QAction*> m_tools;           ///< of these the ones in the tool bar
+    QByteArray m_places;               ///< of docks, while the start page is shown
     QToolBar* m_tool_bar = nullptr;
 };
 

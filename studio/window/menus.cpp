@@ -7,8 +7,11 @@
 #include <QDockWidget>
 #include <QMenuBar>
 #include <QMessageBox>
+#include <QSettings>
 #include <QToolBar>
 
+#include <algorithm>
+#include <array>
 #include <functional>
 #include <studio/editors/card_editor.hpp>
 #include <studio/editors/slice_editor.hpp>
@@ -17,6 +20,7 @@
 #include <studio/viewport/viewer_panel.hpp>
 #include <studio/window/block_actions.hpp>
 #include <studio/window/design_files.hpp>
+#include <studio/window/recent_designs.hpp>
 
 namespace weave::studio {
 
@@ -47,7 +51,7 @@ void MainWindow::make_file_menu() {
     QMenu* recent = menu.addMenu(tr("Open &recent"));
     connect(recent, &QMenu::aboutToShow, this, [this, recent] {
         recent->clear();
-        for (const QString& path : DesignFiles::recent()) recent->addAction(path, this, [this, path] { open_file(path); });
+        for (const QString& path : recent_designs::paths()) recent->addAction(path, this, [this, path] { open_file(path); });
         if (recent->isEmpty()) recent->addAction(tr("none yet"))->setEnabled(false);
     });
     menu.addSeparator();
@@ -128,12 +132,17 @@ void MainWindow::make_view_menu() {
     menu.addSeparator();
     QMenu* corners = menu.addMenu(tr("Corner of &pick 1 and end 1"));
     auto* group = new QActionGroup(this);
-    const std::vector<QString> names{tr("Bottom left"), tr("Bottom right"), tr("Top left"), tr("Top right")};
+    const std::array<QString, 4> names{tr("Bottom left"), tr("Bottom right"), tr("Top left"), tr("Top right")};  // as Corner has them
+    const auto chosen = std::min<std::size_t>(QSettings().value("corner").toUInt(), names.size() - 1);
     for (std::size_t k = 0; k < names.size(); ++k) {
-        QAction* corner = group->addAction(corners->addAction(names[k], this, [this, k] { m_card->canvas().set_corner(static_cast<Corner>(k)); }));
+        QAction* corner = group->addAction(corners->addAction(names[k], this, [this, k] {
+            m_card->canvas().set_corner(static_cast<Corner>(k));
+            QSettings().setValue("corner", static_cast<unsigned>(k));
+        }));
         corner->setCheckable(true);
-        corner->setChecked(k == 0);
+        corner->setChecked(k == chosen);
     }
+    m_card->canvas().set_corner(static_cast<Corner>(chosen));
     menu.addSeparator();
     for (QDockWidget* dock : findChildren<QDockWidget*>()) {
         menu.addAction(dock->toggleViewAction());

@@ -60,6 +60,7 @@ SimulationDesk::SimulationDesk(SimulationPanel& panel, ViewerPanel& viewer, QObj
     connect(&panel, &SimulationPanel::dated_changed, this, [this](bool is_dated) {
         m_viewer.set_caption(ViewerPanel::Mode::relaxed, is_dated ? tr("The cloth before the last change; Run (Space) relaxes it anew") : QString());
     });
+    connect(&panel, &SimulationPanel::begun, this, &SimulationDesk::note_cloth);
     connect(&panel, &SimulationPanel::laid_out, this, &SimulationDesk::take_layout);
     connect(&panel, &SimulationPanel::frame_came, this, &SimulationDesk::take_frame);
     connect(&panel, &SimulationPanel::yarns_came, this, &SimulationDesk::take_yarns);
@@ -79,12 +80,30 @@ void SimulationDesk::show_document(Document* document) {
     if (document == nullptr) return;
     const auto tell_design = [this] { m_panel.set_design(m_document->design()); };
     connect(document, &Document::edited, this, tell_design);
-    const auto tell_size = [this] {
-        if (const BlockPtr& block = m_document->whole().block) m_panel.set_cloth(block->grid());
-    };
-    connect(document, &Document::whole_made, this, tell_size);
+    connect(document, &Document::whole_made, this, &SimulationDesk::follow_size);
     tell_design();
-    tell_size();
+    follow_size();
+}
+
+/// A run begins; where the cloth of its design is still being made, that is the next one to come.
+void SimulationDesk::note_cloth() {
+    m_is_outgrown = false;
+    m_relaxed_cloth.reset();
+    if (m_document == nullptr || m_document->whole().revision != m_document->revision()) return;
+    if (const BlockPtr& cloth = m_document->whole().block) m_relaxed_cloth = cloth->grid();
+}
+
+/// Yarns of another size would be taken for the cloth as it is; whoever wants to see them all the same chooses Relaxed.
+void SimulationDesk::follow_size() {
+    const BlockPtr& cloth = m_document->whole().block;
+    if (!cloth) return;
+    m_panel.set_cloth(cloth->grid());
+    if (!m_relaxed_cloth) m_relaxed_cloth = cloth->grid();
+    const bool was_outgrown = std::exchange(m_is_outgrown, !(*m_relaxed_cloth == cloth->grid()));
+    const bool has_yarns = m_yarns != nullptr || m_shown_layout != 0;
+    if (!m_is_outgrown || was_outgrown || !has_yarns || m_viewer.mode() != ViewerPanel::Mode::relaxed) return;
+    m_viewer.set_mode(ViewerPanel::Mode::planned);
+    Q_EMIT outgrown(tr("The cloth has another size than when it was relaxed, so the 3D view shows its plan again."));
 }
 
 void SimulationDesk::take_layout(const std::shared_ptr<const YarnLayout>& layout) {
@@ -103,14 +122,15 @@ void SimulationDesk::take_frame(const std::shared_ptr<const Frame>& frame) {
     if (!yarns) return;
     const bool is_first = std::exchange(m_shown_layout, m_layout->layout) == 0;
     m_viewer.set_relaxed(std::move(yarns));
-    if (is_first) m_viewer.set_mode(ViewerPanel::Mode::relaxed);
+    if (is_first && !m_is_outgrown) m_viewer.set_mode(ViewerPanel::Mode::relaxed);
 }
 
 void SimulationDesk::take_yarns(const std::shared_ptr<const Yarns>& yarns) {
     m_yarns = yarns;
     m_shown_layout = 0;  // these have other points where a smallest repeat was copied back
     m_viewer.set_relaxed(yarns);
-    m_viewer.set_mode(ViewerPanel::Mode::relaxed);
+    const bool is_from_file = yarns != m_panel.state().yarns;
+    if (!m_is_outgrown || is_from_file) m_viewer.set_mode(ViewerPanel::Mode::relaxed);
     Q_EMIT relaxed();
 }
 

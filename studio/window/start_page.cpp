@@ -8,6 +8,7 @@
 #include <QHBoxLayout>
 #include <QLabel>
 #include <QListWidget>
+#include <QMenu>
 #include <QPainter>
 #include <QScrollBar>
 #include <QTextDocument>
@@ -17,12 +18,13 @@
 
 #include <studio/document/thumbnail.hpp>
 #include <studio/jobs/background.hpp>
+#include <studio/window/recent_designs.hpp>
 
 namespace weave::studio {
 
 namespace {
 
-constexpr int picture_side = 128, name_role = Qt::UserRole;
+constexpr int picture_side = 128, small_side = 40, name_role = Qt::UserRole, missing_role = Qt::UserRole + 1;
 
 QLabel* heading(const QString& text, double scale) {
     auto* label = new QLabel(text);
@@ -34,8 +36,8 @@ QLabel* heading(const QString& text, double scale) {
 }
 
 /// A picture in the middle of a square, so that all stand in line.
-QPixmap in_square(const QImage& image, double pixel_ratio) {
-    const int side = static_cast<int>(std::lround(picture_side * pixel_ratio)), room = side - static_cast<int>(8 * pixel_ratio);
+QPixmap in_square(const QImage& image, int length, double pixel_ratio) {
+    const int side = static_cast<int>(std::lround(length * pixel_ratio)), room = side - static_cast<int>(8 * pixel_ratio);
     QPixmap square(side, side);
     square.fill(Qt::transparent);
     const QImage scaled = image.scaled(room, room, Qt::KeepAspectRatio, image.width() < side ? Qt::FastTransformation : Qt::SmoothTransformation);
@@ -49,6 +51,13 @@ QPixmap in_square(const QImage& image, double pixel_ratio) {
     return square;
 }
 
+/// Room for a picture that comes later.
+QIcon no_picture(int side) {
+    QPixmap empty(side, side);
+    empty.fill(Qt::transparent);
+    return QIcon(empty);
+}
+
 }  // namespace
 
 StartPage::StartPage(QWidget* parent) : QWidget(parent), m_recent(new QListWidget), m_samples(new QListWidget) {
@@ -57,6 +66,7 @@ StartPage::StartPage(QWidget* parent) : QWidget(parent), m_recent(new QListWidge
     columns->setSpacing(36);
     auto* left = new QVBoxLayout;
     auto* right = new QVBoxLayout;
+    for (QVBoxLayout* column : {left, right}) column->setSpacing(8);  // else that between the columns
     columns->addLayout(left, 2);
     columns->addLayout(right, 5);
     add_beginnings(*left);
@@ -67,6 +77,7 @@ void StartPage::add_beginnings(QVBoxLayout& column) {
     column.addWidget(heading(tr("Weave"), 2));
     auto* what = new QLabel(tr("Draw multilayer cloth, see it relax, and send it to the loom."));
     what->setWordWrap(true);
+    what->setSizePolicy(QSizePolicy::Preferred, QSizePolicy::Maximum);  // the room is for the designs of late
     column.addWidget(what);
     column.addSpacing(8);
     const auto way = [&](const QString& name, const QString& text, const QString& about, void (StartPage::*wanted)()) {
@@ -84,14 +95,27 @@ void StartPage::add_beginnings(QVBoxLayout& column) {
     way("begin-drawing", tr("Draw a section (slice)"), tr("Yarns over and under one another, by hand"), &StartPage::drawing_wanted);
     way("begin-open", tr("Open or import a file"), tr("A design (.weave), a WIF file, or a card as PNG, TIFF or BMP"), &StartPage::open_wanted);
     column.addSpacing(12);
+    add_recent(column);
+}
+
+void StartPage::add_recent(QVBoxLayout& column) {
     column.addWidget(heading(tr("Recent"), 1.2));
     m_recent->setObjectName("recent");
     m_recent->setAccessibleName(tr("Recent designs"));
     m_recent->setFrameShape(QFrame::NoFrame);
     m_recent->viewport()->setAutoFillBackground(false);
-    connect(m_recent, &QListWidget::itemActivated, this, [this](const QListWidgetItem* item) { Q_EMIT file_wanted(item->data(name_role).toString()); });
-    connect(m_recent, &QListWidget::itemClicked, this, [this](const QListWidgetItem* item) {
+    m_recent->setIconSize({small_side, small_side});
+    m_recent->setTextElideMode(Qt::ElideMiddle);
+    m_recent->setContextMenuPolicy(Qt::CustomContextMenu);
+    const auto open = [this](const QListWidgetItem* item) {
+        if (item->data(missing_role).toBool()) return ask_about(item, m_recent->viewport()->mapToGlobal(m_recent->visualItemRect(item).center()));
         if (item->flags() & Qt::ItemIsEnabled) Q_EMIT file_wanted(item->data(name_role).toString());
+    };
+    connect(m_recent, &QListWidget::itemActivated, this, open);
+    connect(m_recent, &QListWidget::itemClicked, this, open);
+    connect(m_recent, &QListWidget::customContextMenuRequested, this, [this](const QPoint& place) {
+        const QListWidgetItem* item = m_recent->itemAt(place);
+        if (item != nullptr && (item->flags() & Qt::ItemIsEnabled)) ask_about(item, m_recent->viewport()->mapToGlobal(place));
     });
     column.addWidget(m_recent, 1);
 }
@@ -115,9 +139,7 @@ void StartPage::add_samples(QVBoxLayout& column) {
         item->setToolTip(QString::fromStdString(sample.about));
         item->setSizeHint({picture_side + 36, high});
         item->setTextAlignment(Qt::AlignHCenter | Qt::AlignTop);
-        QPixmap empty(picture_side, picture_side);
-        empty.fill(Qt::transparent);
-        item->setIcon(QIcon(empty));
+        item->setIcon(no_picture(picture_side));
         picture_sample(QString::fromStdString(sample.name));
     }
     connect(m_samples, &QListWidget::itemActivated, this, [this](const QListWidgetItem* item) { Q_EMIT sample_wanted(item->data(name_role).toString()); });
@@ -135,21 +157,59 @@ void StartPage::picture_sample(const QString& name) {
         },
         [this, name](const QImage& image) {
             for (int k = 0; k < m_samples->count() && !image.isNull(); ++k) {
-                if (m_samples->item(k)->data(name_role).toString() == name) m_samples->item(k)->setIcon(QIcon(in_square(image, devicePixelRatioF())));
+                if (m_samples->item(k)->data(name_role).toString() == name) m_samples->item(k)->setIcon(QIcon(in_square(image, picture_side, devicePixelRatioF())));
             }
         });
 }
 
-void StartPage::list_recent(const QStringList& paths) {
+// ---- Of late ----
+
+void StartPage::list_recent() {
     m_recent->clear();
+    const QStringList paths = recent_designs::paths();
     for (const QString& path : paths) {
-        auto* item = new QListWidgetItem(QFileInfo(path).completeBaseName() + "\n" + QFileInfo(path).path(), m_recent);
+        auto* item = new QListWidgetItem(no_picture(small_side), QFileInfo(path).completeBaseName() + "\n" + QFileInfo(path).path(), m_recent);
         item->setData(name_role, path);
         item->setToolTip(Qt::convertFromPlainText(path));
+        look_for(path);
     }
     if (!paths.isEmpty()) return;
     auto* none = new QListWidgetItem(tr("Designs that you open appear here."), m_recent);
     none->setFlags(Qt::NoItemFlags);
+}
+
+void StartPage::look_for(const QString& path) {
+    struct Found {
+        bool is_there = false;
+        QImage picture;
+    };
+    in_background(
+        this, [path] { return Found{QFileInfo::exists(path), recent_designs::picture(path)}; },
+        [this, path](const Found& found) { show_found(path, found.is_there, found.picture); });
+}
+
+void StartPage::show_found(const QString& path, bool is_there, const QImage& picture) {
+    for (int k = 0; k < m_recent->count(); ++k) {
+        QListWidgetItem* item = m_recent->item(k);
+        if (item->data(name_role).toString() != path) continue;
+        if (!picture.isNull()) item->setIcon(QIcon(in_square(picture, small_side, devicePixelRatioF())));
+        if (is_there) continue;
+        item->setData(missing_role, true);
+        item->setText(tr("%1 (missing)").arg(QFileInfo(path).completeBaseName()) + "\n" + QFileInfo(path).path());
+        item->setForeground(palette().brush(QPalette::Disabled, QPalette::Text));
+        item->setIcon(item->icon().pixmap(QSize(small_side, small_side), devicePixelRatioF(), QIcon::Disabled));
+    }
+}
+
+void StartPage::ask_about(const QListWidgetItem* item, const QPoint& where) {
+    const QString path = item->data(name_role).toString();
+    QMenu menu;
+    menu.addAction(item->data(missing_role).toBool() ? tr("Try to open it all the same") : tr("Open"), this, [&] { Q_EMIT file_wanted(path); });
+    menu.addAction(tr("Remove from the list"), this, [&] {
+        recent_designs::forget(path);
+        list_recent();
+    });
+    menu.exec(where);
 }
 
 }  // namespace weave::studio

@@ -4,6 +4,7 @@
 
 class QGridLayout;
 class QListWidget;
+class QListWidgetItem;
 class QVBoxLayout;
 
 namespace weave::studio {
@@ -14,8 +15,8 @@ class StartPage : public QWidget {
   public:
     explicit StartPage(QWidget* parent = nullptr);
 
-    /// The designs that were open of late, latest first, as files.
-    void list_recent(const QStringList& paths);
+    /// The designs that were open of late; their pictures, and which files are missing, follow: a share may take its time.
+    void list_recent();
 
   Q_SIGNALS:
     void weave_wanted();
@@ -28,7 +29,11 @@ class StartPage : public QWidget {
   private:
     void add_beginnings(QVBoxLayout& column);
     void add_samples(QVBoxLayout& column);
+    void add_recent(QVBoxLayout& column);
     void picture_sample(const QString& name);
+    void look_for(const QString& path);
+    void show_found(const QString& path, bool is_there, const QImage& picture);
+    void ask_about(const QListWidgetItem* item, const QPoint& where);
 
     QListWidget* m_recent;
     QListWidget* m_samples;

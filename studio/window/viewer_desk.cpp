@@ -8,6 +8,11 @@ namespace weave::studio {
 
 namespace {
 
+/// How a design is looked at that nobody has looked at.
+Json whole_and_free() {
+    return {{"repeat", {1, 1}}, {"cut", {{"across", "none"}}}, {"locked", false}};
+}
+
 /// So many lines round one, within all that there are.
 std::pair<std::size_t, std::size_t> lines_round(std::size_t line, std::size_t all, std::size_t most) {
     if (all <= most) return {0, all - 1};
@@ -62,6 +67,8 @@ void ViewerDesk::show_document(Document* document) {
     m_document = document;
     m_shown_block.clear();
     m_region.reset();
+    m_wanted_view = {};
+    static_cast<void>(m_panel.set_state(whole_and_free()));  // cut, repeats and lock were of the other design
     ++m_wanted;
     m_panel.set_caption(ViewerPanel::Mode::planned, {});
     m_panel.set_no_plan();
@@ -135,7 +142,33 @@ void ViewerDesk::show_planned(std::shared_ptr<const Design> design, std::shared_
     m_shown_size = curves->size_mm;
     m_panel.set_planned(std::move(design), std::move(curves));
     if (!is_other || m_panel.mode() != ViewerPanel::Mode::planned) return;
-    connect(&m_panel, &ViewerPanel::model_shown, this, [this] { m_panel.viewport()->fit(); }, Qt::SingleShotConnection);
+    connect(&m_panel, &ViewerPanel::model_shown, this, &ViewerDesk::look_at_plan, Qt::SingleShotConnection);
+}
+
+void ViewerDesk::look_at_plan() {
+    const Json view = std::exchange(m_wanted_view, {});
+    if (!view.is_object() || !m_panel.set_state(view)) m_panel.viewport()->fit();
+}
+
+// ---- How it is looked at ----
+
+Json ViewerDesk::view() const {
+    if (m_document == nullptr || m_panel.viewport()->model() == nullptr) return Json::object();
+    Json seen = m_panel.state();
+    seen.erase("mode");  // relaxed yarns are not there when the design is opened again
+    Json view{{"block", m_document->shown_block()}, {"seen", std::move(seen)}};
+    if (const auto& place = m_document->focus().place()) view["place"] = {place->pick, place->end};
+    return view;
+}
+
+void ViewerDesk::show_view(const Json& view) {
+    const auto block = view.find("block"), place = view.find("place"), seen = view.find("seen");
+    if (m_document == nullptr || block == view.end() || !block->is_string() || !m_document->design().blocks.contains(*block)) return;
+    m_document->focus().show_block(*block);
+    const auto counts = [](const Json& number) { return number.is_number_unsigned(); };
+    if (place != view.end() && place->is_array() && place->size() == 2 && std::all_of(place->begin(), place->end(), counts))
+        m_document->focus().go_to({(*place)[0], (*place)[1]});
+    if (seen != view.end()) m_wanted_view = *seen;
 }
 
 }  // namespace weave::studio

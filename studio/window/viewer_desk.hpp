@@ -13,7 +13,8 @@
 
 namespace weave::studio {
 
-/// Brings the block that is shown into the 3D viewer, as it is planned, and what is clicked there to the document.
+/// Brings the block that is shown into the 3D viewer, as it is planned, and what is clicked there to the document; knows how it is
+/// looked at.
 class ViewerDesk : public QObject {
     Q_OBJECT
   public:
@@ -24,6 +25,10 @@ class ViewerDesk : public QObject {
     ViewerDesk(ViewerPanel& panel, QObject* parent);
 
     void show_document(Document* document);
+    /// How the document is looked at: the block, the place in it, and the 3D view; empty where nothing is seen yet.
+    [[nodiscard]] Json view() const;
+    /// Looks at the document as it was looked at when view() gave this; what does not fit it any more is left out.
+    void show_view(const Json& view);
 
   Q_SIGNALS:
     /// A face of the block was clicked: what is to be attached there?
@@ -35,6 +40,7 @@ class ViewerDesk : public QObject {
     void follow_clicks();
     void plan();
     void show_planned(std::shared_ptr<const Design> design, std::shared_ptr<const ClothCurves> curves, bool has_moved);
+    void look_at_plan();
     [[nodiscard]] std::optional<Region> region_to_show(const Block& block) const;
 
     ViewerPanel& m_panel;
@@ -43,6 +49,7 @@ class ViewerDesk : public QObject {
     bool m_is_planning = false, m_plan_again = false;
     std::string m_shown_block;
     std::array<double, 2> m_shown_size{};  ///< mm, of what is planned
+    Json m_wanted_view;  ///< of the plan that is shown next; null: all of it
     std::uint64_t m_wanted = 0;
 };
 

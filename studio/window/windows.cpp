@@ -12,13 +12,26 @@ void Windows::open(const QStringList& paths) {
 }
 
 void Windows::recover(const std::filesystem::path& recoveries) {
+    m_windows.front()->tell(tr("Looking for unsaved work …"));
     in_background(
-        this, [recoveries] { return Keeper::take_recoveries(recoveries); }, [this](Recoveries taken) { show(std::move(taken)); });
+        this, [recoveries, home = thread()] { return left_in(recoveries, home); }, [this](LeftWork left) { show(std::move(left)); });
 }
 
-void Windows::show(Recoveries recoveries) {
-    for (Recovery& recovery : recoveries.found) free_one().recover(std::move(recovery));
-    if (!recoveries.set_aside.isEmpty()) m_windows.back()->tell_set_aside(recoveries.set_aside);
+/// The documents live in the thread `home`.
+Windows::LeftWork Windows::left_in(const std::filesystem::path& recoveries, QThread* home) {
+    Recoveries taken = Keeper::take_recoveries(recoveries);
+    LeftWork left{{}, taken.set_aside};
+    for (Recovery& recovery : taken.found) {
+        left.documents.push_back(std::make_unique<Document>(std::move(recovery)));
+        left.documents.back()->moveToThread(home);
+    }
+    return left;
+}
+
+void Windows::show(LeftWork left) {
+    m_windows.front()->tell({});
+    for (auto& document : left.documents) free_one().recover(std::move(document));
+    if (!left.set_aside.isEmpty()) m_windows.back()->tell_set_aside(left.set_aside);
 }
 
 MainWindow& Windows::add() {

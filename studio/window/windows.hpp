@@ -12,10 +12,11 @@ namespace weave::studio {
 
 /// The windows of a program.
 class Windows : public QObject {
+    Q_OBJECT
   public:
     /// Shows one for each file, or one with the start page.
     void open(const QStringList& paths);
-    /// Reads in the background what ended programs left there, and shows each design as it comes.
+    /// Reads in the background what ended programs left there, does it again, and shows the designs.
     void recover(const std::filesystem::path& recoveries);
 
     [[nodiscard]] const std::vector<std::unique_ptr<MainWindow>>& all() const { return m_windows; }
@@ -23,7 +24,12 @@ class Windows : public QObject {
   private:
     MainWindow& add();
     MainWindow& free_one();
-    void show(Recoveries recoveries);
+    struct LeftWork {
+        std::vector<std::unique_ptr<Document>> documents;
+        QStringList set_aside;
+    };
+    static LeftWork left_in(const std::filesystem::path& recoveries, QThread* home);
+    void show(LeftWork left);
 
     std::vector<std::unique_ptr<MainWindow>> m_windows;
     bool m_has_start_page = false;  ///< in the first window, until there is a design in it

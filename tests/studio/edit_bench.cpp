@@ -2,6 +2,7 @@
 // How long a person waits, and what the studio takes. Run by hand: test_studio "[.edit-bench]" (docs/benchmarks.md).
 
 #include <weave/block/flip.hpp>
+#include <weave/samples/samples.hpp>
 
 #include <studio/commands/flip_stroke.hpp>
 #include <studio/editors/card_editor.hpp>
@@ -19,6 +20,8 @@
 #include <fstream>
 #include <string>
 #include <vector>
+
+#include <support/temporary_folder.hpp>
 
 using namespace weave;
 using namespace weave::studio;
@@ -154,4 +157,16 @@ TEST_CASE("from a click on a pixel of the full-size shoe to card, section and sp
     print("click to planned yarns in space painted", space);
     print("window's thread busy at a stretch, painting in", busy);
     std::printf("%-44s %6.1f MB\n", "memory with the shoe", resident_mb());
+}
+
+TEST_CASE("how long unsaved work takes to be there again", "[.edit-bench]") {
+    const weave::testing::TemporaryFolder folder;
+    for (const std::size_t steps : {1000U, 10000U}) {
+        Recovery left;
+        left.base = find_sample("shoe-adult")->make();
+        for (std::size_t k = 0; k < steps; ++k) left.entries.push_back(EditStep{"flip", {PutFlip{left.base.root, Flip{k % 4000, k / 4000, true}}}});
+        const auto begun = Clock::now();
+        const Document document(std::move(left), folder.path);
+        std::printf("%-44s %8.1f ms\n", (std::to_string(steps) + " steps made again").c_str(), ms_since(begun));
+    }
 }

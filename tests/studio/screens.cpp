@@ -1,14 +1,20 @@
 // Pictures of the window for the guide (tests/studio/guide).
 
 #include <studio/panels/design_tree.hpp>
+#include <studio/panels/message_bar.hpp>
+#include <studio/panels/simulation_panel.hpp>
 #include <studio/viewport/viewer_panel.hpp>
 #include <studio/window/main_window.hpp>
+#include <studio/window/simulation_desk.hpp>
 
 #include <QtTest>
 
 #include <catch2/catch.hpp>
 #include <cstdlib>
+#include <filesystem>
+#include <string>
 
+#include <support/temporary_folder.hpp>
 #include "support/hands.hpp"
 
 using namespace weave::studio;
@@ -40,4 +46,31 @@ TEST_CASE("screens of the guide", "[.screens]") {
     window.show_sample("shoe-adult");
     editors->setCurrentIndex(0);
     keep(window, "shoe");
+}
+
+TEST_CASE("screens of the start page with designs of late, and of cloth that was outgrown", "[.screens]") {
+    const weave::testing::TemporaryFolder folder;
+    for (const char* name : {"pocket", "angle-interlock-b", "gone"}) {
+        MainWindow window;
+        window.show_sample(name == std::string("gone") ? "plain" : name);
+        Document& document = *window.document();
+        REQUIRE(until([&] { return document.shown_is_current(); }));
+        document.save(QString::fromStdString((folder.path / (std::string(name) + ".weave")).string()));
+        REQUIRE(until([&] { return !document.is_modified() && !document.is_saving(); }));
+        keep(window, name);
+    }
+    std::filesystem::remove(folder.path / "gone.weave");
+    const QPalette light = QApplication::palette();
+    for (const char* name : {"recent", "recent-dark"}) {
+        if (name == std::string("recent-dark")) QApplication::setPalette(QPalette(QColor(0x35, 0x35, 0x38), QColor(0x26, 0x26, 0x28)));
+        MainWindow window;
+        window.resize(1366, 768);
+        window.show();
+        keep(window, name);
+        window.show_sample("twill-2-2");
+        window.findChild<MessageBar*>("messages")->tell(MessageBar::Kind::note, SimulationDesk::tr("The cloth has another size than when it was relaxed, so the 3D view shows its plan again."),
+                                                        window.findChild<SimulationPanel*>()->run_action());
+        keep(window, name == std::string("recent") ? "offer" : "offer-dark");
+    }
+    QApplication::setPalette(light);
 }

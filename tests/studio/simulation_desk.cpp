@@ -2,6 +2,7 @@
 
 #include <weave/design/edit.hpp>
 
+#include <studio/commands/tile_block.hpp>
 #include <studio/editors/card_editor.hpp>
 #include <studio/panels/findings_panel.hpp>
 #include <studio/panels/message_bar.hpp>
@@ -236,4 +237,34 @@ TEST_CASE("over the relaxed cloth stands that the design has changed since, unti
     viewer.set_mode(ViewerPanel::Mode::relaxed);
     loom.document().undo();
     CHECK(viewer.viewport()->caption().isEmpty());
+}
+
+TEST_CASE("cloth that was relaxed at another size makes way for its plan, and Run is offered") {
+    Loom loom("plain");
+    loom.relax();
+    auto& viewer = loom.find<ViewerPanel>();
+    auto& messages = loom.find<MessageBar>("messages");
+    REQUIRE(viewer.mode() == ViewerPanel::Mode::relaxed);
+    REQUIRE(loom.document().perform(loom.flipping(loom.flip_at(1, 1))));
+    loom.settle();
+    CHECK(viewer.mode() == ViewerPanel::Mode::relaxed);  // a flip is led into it
+    std::string name;
+    auto step = tile_block(loom.document().design(), loom.document().design().root, 2, 3, 1, name);
+    REQUIRE(step);
+    step->edits.push_back(SetRoot{name});
+    REQUIRE(loom.document().perform(*step));
+    REQUIRE(loom.until([&] { return viewer.mode() == ViewerPanel::Mode::planned; }));
+    CHECK(messages.words().contains("another size"));
+    viewer.set_mode(ViewerPanel::Mode::relaxed);  // who wants to see it sees it
+    REQUIRE(loom.document().perform(loom.flipping({0, 1, true})));
+    loom.settle();
+    CHECK(viewer.mode() == ViewerPanel::Mode::relaxed);
+    viewer.set_mode(ViewerPanel::Mode::planned);
+    auto* run = messages.findChild<QToolButton*>("offer");
+    REQUIRE(run->isVisible());
+    QTest::mouseClick(run, Qt::LeftButton);
+    CHECK(messages.words().isEmpty());
+    REQUIRE(loom.until([&] { return loom.simulation().state().phase == RunPhase::at_rest; }));
+    CHECK(viewer.mode() == ViewerPanel::Mode::relaxed);
+    CHECK(loom.simulation().state().yarns->yarns.size() == loom.document().whole().block->picks() + loom.document().whole().block->ends());
 }

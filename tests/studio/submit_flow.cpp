@@ -249,7 +249,7 @@ TEST_CASE("submit: findings, evidence and a cloth that cannot be made are told")
     SubmitWindow window(mill.session_of("dora"));
     window.wait_signed_in();
     window.panel.set_findings(2, 1, "A float of 40 picks on the back");
-    CHECK(window.text("findings_summary").contains("2 error(s), 1 warning(s)"));
+    CHECK(window.text("findings_summary").contains("2 errors, 1 warning"));
     CHECK(window.text("submit_warning").contains("nobody can approve it"));
     CHECK(window.find<QLabel>("submit_warning").isVisible());
     window.panel.set_findings(0, 0, {});

@@ -29,6 +29,7 @@
 #include <catch2/catch.hpp>
 
 #include <support/temporary_folder.hpp>
+#include "support/desk.hpp"
 #include "support/hands.hpp"
 #include "support/slow_share.hpp"
 
@@ -39,39 +40,6 @@ using namespace weave::studio::test;
 namespace {
 
 constexpr int patience_ms = 180000;  // for what must come
-
-struct Desk {
-    explicit Desk(const char* sample = nullptr) {
-        window.show();
-        REQUIRE(QTest::qWaitForWindowExposed(&window));
-        QApplication::setActiveWindow(&window);
-        if (sample == nullptr) return;
-        window.show_sample(sample);
-        settle();
-    }
-    void settle() {
-        REQUIRE(until([&] { return document().shown_is_current() && document().whole().revision == document().revision(); }));
-        QCoreApplication::processEvents();
-    }
-    Document& document() { return *window.document(); }
-    template <class Widget>
-    Widget& find(const QString& name = {}) {
-        auto* found = window.findChild<Widget*>(name);
-        REQUIRE(found != nullptr);
-        return *found;
-    }
-    QString said() { return find<MessageBar>("messages").words(); }
-
-    MainWindow window;
-};
-
-/// Presses the button of a question that says this.
-void press(QDialog& dialog, const QString& text) {
-    for (QAbstractButton* button : dialog.findChildren<QAbstractButton*>()) {
-        if (button->text().remove('&') == text) return QTest::mouseClick(button, Qt::LeftButton);
-    }
-    FAIL("no button " << text.toStdString());
-}
 
 std::string file_of(const weave::testing::TemporaryFolder& folder, const char* name, const std::string& bytes) {
     const std::filesystem::path path = folder.path / name;
@@ -125,6 +93,27 @@ TEST_CASE("a design is saved under its name, and comes back as it was") {
     const auto read = load_design(path.toStdString());
     REQUIRE(read);
     CHECK(*read == shown.document().design());
+}
+
+TEST_CASE("a picture of the 3D view is saved where one says, or it is told why not") {
+    const weave::testing::TemporaryFolder folder;
+    Desk shown("twill-2-2");
+    auto& viewer = shown.find<ViewerPanel>();
+    REQUIRE(until([&] { return viewer.viewport()->model() != nullptr; }));
+    const auto save_as = [&](const QString& path) {
+        with_dialog([&] { viewer.menu_actions().back()->trigger(); }, [&](QDialog& dialog) {
+            dialog.findChild<QLineEdit*>()->setText(path);
+            press(dialog, QDialogButtonBox::Save);
+        });
+    };
+    const QString path = QString::fromStdString((folder.path / "seen.png").string());
+    save_as(path);
+    REQUIRE(until([&] { return QFile::exists(path); }));
+    CHECK(QImage(path).width() == 2 * viewer.viewport()->width());
+    const std::filesystem::path closed = folder.path / "closed";
+    std::filesystem::create_directory(closed);
+    save_as(QString::fromStdString((closed / "no" / ".." / ("x" + std::string(300, 'x') + ".png")).string()));
+    CHECK(until([&] { return shown.said().contains("cannot be written"); }));
 }
 
 TEST_CASE("closing with unsaved changes asks, and to stay is to stay") {
@@ -209,6 +198,7 @@ TEST_CASE("the window is there before unsaved work is read, which then comes wit
     CHECK(window.document() == nullptr);
     REQUIRE(until([&] { return window.document() != nullptr; }));
     CHECK(window.document()->design().title == "unsaved");
+    CHECK(until([&] { return window.document()->shown_is_current(); }));  // it was made in another thread, and lives in this one
     CHECK(window.document()->is_modified());
     CHECK(windows.all().size() == 1);
     CHECK(window.findChild<MessageBar*>("messages")->words().contains(".broken"));
@@ -520,4 +510,36 @@ TEST_CASE("a card that is likely to be of several layers says so, and is read as
     shown.document().undo();
     shown.settle();
     CHECK(shown.document().shown().block->rows() == card.picks());
+}
+
+TEST_CASE("a block that lies 64 deep is in the tree, to be read and shown; one that many use makes no tree without end") {
+    Design design;
+    design.blocks["deep-0"] = std::make_shared<const Node>(Node{PresetLeaf{{"plain", {}}}, {}});
+    for (int k = 1; k <= 64; ++k) {
+        const std::string below = "deep-" + std::to_string(k - 1), side = "side-" + std::to_string(k);
+        const bool is_twice = k % 8 == 1;  // made from the one below it twice over
+        if (is_twice) design.blocks[side] = std::make_shared<const Node>(Node{TileOperation{below, 1, 1, 1}, {}});
+        design.blocks["deep-" + std::to_string(k)] =
+            std::make_shared<const Node>(Node{is_twice ? NodeSource(AttachOperation{side, below, Face::plus_x}) : NodeSource(TileOperation{below, 1, 1, 1}), {}});
+    }
+    design.root = "deep-64";
+    Desk desk;
+    desk.window.show_design(design, {}, true);
+    desk.settle();
+    auto& tree = desk.find<DesignTree>();
+    int items = 0;
+    for (QTreeWidgetItemIterator item(&tree); *item != nullptr; ++item) ++items;
+    CHECK(items < 1000);
+    const auto seen = [&] { return tree.visualItemRect(tree.currentItem()).intersected(tree.viewport()->rect()).width(); };
+    const int a_name = 12 * tree.fontMetrics().averageCharWidth();
+    desk.document().focus().show_block("deep-0");
+    REQUIRE(tree.currentItem()->text(0).startsWith("deep-0\n"));
+    int depth = 0;
+    for (const QTreeWidgetItem* item = tree.currentItem(); item->parent() != nullptr; item = item->parent()) ++depth;
+    CHECK(depth >= 64);
+    CHECK(until([&] { return seen() >= a_name; }));
+    tree.setFocus();
+    QTest::keyClick(&tree, Qt::Key_Up);
+    CHECK(until([&] { return desk.document().shown_block() == "side-1"; }));
+    CHECK(until([&] { return seen() >= a_name; }));
 }

@@ -9,6 +9,7 @@
 #include <QTemporaryDir>
 
 #include <clocale>
+#include <studio/window/language.hpp>
 
 /// Tests of the studio run in real windows: on the display that there is, or on one of their own that nobody sees.
 int main(int argc, char* argv[]) {
@@ -25,5 +26,6 @@ int main(int argc, char* argv[]) {
     QCoreApplication::setOrganizationName("weave");
     QCoreApplication::setApplicationName("studio-test");
     std::setlocale(LC_NUMERIC, "C");
+    weave::studio::speak_language_of(QLocale(QLocale::English));
     return Catch::Session().run(argc, argv);
 }
