@@ -21,10 +21,13 @@ constexpr std::array members{"radius_mm", "linear_density_tex", "stretch_stiffne
 
 YarnTable::YarnTable(QWidget* parent) : QTableWidget(parent) {
     setColumnCount(2 + static_cast<int>(members.size()));
-    setHorizontalHeaderLabels({tr("Name"), tr("Colour"), tr("Radius\nmm"), tr("Weight\ntex"), tr("Stretch\nEA, N"), tr("Bend EI\nN mm²"), tr("Contact\nN/mm²")});
+    setHorizontalHeaderLabels({tr("Name"), tr("Colour"), tr("Radius\nmm"), tr("Weight\ntex"), tr("Stretch\nN"), tr("Bending\nN mm²"), tr("Contact\nN/mm²")});
     horizontalHeader()->setMinimumSectionSize(2 * fontMetrics().height());
-    horizontalHeader()->setSectionResizeMode(QHeaderView::Stretch);  // all of it is seen in a narrow dock
-    setHorizontalScrollBarPolicy(Qt::ScrollBarAlwaysOff);
+    const QStringList tips{tr("Name of the yarn"), tr("Its colour in all pictures"), tr("Half of its thickness"), tr("Grams of a kilometre of it"), tr("How it resists being stretched: the force that would double its length (EA)"),
+                           tr("How it resists being bent (EI)"), tr("How it resists being pressed flat: force per length of yarn and depth")};
+    for (int column = 0; column < tips.size(); ++column) horizontalHeaderItem(column)->setToolTip(tips[column]);
+    horizontalHeader()->setSectionResizeMode(QHeaderView::ResizeToContents);
+    horizontalHeader()->setSectionResizeMode(name_column, QHeaderView::Stretch);
     verticalHeader()->setSectionResizeMode(QHeaderView::Fixed);
     setSelectionBehavior(QAbstractItemView::SelectRows);
     connect(this, &QTableWidget::itemChanged, this, [this] {

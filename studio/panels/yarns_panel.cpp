@@ -110,14 +110,16 @@ QWidget* YarnsPanel::make_side(Side& side, bool is_warp) {
         side.feeders = new QLineEdit;
         side.feeders->setObjectName("feeders");
         side.feeders->setToolTip(tr("For each feeder the number of its yarn in the table: 1 2 are two feeders, with the first and the second yarn"));
-        form->addRow(tr("Feeders' yarns"), side.feeders);
+        side.feeders->setAccessibleName(tr("Feeders' yarns"));
+        form->addRow(side.feeders->accessibleName(), side.feeders);
         connect(side.feeders, &QLineEdit::editingFinished, this, take);
     }
     side.order = new QLineEdit;
     side.order->setObjectName(is_warp ? "warp-order" : "weft-order");
     side.order->setToolTip(is_warp ? tr("The yarn of each end, by its number in the table: 1*12 2 is twelve ends of the first and one of the second, again and again")
                                    : tr("The feeder of each pick: 1*2 2*2 is two picks of the first and two of the second; - is a pick without weft, 1+2 takes both"));
-    form->addRow(is_warp ? tr("Order of the ends") : tr("Order of the picks"), side.order);
+    side.order->setAccessibleName(is_warp ? tr("Order of the ends") : tr("Order of the picks"));
+    form->addRow(side.order->accessibleName(), side.order);
     side.density = new QDoubleSpinBox;
     side.density->setObjectName(is_warp ? "warp-density" : "weft-density");
     side.density->setRange(0.01, 10000);
@@ -146,6 +148,7 @@ void YarnsPanel::show_plans() {
     const QScopedValueRollback quiet(m_is_filling, true);
     const Design& design = m_document->design();
     const auto show = [](QLineEdit* field, const QString& text) {
+        field->setPalette({});  // what is shown holds
         if (field->text() != text) field->setText(text);
     };
     const Json warp = to_json(design.warp), weft = to_json(design.weft);
@@ -176,8 +179,23 @@ void YarnsPanel::tell(const Status& status) {
     if (!status) m_trouble->setText(tr("Not taken: %1").arg(QString::fromStdString(status.error().text())));
 }
 
+/// Whether an order names what there is. One that does not is marked in its field, and what is wrong is told in the numbers that
+/// the person reads.
+bool YarnsPanel::is_right(QLineEdit& field, int count, bool is_of_feeders) {
+    const QString wrong = wrong_in_order(field.text(), count, is_of_feeders);
+    QPalette colours = palette();
+    if (!wrong.isEmpty()) colours.setColor(QPalette::Text, QColor(0xd5, 0x5e, 0x00));
+    field.setPalette(colours);
+    if (!wrong.isEmpty()) {
+        m_trouble->show();
+        m_trouble->setText(tr("Not taken: %1: %2").arg(field.accessibleName(), wrong));
+    }
+    return wrong.isEmpty();
+}
+
 void YarnsPanel::take_warp() {
     if (m_is_filling || m_document == nullptr) return;
+    if (!is_right(*m_warp.order, m_warp.yarns->rowCount(), false)) return;
     Json form = to_json(m_document->design().warp);
     form["yarns"] = m_warp.yarns->yarns();
     form["order"] = with_numbers_moved(m_warp.order->text(), -1).toStdString();
@@ -190,6 +208,8 @@ void YarnsPanel::take_warp() {
 
 void YarnsPanel::take_weft() {
     if (m_is_filling || m_document == nullptr) return;
+    const auto feeders = static_cast<int>(m_weft.feeders->text().split(' ', Qt::SkipEmptyParts).size());
+    if (!is_right(*m_weft.feeders, m_weft.yarns->rowCount(), false) || !is_right(*m_weft.order, feeders, true)) return;
     Json form = to_json(m_document->design().weft);
     form["yarns"] = m_weft.yarns->yarns();
     form["feeders"] = feeders_of(m_weft.feeders->text(), m_document->design().weft);

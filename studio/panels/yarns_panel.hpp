@@ -42,6 +42,7 @@ class YarnsPanel : public QWidget {
     void take_weft();
     void take_title();
     void tell(const Status& status);
+    [[nodiscard]] bool is_right(QLineEdit& field, int count, bool is_of_feeders);
 
     Document* m_document = nullptr;
     QTimer* m_pause;  ///< of the typing; what is typed after one is a step of its own

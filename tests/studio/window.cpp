@@ -292,6 +292,11 @@ TEST_CASE("the finding that is clicked is shown, and each rule knows what would 
 TEST_CASE("yarns are set up in words that count from 1, and what is wrong is told and not taken") {
     CHECK(with_numbers_moved("0*12 1 0+1 -", 1) == "1*12 2 1+2 -");
     CHECK(with_numbers_moved("1*12 2 1+2 - x", -1) == "0*12 1 0+1 - x");
+    CHECK(wrong_in_order("1*12  2", 2, false).isEmpty());
+    CHECK(wrong_in_order("1*2 - 1+2*3", 2, true).isEmpty());
+    CHECK(wrong_in_order("1*3 5", 2, false) == "there is no number 5: they go from 1 to 2");
+    CHECK(wrong_in_order("1 0*3", 2, false) == "there is no number 0: they go from 1 to 2");
+    for (const char* word : {"abc", "1*", "1*0", "-", "1+2", "-1", "1**2"}) CHECK(wrong_in_order(word, 2, false).contains(word));
     Desk shown("pocket");
     auto& panel = shown.find<YarnsPanel>();
     panel.parentWidget()->raise();
