@@ -43,10 +43,12 @@ CardEditor::CardEditor(QWidget* parent) : QWidget(parent), m_canvas(new GridCanv
     auto* layout = new QVBoxLayout(this);
     layout->setContentsMargins(0, 0, 0, 0);
     layout->setSpacing(2);
-    auto* tools = new QHBoxLayout;
-    tools->setContentsMargins(4, 4, 4, 0);
-    make_tools(*tools);
-    layout->addLayout(tools);
+    for (auto make : {&CardEditor::make_view_row, &CardEditor::make_tool_row}) {
+        auto* row = new QHBoxLayout;
+        row->setContentsMargins(4, layout->count() == 0 ? 4 : 0, 4, 0);
+        (this->*make)(*row);
+        layout->addLayout(row);
+    }
     layout->addWidget(m_canvas, 1);
     layout->addWidget(m_legend);
     m_legend->hide();
@@ -70,7 +72,7 @@ CardEditor::CardEditor(QWidget* parent) : QWidget(parent), m_canvas(new GridCanv
     });
 }
 
-void CardEditor::make_tools(QHBoxLayout& tools) {
+void CardEditor::make_view_row(QHBoxLayout& row) {
     m_modes = new QComboBox;
     m_modes->setObjectName("card-mode");
     m_modes->setSizeAdjustPolicy(QComboBox::AdjustToMinimumContentsLengthWithIcon);
@@ -85,41 +87,40 @@ void CardEditor::make_tools(QHBoxLayout& tools) {
     m_times_columns = times_box(tr("Repeats shown side by side, across the cloth"), "↔ ");
     m_times_rows = times_box(tr("Repeats shown above each other, along the cloth"), "↕ ");
     for (QSpinBox* box : {m_times_columns, m_times_rows}) connect(box, &QSpinBox::valueChanged, this, [this] { show_block(); });
-    const auto button = [&](const QString& text, const QString& tip, auto action) {
+    row.addWidget(m_modes, 1);
+    auto* repeats = new QLabel(tr("Repeat"));
+    repeats->setContentsMargins(6, 0, 0, 0);
+    row.addWidget(repeats);
+    row.addWidget(m_times_columns);
+    row.addWidget(m_times_rows);
+    list_modes();
+}
+
+void CardEditor::make_tool_row(QHBoxLayout& row) {
+    const auto button = [&](const QString& tip) {
         auto* made = new QToolButton;
-        made->setText(text);
         made->setToolTip(tip);
         made->setAccessibleName(tip);
         made->setAutoRaise(true);
-        connect(made, &QToolButton::clicked, this, action);
-        tools.addWidget(made);
+        row.addWidget(made);
+        return made;
     };
-    tools.addWidget(m_modes);
-    for (QAction* tool : m_region->tools()) {
-        auto* made = new QToolButton;
-        made->setDefaultAction(tool);
-        made->setAutoRaise(true);
-        tools.addWidget(made);
-    }
-    auto* region = new QToolButton;
+    for (QAction* tool : m_region->tools()) button(tool->text())->setDefaultAction(tool);
+    QToolButton* region = button(tr("What can be done with the chosen region"));
     region->setObjectName("region-menu");
     region->setText(tr("Region"));
-    region->setToolTip(tr("What can be done with the chosen region"));
     region->setPopupMode(QToolButton::InstantPopup);
-    region->setAutoRaise(true);
     region->setMenu(new QMenu(region));
     m_region->fill_menu(*region->menu());
-    tools.addWidget(region);
-    auto* repeats = new QLabel(tr("Repeat"));
-    repeats->setContentsMargins(6, 0, 0, 0);
-    tools.addWidget(repeats);
-    tools.addWidget(m_times_columns);
-    tools.addWidget(m_times_rows);
-    tools.addStretch();
-    button("−", tr("Smaller (−)"), [this] { m_canvas->zoom_out(); });
-    button("+", tr("Larger (+)"), [this] { m_canvas->zoom_in(); });
-    button(tr("Fit"), tr("Show all of it (F)"), [this] { m_canvas->fit(); });
-    list_modes();
+    row.addStretch();
+    const auto view_button = [&](const QString& text, const QString& tip, void (GridCanvas::*what)()) {
+        QToolButton* made = button(tip);
+        made->setText(text);
+        connect(made, &QToolButton::clicked, m_canvas, what);
+    };
+    view_button("−", tr("Smaller (−)"), &GridCanvas::zoom_out);
+    view_button("+", tr("Larger (+)"), &GridCanvas::zoom_in);
+    view_button(tr("Fit"), tr("Show all of it (F)"), &GridCanvas::fit);
 }
 
 void CardEditor::list_modes() {

@@ -41,7 +41,8 @@ class CardEditor : public QWidget {
     void slice_wanted(weave::System dots, const weave::CardPlace& place);
 
   private:
-    void make_tools(QHBoxLayout& tools);
+    void make_view_row(QHBoxLayout& row);
+    void make_tool_row(QHBoxLayout& row);
     void show_block();
     void show_picture(CellPicture picture, CardMode mode);
     void follow_place();
