@@ -264,7 +264,7 @@ TEST_CASE("card region: in several layers it changes what can be, marks and tell
     desk.change("Fill with what was copied");
     desk.wait_for_step(1);
     CHECK(desk.card() == after(*block, 21, 5, wish));
-    CHECK(desk.canvas.refused().size() == granted.refused.size());
+    REQUIRE(desk.canvas.refused().size() == granted.refused.size());
     CHECK(desk.canvas.refused().front() == GridCell{granted.refused[0].pick, granted.refused[0].end});
     CHECK(desk.said.startsWith(QString("%1 of %2 crossings stay as they are").arg(granted.refused.size()).arg(granted.refused.size() + granted.flips.size())));
     CHECK(desk.said.toStdString().find(granted.reason) != std::string::npos);
