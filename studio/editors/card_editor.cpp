@@ -14,6 +14,7 @@
 #include <QToolTip>
 
 #include <algorithm>
+#include <studio/editors/card_region.hpp>
 #include <studio/editors/float_legend.hpp>
 #include <studio/editors/plain_text.hpp>
 #include <studio/jobs/background.hpp>
@@ -38,14 +39,16 @@ QSpinBox* times_box(const QString& tip, const QString& prefix) {
 
 }  // namespace
 
-CardEditor::CardEditor(QWidget* parent) : QWidget(parent), m_canvas(new GridCanvas), m_legend(new FloatLegend) {
+CardEditor::CardEditor(QWidget* parent) : QWidget(parent), m_canvas(new GridCanvas), m_region(new CardRegion(*m_canvas, this)), m_legend(new FloatLegend) {
     auto* layout = new QVBoxLayout(this);
     layout->setContentsMargins(0, 0, 0, 0);
     layout->setSpacing(2);
-    auto* tools = new QHBoxLayout;
-    tools->setContentsMargins(4, 4, 4, 0);
-    make_tools(*tools);
-    layout->addLayout(tools);
+    for (auto make : {&CardEditor::make_view_row, &CardEditor::make_tool_row}) {
+        auto* row = new QHBoxLayout;
+        row->setContentsMargins(4, layout->count() == 0 ? 4 : 0, 4, 0);
+        (this->*make)(*row);
+        layout->addLayout(row);
+    }
     layout->addWidget(m_canvas, 1);
     layout->addWidget(m_legend);
     m_legend->hide();
@@ -55,6 +58,8 @@ CardEditor::CardEditor(QWidget* parent) : QWidget(parent), m_canvas(new GridCanv
     connect(m_canvas, &GridCanvas::stroked, this, &CardEditor::flip);
     connect(m_canvas, &GridCanvas::hovered, this, &CardEditor::tell_of);
     connect(m_canvas, &GridCanvas::menu_wanted, this, &CardEditor::offer);
+    connect(m_region, &CardRegion::told, this, &CardEditor::told);
+    connect(m_region, &CardRegion::refused, this, &CardEditor::explain);
     connect(m_canvas, &GridCanvas::chosen, this, [this](const GridCell& cell) {
         tell_of(cell);
         if (m_document != nullptr && m_block) m_document->focus().go_to(place_of(cell));
@@ -67,7 +72,7 @@ CardEditor::CardEditor(QWidget* parent) : QWidget(parent), m_canvas(new GridCanv
     });
 }
 
-void CardEditor::make_tools(QHBoxLayout& tools) {
+void CardEditor::make_view_row(QHBoxLayout& row) {
     m_modes = new QComboBox;
     m_modes->setObjectName("card-mode");
     m_modes->setSizeAdjustPolicy(QComboBox::AdjustToMinimumContentsLengthWithIcon);
@@ -82,26 +87,40 @@ void CardEditor::make_tools(QHBoxLayout& tools) {
     m_times_columns = times_box(tr("Repeats shown side by side, across the cloth"), "↔ ");
     m_times_rows = times_box(tr("Repeats shown above each other, along the cloth"), "↕ ");
     for (QSpinBox* box : {m_times_columns, m_times_rows}) connect(box, &QSpinBox::valueChanged, this, [this] { show_block(); });
-    const auto button = [&](const QString& text, const QString& tip, auto action) {
+    row.addWidget(m_modes, 1);
+    auto* repeats = new QLabel(tr("Repeat"));
+    repeats->setContentsMargins(6, 0, 0, 0);
+    row.addWidget(repeats);
+    row.addWidget(m_times_columns);
+    row.addWidget(m_times_rows);
+    list_modes();
+}
+
+void CardEditor::make_tool_row(QHBoxLayout& row) {
+    const auto button = [&](const QString& tip) {
         auto* made = new QToolButton;
-        made->setText(text);
         made->setToolTip(tip);
         made->setAccessibleName(tip);
         made->setAutoRaise(true);
-        connect(made, &QToolButton::clicked, this, action);
-        tools.addWidget(made);
+        row.addWidget(made);
+        return made;
     };
-    tools.addWidget(m_modes);
-    auto* repeats = new QLabel(tr("Repeat"));
-    repeats->setContentsMargins(6, 0, 0, 0);
-    tools.addWidget(repeats);
-    tools.addWidget(m_times_columns);
-    tools.addWidget(m_times_rows);
-    tools.addStretch();
-    button("−", tr("Smaller (−)"), [this] { m_canvas->zoom_out(); });
-    button("+", tr("Larger (+)"), [this] { m_canvas->zoom_in(); });
-    button(tr("Fit"), tr("Show all of it (F)"), [this] { m_canvas->fit(); });
-    list_modes();
+    for (QAction* tool : m_region->tools()) button(tool->text())->setDefaultAction(tool);
+    QToolButton* region = button(tr("What can be done with the chosen region"));
+    region->setObjectName("region-menu");
+    region->setText(tr("Region"));
+    region->setPopupMode(QToolButton::InstantPopup);
+    region->setMenu(new QMenu(region));
+    m_region->fill_menu(*region->menu());
+    row.addStretch();
+    const auto view_button = [&](const QString& text, const QString& tip, void (GridCanvas::*what)()) {
+        QToolButton* made = button(tip);
+        made->setText(text);
+        connect(made, &QToolButton::clicked, m_canvas, what);
+    };
+    view_button("−", tr("Smaller (−)"), &GridCanvas::zoom_out);
+    view_button("+", tr("Larger (+)"), &GridCanvas::zoom_in);
+    view_button(tr("Fit"), tr("Show all of it (F)"), &GridCanvas::fit);
 }
 
 void CardEditor::list_modes() {
@@ -131,6 +150,7 @@ void CardEditor::show_document(Document* document) {
     m_document = document;
     m_block.reset();
     m_canvas->begin_anew();
+    m_region->show_document(document);
     if (document == nullptr) return m_canvas->show_picture({});
     connect(document, &Document::shown_made, this, &CardEditor::show_block);
     connect(&document->focus(), &Focus::place_changed, this, [this] {
@@ -154,6 +174,7 @@ void CardEditor::show_block() {
     const Cloth& shown = m_document->shown();
     if (!shown.block) {
         m_block.reset();
+        m_region->show_block(nullptr);
         m_canvas->set_empty_text(shown.error ? tr("This block cannot be made: %1").arg(QString::fromStdString(shown.error->text())) : tr("The block is being made …"));
         return m_canvas->show_picture({});
     }
@@ -178,6 +199,7 @@ void CardEditor::show_picture(CellPicture picture, CardMode mode) {
     m_canvas->set_can_stroke(mode == CardMode::card);
     m_canvas->show_picture(std::move(picture), m_times_rows->value(), m_times_columns->value());
     m_canvas->set_labels(labels());
+    m_region->show_block(mode == CardMode::card ? m_block : nullptr);
     m_legend->setVisible(mode == CardMode::face_floats || mode == CardMode::back_floats);
     follow_place();
 }
@@ -233,24 +255,24 @@ void CardEditor::flip(const std::vector<GridCell>& cells) {
         QToolTip::hideText();
         if (flipped.flipped > 0) Q_EMIT told(flipped.step.text);
     } else {
-        explain(flipped.refused, flipped.flipped);
+        std::vector<GridCell> refused;
+        for (const RefusedCrossing& one : flipped.refused) refused.push_back(cell_of(one.place));
+        explain(refused, QString::fromStdString(flipped.refused.front().reason.text()), flipped.flipped);
     }
     m_document->focus().go_to(places.back());
 }
 
-void CardEditor::explain(std::span<const RefusedCrossing> refused, std::size_t flipped) {
-    const RefusedCrossing& first = refused.front();
-    QString words = QString::fromStdString(first.reason.text());
-    if (refused.size() > 1 || flipped > 0) words = tr("%1 of %n crossing(s) stay as they are. The first: %2", nullptr, static_cast<int>(refused.size() + flipped)).arg(refused.size()).arg(words);
-    std::vector<GridCell> cells;
-    for (const RefusedCrossing& one : refused) cells.push_back(cell_of(one.place));
-    m_canvas->mark_refused(cells);
-    QToolTip::showText(m_canvas->mapToGlobal(m_canvas->mapping().box(cells.front()).bottomRight().toPoint()), as_plain(words), m_canvas, {}, 8000);
+void CardEditor::explain(const std::vector<GridCell>& refused, const QString& why, std::size_t flipped) {
+    QString words = why;
+    if (refused.size() > 1 || flipped > 0) words = tr("%1 of %n crossing(s) stay as they are. The first: %2", nullptr, static_cast<int>(refused.size() + flipped)).arg(refused.size()).arg(why);
+    m_canvas->mark_refused(refused);
+    QToolTip::showText(m_canvas->mapToGlobal(m_canvas->mapping().box(refused.front()).bottomRight().toPoint()), as_plain(words), m_canvas, {}, 8000);
     Q_EMIT told(words);
 }
 
 void CardEditor::tell_of(const std::optional<GridCell>& cell) {
-    if (!cell || !m_block) return told({});
+    const QString chosen = m_region->words();
+    if (!cell || !m_block) return told(chosen);
     const CardPlace place = place_of(*cell);
     const PlacedStack at = stack_at(*m_block, place.pick, place.end);
     const QString side = m_block->weft_over(place.pick, place.end) ? tr("weft over (white)") : tr("end lifted (black)");
@@ -258,6 +280,7 @@ void CardEditor::tell_of(const std::optional<GridCell>& cell) {
     QString words = tr("Pick %1, end %2").arg(place.pick + 1).arg(place.end + 1);
     if (m_shown_mode == CardMode::card) words += ": " + side;
     if (at.stack.height() <= 24) words += tr(" · stack from below: %1").arg(stack);
+    if (!chosen.isEmpty()) words += " · " + chosen;
     Q_EMIT told(words);
 }
 
@@ -270,6 +293,10 @@ void CardEditor::offer(const GridCell& cell, const QPoint& where) {
     menu.addSeparator();
     menu.addAction(tr("Section along end %1 (warp slice)").arg(place.end + 1), this, [&] { Q_EMIT slice_wanted(System::weft, place); });
     menu.addAction(tr("Section along pick %1 (weft slice)").arg(place.pick + 1), this, [&] { Q_EMIT slice_wanted(System::warp, place); });
+    if (m_shown_mode == CardMode::card) {
+        menu.addSeparator();
+        m_region->fill_menu(*menu.addMenu(tr("Region")));
+    }
     menu.exec(where);
 }
 

@@ -6,7 +6,6 @@
 
 #include <cstdint>
 #include <optional>
-#include <span>
 #include <studio/commands/flip_crossing.hpp>
 #include <studio/commands/flip_stroke.hpp>
 #include <studio/document/document.hpp>
@@ -20,6 +19,7 @@ class QSpinBox;
 
 namespace weave::studio {
 
+class CardRegion;
 class FloatLegend;
 
 /// The card of the block that is shown, crossing by crossing: a click flips, or tells which yarns stand in the way. It also shows the
@@ -41,7 +41,8 @@ class CardEditor : public QWidget {
     void slice_wanted(weave::System dots, const weave::CardPlace& place);
 
   private:
-    void make_tools(QHBoxLayout& tools);
+    void make_view_row(QHBoxLayout& row);
+    void make_tool_row(QHBoxLayout& row);
     void show_block();
     void show_picture(CellPicture picture, CardMode mode);
     void follow_place();
@@ -50,12 +51,13 @@ class CardEditor : public QWidget {
     [[nodiscard]] CardPlace place_of(const GridCell& cell) const;
     [[nodiscard]] GridCell cell_of(const CardPlace& place) const;
     void flip(const std::vector<GridCell>& cells);
-    void explain(std::span<const RefusedCrossing> refused, std::size_t flipped);
+    void explain(const std::vector<GridCell>& refused, const QString& why, std::size_t flipped);
     void tell_of(const std::optional<GridCell>& cell);
     void offer(const GridCell& cell, const QPoint& where);
 
     Document* m_document = nullptr;
     GridCanvas* m_canvas;
+    CardRegion* m_region;
     FloatLegend* m_legend;
     QComboBox* m_modes;
     QSpinBox* m_times_rows;

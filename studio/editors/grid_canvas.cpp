@@ -9,15 +9,17 @@
 #include <algorithm>
 #include <cmath>
 #include <cstdlib>
+#include <studio/editors/own_keys.hpp>
 
 namespace weave::studio {
 
 namespace {
 
 constexpr double cells_with_lines = 6;  ///< pixels from which each square has its lines
-const QColor cursor_colour(0x00, 0x72, 0xb2), refusal_colour(0xd5, 0x5e, 0x00);
 
 }  // namespace
+
+const QColor GridCanvas::cursor_colour(0x00, 0x72, 0xb2), GridCanvas::refusal_colour(0xd5, 0x5e, 0x00);
 
 GridCanvas::GridCanvas(QWidget* parent) : QWidget(parent) {
     setMouseTracking(true);
@@ -34,6 +36,8 @@ void GridCanvas::show_picture(CellPicture picture, int times_rows, int times_col
         m_mapping.fit();
         m_refused.clear();
     }
+    if (m_region && (m_region->last().row >= rows || m_region->last().column >= columns)) set_region(std::nullopt);
+    if (m_floating_first.row >= rows || m_floating_first.column >= columns) end_floating(false);
     if (m_cursor && (m_cursor->row >= rows || m_cursor->column >= columns)) m_cursor.reset();
     update();
 }
@@ -43,6 +47,7 @@ void GridCanvas::begin_anew() {
     m_hovered.reset();
     m_refused.clear();
     m_stroke.clear();
+    let_go();
     fit();
 }
 
@@ -102,6 +107,7 @@ void GridCanvas::paintEvent(QPaintEvent*) {
     const CellPicture::Seen seen = m_picture.seen(m_mapping, devicePixelRatioF());
     painter.drawImage(seen.place, seen.image);
     paint_lines(painter);
+    paint_region(painter);
     paint_marks(painter);
     painter.restore();
     m_rulers.paint(painter, *this, m_mapping);
@@ -150,11 +156,14 @@ void GridCanvas::paint_marks(QPainter& painter) const {
     }
     for (const GridCell& cell : m_stroke) painter.fillRect(m_mapping.box(cell), QColor(0x56, 0xb4, 0xe9, 170));
     if (m_cursor) ring(*m_cursor, cursor_colour, 2);
-    for (const GridCell& cell : m_refused) {
-        ring(cell, refusal_colour, 3);
-        const QRectF box = m_mapping.box(cell);
-        painter.drawLine(box.topLeft(), box.bottomRight());
-        painter.drawLine(box.bottomLeft(), box.topRight());
+    for (const auto* cells : {&m_refused, &m_floating_refused}) {
+        for (const GridCell& cell : *cells) {
+            const QRectF box = m_mapping.box(cell);
+            if (!box.intersects(m_mapping.room())) continue;
+            ring(cell, refusal_colour, 3);
+            painter.drawLine(box.topLeft(), box.bottomRight());
+            painter.drawLine(box.bottomLeft(), box.topRight());
+        }
     }
 }
 
@@ -172,14 +181,13 @@ void GridCanvas::mousePressEvent(QMouseEvent* event) {
         setCursor(Qt::ClosedHandCursor);
         return;
     }
-    if (event->button() != Qt::LeftButton) return;
+    if (event->button() != Qt::LeftButton || m_picture.is_empty()) return;
     const auto cell = m_mapping.cell_at(event->position());
-    if (!cell || m_picture.is_empty()) return;
-    if (!m_can_stroke || event->modifiers() & Qt::ControlModifier) {
-        set_cursor_cell(cell);
-        Q_EMIT chosen(*cell);
-        return;
-    }
+    if (floating_region()) return grasp_floating(cell);
+    const bool only_goes = !m_can_stroke || event->modifiers() & Qt::ControlModifier;
+    if (m_tool == GridTool::choose && !only_goes) return begin_choosing(cell, event->position());
+    if (!cell) return;
+    if (only_goes) return go_to(*cell);
     if (is_far()) {
         set_cursor_cell(cell);
         return too_far(*cell);
@@ -216,6 +224,8 @@ void GridCanvas::mouseMoveEvent(QMouseEvent* event) {
         Q_EMIT hovered(cell);
         update();
     }
+    if (m_grip) return drag_floating(event->position());
+    if (m_chosen_from) return choose_to(event->position());
     if (!m_stroke.empty() && cell) {
         stroke_to(*cell);
         update();
@@ -225,10 +235,13 @@ void GridCanvas::mouseMoveEvent(QMouseEvent* event) {
 void GridCanvas::mouseReleaseEvent(QMouseEvent* event) {
     if (m_moved_from && event->buttons() == Qt::NoButton) {
         m_moved_from.reset();
-        unsetCursor();
+        setCursor(m_tool == GridTool::choose ? Qt::CrossCursor : Qt::ArrowCursor);
         return;
     }
-    if (event->button() != Qt::LeftButton || m_stroke.empty()) return;
+    if (event->button() != Qt::LeftButton) return;
+    m_grip.reset();
+    if (m_chosen_from) return end_choosing();
+    if (m_stroke.empty()) return;
     const std::vector<GridCell> stroke = std::move(m_stroke);
     m_stroke.clear();
     m_cursor = stroke.back();
@@ -253,41 +266,60 @@ void GridCanvas::wheelEvent(QWheelEvent* event) {
     event->accept();
 }
 
-void GridCanvas::walk(int rows, int columns) {
-    if (m_picture.is_empty()) return;
-    const auto moved = [](std::size_t at, int by, std::size_t count) {
-        return static_cast<std::size_t>(std::clamp(static_cast<std::int64_t>(at) + by, std::int64_t{0}, static_cast<std::int64_t>(count) - 1));
-    };
-    GridCell cell = m_cursor.value_or(GridCell{0, 0});
-    if (m_cursor) {
-        cell.row = moved(cell.row, m_mapping.rows_go_up() ? rows : -rows, m_mapping.rows());
-        cell.column = moved(cell.column, m_mapping.columns_go_right() ? columns : -columns, m_mapping.columns());
-    }
+void GridCanvas::go_to(const GridCell& cell) {
     set_cursor_cell(cell);
     Q_EMIT chosen(cell);
 }
 
+/// So many squares up and to the right, as they are seen, as far as there are any.
+GridCell GridCanvas::walked(GridCell from, int rows, int columns) const {
+    const auto moved = [](std::size_t at, int by, std::size_t count) {
+        return static_cast<std::size_t>(std::clamp(static_cast<std::int64_t>(at) + by, std::int64_t{0}, static_cast<std::int64_t>(count) - 1));
+    };
+    return {moved(from.row, m_mapping.rows_go_up() ? rows : -rows, m_mapping.rows()), moved(from.column, m_mapping.columns_go_right() ? columns : -columns, m_mapping.columns())};
+}
+
+void GridCanvas::walk(int rows, int columns, bool is_shifted) {
+    if (m_picture.is_empty()) return;
+    const int far = is_shifted ? 8 : 1;
+    if (floating_region()) return move_floating(walked(m_floating_first, rows * far, columns * far));
+    if (is_shifted && m_tool == GridTool::choose) return extend(rows, columns);
+    go_to(m_cursor ? walked(*m_cursor, rows * far, columns * far) : GridCell{});
+}
+
+/// Puts down what floats, else flips where the cursor is.
+void GridCanvas::enter() {
+    if (floating_region()) return end_floating(true);
+    if (m_cursor && m_can_stroke && m_tool == GridTool::stroke) is_far() ? too_far(*m_cursor) : stroked({*m_cursor});
+}
+
+bool GridCanvas::event(QEvent* event) {
+    return claims_key(*this, *event) || QWidget::event(event);
+}
+
 void GridCanvas::keyPressEvent(QKeyEvent* event) {
-    const int far = event->modifiers() & Qt::ShiftModifier ? 8 : 1;
+    if (QAction* own = action_of(*this, *event)) return own->trigger();
+    const bool is_shifted = event->modifiers() & Qt::ShiftModifier;
     m_refused.clear();
     update();
     switch (event->key()) {
         case Qt::Key_Up:
-            return walk(far, 0);
+            return walk(1, 0, is_shifted);
         case Qt::Key_Down:
-            return walk(-far, 0);
+            return walk(-1, 0, is_shifted);
         case Qt::Key_Left:
-            return walk(0, -far);
+            return walk(0, -1, is_shifted);
         case Qt::Key_Right:
-            return walk(0, far);
+            return walk(0, 1, is_shifted);
         case Qt::Key_Home:
-            set_cursor_cell(GridCell{0, 0});
-            Q_EMIT chosen({0, 0});
-            return;
+            return go_to({0, 0});
         case Qt::Key_Return:
         case Qt::Key_Enter:
-            if (m_cursor && m_can_stroke) is_far() ? too_far(*m_cursor) : stroked({*m_cursor});
-            return;
+            return enter();
+        case Qt::Key_Escape:
+            if (floating_region()) return end_floating(false);
+            if (m_region) return set_region(std::nullopt);
+            [[fallthrough]];
         default:
             QWidget::keyPressEvent(event);
     }

@@ -4,12 +4,16 @@
 
 #include <optional>
 #include <studio/editors/cell_picture.hpp>
+#include <studio/editors/grid_region.hpp>
 #include <studio/editors/grid_rulers.hpp>
 #include <vector>
 
 class QPainter;
 
 namespace weave::studio {
+
+/// What pressing and moving the mouse over squares does.
+enum class GridTool : std::uint8_t { stroke, choose };
 
 /// A grid of squares with rulers, which can be moved, zoomed and walked through with mouse and keys. It knows no weave.
 class GridCanvas : public QWidget {
@@ -37,6 +41,22 @@ class GridCanvas : public QWidget {
     void set_can_stroke(bool can) { m_can_stroke = can; }
     static constexpr double smallest_stroked = 4;  ///< pixels of a square
 
+    /// With another tool than that to choose nothing floats.
+    void set_tool(GridTool tool);
+    [[nodiscard]] GridTool tool() const { return m_tool; }
+    /// What is chosen; no larger than the picture, even where that is shown several times.
+    [[nodiscard]] const std::optional<GridRegion>& region() const { return m_region; }
+    void choose_all();
+    /// Nothing is chosen, nor floats.
+    void let_go();
+    /// A picture that lies over the grid, from this square on, until it is put down or dropped; keys and mouse move it.
+    void show_floating(const QImage& picture, GridCell first);
+    /// Squares that it covers; none where nothing floats.
+    [[nodiscard]] std::optional<GridRegion> floating_region() const;
+    /// Marks squares of it where it cannot be put down, until it moves.
+    void mark_floating(std::vector<GridCell> refused);
+    [[nodiscard]] const std::vector<GridCell>& floating_refused() const { return m_floating_refused; }
+
     [[nodiscard]] const GridMapping& mapping() const { return m_mapping; }
     void zoom_by(double factor);
     void zoom_in() { zoom_by(1.4); }
@@ -53,8 +73,14 @@ class GridCanvas : public QWidget {
     void too_far(const weave::studio::GridCell& cell);
     void hovered(const std::optional<weave::studio::GridCell>& cell);
     void menu_wanted(const weave::studio::GridCell& cell, const QPoint& where);
+    void tool_changed();
+    void region_changed();
+    void floating_moved();
+    /// It floats no more; where it is put down, that region is chosen.
+    void floating_ended(bool is_put_down);
 
   protected:
+    bool event(QEvent* event) override;
     void paintEvent(QPaintEvent* event) override;
     void resizeEvent(QResizeEvent* event) override;
     void mousePressEvent(QMouseEvent* event) override;
@@ -66,12 +92,28 @@ class GridCanvas : public QWidget {
     void contextMenuEvent(QContextMenuEvent* event) override;
 
   private:
+    static const QColor cursor_colour, refusal_colour;
+
     void lay_out();
     [[nodiscard]] bool is_far() const { return m_mapping.cell() < smallest_stroked; }
     void paint_lines(QPainter& painter) const;
     void paint_marks(QPainter& painter) const;
+    void paint_region(QPainter& painter) const;
     void stroke_to(const GridCell& cell);
-    void walk(int rows, int columns);
+    void walk(int rows, int columns, bool is_shifted);
+    void enter();
+    [[nodiscard]] GridCell walked(GridCell from, int rows, int columns) const;
+    void go_to(const GridCell& cell);
+    void set_region(const std::optional<GridRegion>& region);
+    [[nodiscard]] GridCell far_corner() const;
+    void begin_choosing(const std::optional<GridCell>& cell, const QPointF& place);
+    void choose_to(const QPointF& place);
+    void end_choosing();
+    void extend(int rows, int columns);
+    void grasp_floating(const std::optional<GridCell>& cell);
+    void drag_floating(const QPointF& place);
+    void move_floating(const GridCell& first);
+    void end_floating(bool is_put_down);
 
     CellPicture m_picture;
     GridMapping m_mapping;
@@ -80,6 +122,14 @@ class GridCanvas : public QWidget {
     std::optional<GridCell> m_cursor, m_hovered;
     std::vector<GridCell> m_stroke, m_refused;
     std::optional<QPointF> m_moved_from;
+    GridTool m_tool = GridTool::stroke;
+    std::optional<GridRegion> m_region;
+    GridCell m_anchor;                     ///< corner of the region that stays while it is drawn
+    std::optional<QPointF> m_chosen_from;  ///< while the mouse draws it
+    CellPicture m_floating;
+    GridCell m_floating_first;
+    std::vector<GridCell> m_floating_refused;
+    std::optional<GridSize> m_grip;  ///< squares between the first that floats and the mouse that moves it
     bool m_can_stroke = true;
 };
 

@@ -98,6 +98,26 @@ std::optional<GridCell> GridMapping::cell_at(const QPointF& place) const {
     return GridCell{static_cast<std::size_t>(row), static_cast<std::size_t>(column)};
 }
 
+GridCell GridMapping::nearest_cell(const QPointF& place) const {
+    const GridSpan span = seen();
+    const auto within = [](double cell, std::size_t first, std::size_t last) {
+        return static_cast<std::size_t>(std::clamp(std::floor(cell), cells(first), cells(std::max(last, first + 1) - 1)));
+    };
+    const QRectF grid = frame();
+    const double column = columns_go_right() ? (place.x() - grid.left()) / m_cell : (grid.right() - place.x()) / m_cell;
+    const double row = rows_go_up() ? (grid.bottom() - place.y()) / m_cell : (place.y() - grid.top()) / m_cell;
+    return {within(row, span.first_row, span.last_row), within(column, span.first_column, span.last_column)};
+}
+
+GridMapping GridMapping::of_part(const GridCell& first, const GridSize& size) const {
+    GridMapping part = *this;
+    part.m_rows = size.rows;
+    part.m_columns = size.columns;
+    part.m_left_top = QPointF(columns_go_right() ? x_of(cells(first.column)) : x_of(cells(first.column + size.columns)),
+                              rows_go_up() ? y_of(cells(first.row + size.rows)) : y_of(cells(first.row)));
+    return part;
+}
+
 GridSpan GridMapping::seen() const {
     const QRectF grid = frame();
     const double left = (m_room.left() - grid.left()) / m_cell, right = (m_room.right() - grid.left()) / m_cell;

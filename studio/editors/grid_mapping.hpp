@@ -19,6 +19,11 @@ struct GridCell {
     friend bool operator==(const GridCell&, const GridCell&) = default;
 };
 
+/// So many of them.
+struct GridSize {
+    std::size_t rows = 1, columns = 1;
+};
+
 /// Cells that are seen: first and one past the last.
 struct GridSpan {
     std::size_t first_row = 0, last_row = 0, first_column = 0, last_column = 0;
@@ -54,11 +59,15 @@ class GridMapping {
     void show(const GridCell& cell);
 
     [[nodiscard]] std::optional<GridCell> cell_at(const QPointF& place) const;
+    /// The same, or the nearest cell that is seen.
+    [[nodiscard]] GridCell nearest_cell(const QPointF& place) const;
     [[nodiscard]] QRectF box(const GridCell& cell) const;
     /// Where a row or column begins, counted from the corner; also of the one after the last.
     [[nodiscard]] double y_of(double row) const;
     [[nodiscard]] double x_of(double column) const;
     [[nodiscard]] GridSpan seen() const;
+    /// That of a smaller grid which lies on this one, its first cell on `first`.
+    [[nodiscard]] GridMapping of_part(const GridCell& first, const GridSize& size) const;
 
     [[nodiscard]] bool rows_go_up() const { return m_corner == Corner::bottom_left || m_corner == Corner::bottom_right; }
     [[nodiscard]] bool columns_go_right() const { return m_corner == Corner::bottom_left || m_corner == Corner::top_left; }

@@ -12,6 +12,7 @@ QAction* action_of(const QWidget& widget, const QKeyEvent& event) {
         QKeyCombination(modifiers & ~Qt::ShiftModifier, static_cast<Qt::Key>(event.key())));
     const bool sign = event.key() == Qt::Key_Plus;
     for (QAction* action : widget.actions()) {
+        if (!action->isEnabled()) continue;
         if (action->shortcuts().contains(keys) || (sign && action->shortcuts().contains(unshifted)))
             return action;
     }

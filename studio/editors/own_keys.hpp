@@ -8,7 +8,7 @@
 
 namespace weave::studio {
 
-/// The action of a widget that has this key; none for a key that is not the widget's own.
+/// The action of a widget that has this key and can be done now; none for a key that is not the widget's own.
 QAction* action_of(const QWidget& widget, const QKeyEvent& event);
 
 /// Claims the keys of a widget's actions while it has the focus, so that a window that gives the same key to

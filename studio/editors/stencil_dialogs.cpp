@@ -67,6 +67,7 @@ PictureMapDialog::PictureMapDialog(const std::vector<CountedColour>& colours,
     : QDialog(parent), m_obstacle(std::move(obstacle)), m_trouble(new QLabel(this)) {
     setObjectName("picture_map");
     setWindowTitle(tr("Blocks for the picture's colours"));
+    for (const BlockChoice& choice : choices) m_names.push_back(choice.name.toStdString());
     auto* table = new QWidget(this);
     auto* grid = new QGridLayout(table);
     const int high = fontMetrics().height() * 3 / 2;
@@ -126,10 +127,9 @@ PictureMapDialog::PictureMapDialog(const std::vector<CountedColour>& colours,
     check();
 }
 
-std::vector<std::size_t> PictureMapDialog::blocks() const {
-    std::vector<std::size_t> list;
-    for (const QComboBox* box : m_boxes)
-        list.push_back(static_cast<std::size_t>(std::max(0, box->currentIndex())));
+std::vector<std::string> PictureMapDialog::blocks() const {
+    std::vector<std::string> list;
+    for (const QComboBox* box : m_boxes) list.push_back(m_names[static_cast<std::size_t>(std::max(0, box->currentIndex()))]);
     return list;
 }
 

@@ -40,13 +40,14 @@ class PictureMapDialog : public QDialog {
     using Obstacle = std::function<QString(const std::vector<std::size_t>&)>;
     PictureMapDialog(const std::vector<CountedColour>& colours, const std::vector<BlockChoice>& choices,
                      Obstacle obstacle, QWidget* parent);
-    /// The block of each colour, by its place in the list of choices.
-    [[nodiscard]] std::vector<std::size_t> blocks() const;
+    /// The block of each colour.
+    [[nodiscard]] std::vector<std::string> blocks() const;
 
   private:
     void check();
     Obstacle m_obstacle;
     std::vector<QComboBox*> m_boxes;
+    std::vector<std::string> m_names;  ///< of the choices
     QLabel* m_trouble;
     QPushButton* m_accept;
 };

@@ -1,7 +1,6 @@
 #include <studio/editors/stencil_editor.hpp>
 
 #include <weave/block/stencil_edit.hpp>
-#include <weave/core/file.hpp>
 #include <studio/editors/stencil_dialogs.hpp>
 #include <studio/jobs/background.hpp>
 
@@ -19,27 +18,6 @@ namespace {
 
 /// Stacks are counted for the palette where that takes no time.
 constexpr std::size_t most_counted = 1000000;
-
-struct ReadPicture {
-    std::shared_ptr<const ColourImage> image;
-    std::vector<CountedColour> colours;
-    QString trouble;
-};
-
-ReadPicture read_picture(const QString& path) {
-    const std::string name = path.toStdString();
-    const auto trouble = [&](Error error) {
-        return ReadPicture{nullptr, {}, QString::fromStdString(std::move(error).in(name).text())};
-    };
-    const Result<std::string> bytes = read_file(name);
-    if (!bytes) return {nullptr, {}, QString::fromStdString(bytes.error().text())};
-    const auto fits = [](std::size_t rows, std::size_t columns) { return check_card_size(rows, columns); };
-    Result<ColourImage> image = read_colour_image(*bytes, fits);
-    if (!image) return trouble(image.error());
-    Result<std::vector<CountedColour>> colours = count_colours(*image, StencilEditor::most_colours);
-    if (!colours) return trouble(colours.error());
-    return {std::make_shared<const ColourImage>(std::move(image).value()), std::move(colours).value(), {}};
-}
 
 }  // namespace
 
@@ -348,53 +326,35 @@ void StencilEditor::make_beside(std::function<std::function<void()>()> work) {
 void StencilEditor::load_picture(const QString& path) {
     Q_EMIT status(tr("reading %1 …").arg(path));
     make_beside([this, path] {
-        ReadPicture picture = read_picture(path);
-        return [this, picture = std::move(picture)] {
-            if (!picture.image) return m_canvas->refuse(picture.trouble, m_canvas->rect().center());
+        return [this, picture = read_coloured_picture(path.toStdString())] {
+            if (!picture)
+                return m_canvas->refuse(QString::fromStdString(picture.error().text()), m_canvas->rect().center());
             Q_EMIT status({});
-            ask_blocks(picture.image, picture.colours);
+            ask_blocks(*picture);
         };
     });
 }
 
-void StencilEditor::ask_blocks(const std::shared_ptr<const ColourImage>& image,
-                               const std::vector<CountedColour>& colours) {
+void StencilEditor::ask_blocks(const ColouredPicture& picture) {
+    const std::size_t rows = picture.image->rows, columns = picture.image->columns;
     std::vector<BlockChoice> choices = m_blocks;
-    for (BlockChoice& choice : choices)
-        choice.reason = obstacle({choice.name.toStdString()}, image->rows, image->columns);
-    const auto why = [this, choices, image](const std::vector<std::size_t>& list) {
+    for (BlockChoice& choice : choices) choice.reason = obstacle({choice.name.toStdString()}, rows, columns);
+    const auto why = [this, choices, rows, columns](const std::vector<std::size_t>& list) {
         std::vector<std::string> names;
         for (const std::size_t k : list) names.push_back(choices[k].name.toStdString());
-        return obstacle(names, image->rows, image->columns);
+        return obstacle(names, rows, columns);
     };
-    auto* dialog = new PictureMapDialog(colours, choices, why, this);
+    auto* dialog = new PictureMapDialog(picture.colours, choices, why, this);
     dialog->setAttribute(Qt::WA_DeleteOnClose);
-    connect(dialog, &QDialog::accepted, this, [this, dialog, image, colours, choices] {
-        std::vector<std::string> names;
-        for (const std::size_t k : dialog->blocks()) names.push_back(choices[k].name.toStdString());
-        take_picture(image, colours, names);
-    });
+    connect(dialog, &QDialog::accepted, this, [this, dialog, picture] { take_picture(picture, dialog->blocks()); });
     dialog->open();
 }
 
-void StencilEditor::take_picture(const std::shared_ptr<const ColourImage>& image,
-                                 const std::vector<CountedColour>& colours,
-                                 const std::vector<std::string>& names) {
-    StencilOperation operation;
-    std::map<Colour, std::uint16_t> numbers;
-    for (std::size_t k = 0; k < colours.size(); ++k) {
-        const auto known = std::ranges::find(operation.of, names[k]);
-        numbers[colours[k].colour] = static_cast<std::uint16_t>(known - operation.of.begin());
-        if (known == operation.of.end()) operation.of.push_back(names[k]);
-    }
-    make_beside([this, image, numbers, operation] {
-        Result<StencilMap> map = stencil_map(*image, numbers);
-        StencilOperation made = operation;
-        const QString trouble = map ? QString() : QString::fromStdString(map.error().text());
-        if (map) made.map = std::make_shared<const StencilMap>(std::move(map).value());
-        return [this, made = std::move(made), trouble] {
-            if (!made.map) return m_canvas->refuse(trouble, m_canvas->rect().center());
-            put(made, tr("Load a picture into the stencil"));
+void StencilEditor::take_picture(const ColouredPicture& picture, const std::vector<std::string>& blocks) {
+    make_beside([this, picture, palette = palette_of(picture, blocks)] {
+        return [this, of = palette.blocks, map = stencil_map(*picture.image, palette.numbers)] {
+            if (!map) return m_canvas->refuse(QString::fromStdString(map.error().text()), m_canvas->rect().center());
+            put({of, std::make_shared<const StencilMap>(*map)}, tr("Load a picture into the stencil"));
         };
     });
 }

@@ -1,7 +1,7 @@
 #pragma once
 
 #include <weave/design/design.hpp>
-#include <weave/io/stencil_picture.hpp>
+#include <studio/editors/coloured_picture.hpp>
 #include <studio/editors/block_choice.hpp>
 #include <studio/editors/stencil_canvas.hpp>
 #include <studio/editors/stencil_palette.hpp>
@@ -23,9 +23,6 @@ class StencilEditor : public QWidget {
     [[nodiscard]] StencilCanvas& canvas() { return *m_canvas; }
     [[nodiscard]] StencilPalette& palette_list() { return *m_palette; }
     [[nodiscard]] const StencilOperation& operation() const { return m_operation; }
-
-    /// A picture with more colours is refused.
-    static constexpr std::size_t most_colours = 64;
 
   public Q_SLOTS:
     void show_operation(const weave::StencilOperation& operation);
@@ -53,11 +50,9 @@ class StencilEditor : public QWidget {
     /// Does work beside the window's thread, and what it returns in it, unless the editor is gone or asked
     /// for other work since.
     void make_beside(std::function<std::function<void()>()> work);
-    void ask_blocks(const std::shared_ptr<const ColourImage>& image,
-                    const std::vector<CountedColour>& colours);
-    /// `names` are those of the blocks of the colours.
-    void take_picture(const std::shared_ptr<const ColourImage>& image,
-                      const std::vector<CountedColour>& colours, const std::vector<std::string>& names);
+    void ask_blocks(const ColouredPicture& picture);
+    /// `blocks` are those of the colours.
+    void take_picture(const ColouredPicture& picture, const std::vector<std::string>& blocks);
     void add_block(const QString& name);
     void remove_entry(int entry);
     void move_entry(int entry, int step);

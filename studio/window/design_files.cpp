@@ -15,6 +15,7 @@
 
 #include <optional>
 #include <studio/jobs/background.hpp>
+#include <studio/window/picture_stencil.hpp>
 #include <studio/window/recent_designs.hpp>
 
 namespace weave::studio {
@@ -77,15 +78,33 @@ void DesignFiles::open_file(const QString& path) {
     in_background(
         this, [path] { return open_design(path.toStdString()); },
         [this, path](Result<OpenedDesign> read) {
-            if (!read) {
-                Q_EMIT told({});
-                return failed(QString::fromStdString(read.error().text()));
-            }
+            if (!read) return look_for_colours(path, QString::fromStdString(read.error().text()));
             QStringList warnings;
             for (const std::string& warning : read->warnings) warnings.push_back(QString::fromStdString(warning));
             if (read->is_document) recent_designs::note(path);
             if (!read->is_document && read->design.title.empty()) read->design.title = QFileInfo(path).completeBaseName().toStdString();
             Q_EMIT opened(read->design, read->is_document ? path : QString(), warnings);
+        });
+}
+
+/// What is no card may be a picture for a stencil.
+void DesignFiles::look_for_colours(const QString& path, const QString& reason) {
+    in_background(
+        this, [path] { return read_coloured_picture(path.toStdString()); },
+        [this, path, reason](const Result<ColouredPicture>& picture) {
+            Q_EMIT told({});
+            if (!picture) return failed(reason);
+            Q_EMIT coloured(*picture, path);
+        });
+}
+
+void DesignFiles::make_stencil(const ColouredPicture& picture, const std::vector<std::string>& weaves, const QString& path) {
+    in_background(
+        this, [picture, weaves] { return stencil_of_picture(picture, weaves); },
+        [this, path](Result<Design> made) {
+            if (!made) return failed(QString::fromStdString(made.error().text()));
+            made->title = QFileInfo(path).completeBaseName().toStdString();
+            Q_EMIT opened(*made, {}, {});
         });
 }
 

@@ -44,6 +44,7 @@
 #include <studio/window/block_actions.hpp>
 #include <studio/window/design_files.hpp>
 #include <studio/window/help_window.hpp>
+#include <studio/window/picture_stencil.hpp>
 #include <studio/window/recent_designs.hpp>
 #include <studio/window/simulation_desk.hpp>
 #include <studio/window/slice_desk.hpp>
@@ -77,6 +78,7 @@ MainWindow::MainWindow(QWidget* parent)
     m_status->setTextFormat(Qt::PlainText);  // names in it are foreign
     statusBar()->addWidget(m_status, 1);
     connect(m_files, &DesignFiles::opened, this, &MainWindow::opened);
+    connect(m_files, &DesignFiles::coloured, this, &MainWindow::offer_stencil);
     connect(m_files, &DesignFiles::failed, this, &MainWindow::warn);
     connect(m_files, &DesignFiles::told, this, &MainWindow::tell);
     connect(m_viewer, &ViewerPanel::picture_taken, m_files, &DesignFiles::save_picture);
@@ -371,13 +373,26 @@ void MainWindow::open_file(const QString& path) {
     m_files->open_file(path);
 }
 
+/// What was asked for waits until the person has answered what stands open: that may be about the design that is here.
+template <class Deed>
+void MainWindow::when_answered(Deed deed) {
+    if (QApplication::activeModalWidget() == nullptr && QApplication::activePopupWidget() == nullptr) return deed();
+    constexpr int a_moment = 100;  // milliseconds
+    QTimer::singleShot(a_moment, this, [=, this] { when_answered(deed); });
+}
+
+void MainWindow::offer_stencil(const ColouredPicture& picture, const QString& path) {
+    when_answered([=, this] {
+        const std::vector<std::string> weaves = ask_weaves(picture, path, this);
+        if (!weaves.empty()) m_files->make_stencil(picture, weaves, path);
+    });
+}
+
 void MainWindow::opened(const Design& design, const QString& path, const QStringList& warnings) {
-    // What was asked for waits until the person has answered what stands open: that may be about the design that is here.
-    if (QApplication::activeModalWidget() != nullptr || QApplication::activePopupWidget() != nullptr) {
-        constexpr int a_moment = 100;  // milliseconds
-        QTimer::singleShot(a_moment, this, [=, this] { opened(design, path, warnings); });
-        return;
-    }
+    when_answered([=, this] { take_opened(design, path, warnings); });
+}
+
+void MainWindow::take_opened(const Design& design, const QString& path, const QStringList& warnings) {
     if (!may_close()) return;
     show_design(design, path, !path.isEmpty());
     if (!path.isEmpty()) m_viewer_desk->show_view(recent_designs::view(path));

@@ -18,6 +18,7 @@ namespace weave::studio {
 
 class BlockActions;
 class CardEditor;
+struct ColouredPicture;
 class DesignFiles;
 class DesignTree;
 class FindingsPanel;
@@ -95,6 +96,10 @@ class MainWindow : public QMainWindow {
     void wait_for_saving();
     void ask_to_save_over(const QString& path);
     void opened(const Design& design, const QString& path, const QStringList& warnings);
+    void take_opened(const Design& design, const QString& path, const QStringList& warnings);
+    void offer_stencil(const ColouredPicture& picture, const QString& path);
+    template <class Deed>
+    void when_answered(Deed deed);
     QAction* add(QMenu& menu, const QString& text, const QKeySequence& keys, std::function<void()> deed, bool needs_design = true);
     [[nodiscard]] std::string chosen_block() const;
 

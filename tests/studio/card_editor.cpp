@@ -325,16 +325,38 @@ TEST_CASE("a float map says what its colours mean, in steps that differ in light
 TEST_CASE("numbers of a ruler never meet, at the seam of repeats neither") {
     for (const double cell : {0.3, 1.7, 4.0, 9.0, 40.0}) {
         for (const std::size_t repeat : {std::size_t{4}, std::size_t{7}, std::size_t{83}, std::size_t{1001}}) {
-            const double room = 21;
-            const PrintedNumbers numbers(cell, room, repeat, 3 * repeat);
-            std::optional<std::size_t> last;
-            for (std::size_t line = 0; line < 3 * repeat; ++line) {
-                if (!numbers.prints(line, line % repeat + 1)) continue;
-                if (last) REQUIRE(static_cast<double>(line - *last) * cell >= room);
-                last = line;
+            for (const std::size_t in_line : {std::size_t{1}, std::size_t{2}, std::size_t{6}}) {
+                const double room = 21;
+                const PrintedNumbers numbers(cell, room, repeat, 3 * repeat, in_line);
+                std::optional<std::size_t> last;
+                for (std::size_t line = 0; line < 3 * repeat; ++line) {
+                    const std::size_t first = line % repeat * in_line + 1;
+                    const auto number = numbers.beside(line, first, first + in_line);
+                    if (!number) continue;
+                    REQUIRE((*number >= first && *number < first + in_line));
+                    if (last) REQUIRE(static_cast<double>(line - *last) * cell >= room);
+                    last = line;
+                }
+                CHECK(numbers.beside(0, 1, 1 + in_line) == 1);
             }
-            CHECK(numbers.prints(0, 1));
         }
+    }
+}
+
+TEST_CASE("a ruler of stacks has round numbers all along, whatever a stack holds") {
+    for (const std::size_t in_line : {std::size_t{1}, std::size_t{2}, std::size_t{3}, std::size_t{6}}) {
+        const std::size_t lines = 6000 / in_line;
+        const double cell = 600.0 / static_cast<double>(lines), room = 30;  // a whole shoe on 600 pixels
+        const PrintedNumbers numbers(cell, room, lines, lines, in_line);
+        std::vector<std::size_t> printed;
+        for (std::size_t line = 0; line < lines; ++line) {
+            if (const auto number = numbers.beside(line, line * in_line + 1, (line + 1) * in_line + 1)) printed.push_back(*number);
+        }
+        INFO(in_line);
+        REQUIRE(printed.size() >= 10);
+        CHECK(printed[0] == 1);
+        CHECK(printed[1] % 100 == 0);
+        for (std::size_t k = 2; k < printed.size(); ++k) CHECK(printed[k] == k * printed[1]);
     }
 }
 

@@ -9,6 +9,7 @@
 #include <studio/commands/tile_block.hpp>
 #include <studio/editors/card_editor.hpp>
 #include <studio/editors/slice_editor.hpp>
+#include <studio/editors/stencil_dialogs.hpp>
 #include <studio/editors/stencil_editor.hpp>
 #include <studio/panels/design_tree.hpp>
 #include <studio/panels/findings_panel.hpp>
@@ -76,6 +77,42 @@ TEST_CASE("a broken or foreign file opens with a message and changes nothing") {
     refuse(file_of(folder, "c.wif", "[WIF]\nVersion=9\n"), "c.wif");
     refuse(file_of(folder, "d.png", std::string("\x89PNG\r\n\x1a\n", 8)), "d.png");
     refuse("/nowhere/e.weave", "e.weave");
+}
+
+TEST_CASE("a picture in colours is no card, but may become a stencil with a weave for each colour") {
+    const weave::testing::TemporaryFolder folder;
+    const Colour red{200, 0, 0}, blue{0, 0, 200};
+    const QString path = QString::fromStdString(file_of(folder, "heart.png", write_png({2, 3, {red, red, blue, blue, red, red}}).value()));
+    Desk shown("twill-2-2");
+    with_dialog([&] { shown.window.open_file(path); }, [&](QDialog& offer) {
+        CHECK(qobject_cast<QMessageBox*>(&offer)->text().contains("heart.png"));
+        press(offer, "Cancel");
+    });
+    CHECK(shown.document().design() == find_sample("twill-2-2")->make());
+    QTimer hands;  // the question about the weaves opens while the offer is being answered
+    QObject::connect(&hands, &QTimer::timeout, [&] {
+        auto* weaves = qobject_cast<PictureMapDialog*>(QApplication::activeModalWidget());
+        if (weaves == nullptr || !weaves->isVisible()) return;
+        hands.stop();
+        const auto boxes = weaves->findChildren<QComboBox*>();
+        REQUIRE(boxes.size() == 2);
+        choose_entry(boxes[0], "satin-5");  // red, of which there is most
+        choose_entry(boxes[1], "plain");
+        press(*weaves, QDialogButtonBox::Ok);
+    });
+    hands.start(10);
+    with_dialog([&] { shown.window.open_file(path); }, [](QDialog& offer) { press(offer, "Use it as a stencil"); });
+    REQUIRE(until([&] { return shown.document().design().root == "stencil"; }));
+    shown.settle();
+    const Design& design = shown.document().design();
+    const auto& stencil = std::get<StencilOperation>(design.blocks.at("stencil")->source);
+    CHECK(stencil.of == std::vector<std::string>{"satin-5", "plain"});
+    CHECK(stencil.map->blocks == std::vector<std::uint16_t>{0, 0, 1, 1, 0, 0});
+    CHECK(std::get<PresetLeaf>(design.blocks.at("satin-5")->source).preset.family == "satin");
+    CHECK(design.title == "heart");
+    REQUIRE(shown.document().whole().block);
+    CHECK(shown.document().whole().block->picks() == 2);
+    CHECK(shown.document().path().isEmpty());
 }
 
 TEST_CASE("a design is saved under its name, and comes back as it was") {
