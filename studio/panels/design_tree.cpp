@@ -7,6 +7,7 @@
 #include <QScopedValueRollback>
 
 #include <set>
+#include <studio/jobs/words.hpp>
 #include <studio/panels/plain_tip.hpp>
 
 namespace weave::studio {
@@ -15,10 +16,6 @@ namespace {
 
 constexpr int name_role = Qt::UserRole;
 constexpr int deepest = 12, most_items = 4000;  ///< of what is unfolded: a block may be used in many places
-
-QString words(const std::string& text) {
-    return QString::fromStdString(text);
-}
 
 /// The words of each kind of block.
 struct MadeBy {

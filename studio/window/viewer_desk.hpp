@@ -24,6 +24,8 @@ class ViewerDesk : public QObject {
     ViewerDesk(ViewerPanel& panel, QObject* parent);
 
     void show_document(Document* document);
+    /// A pick, an end, or both of the cloth stand out among its yarns, until the person lets go or looks at another block.
+    void point_out(std::optional<std::size_t> pick, std::optional<std::size_t> end);
 
   Q_SIGNALS:
     /// A face of the block was clicked: what is to be attached there?
