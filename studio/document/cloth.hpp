@@ -28,9 +28,6 @@ struct Cloth {
     QImage thumbnail;  ///< its face, small; null where there is no block
 };
 
-/// The cells in which two blocks differ, row by row; nothing where their rows, columns, picks or ends do.
-std::optional<std::vector<std::size_t>> changed_cells(const Block& before, const Block& after);
-
 }  // namespace weave::studio
 
 Q_DECLARE_METATYPE(weave::studio::Cloth)

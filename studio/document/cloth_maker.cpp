@@ -1,5 +1,7 @@
 #include <studio/document/cloth_maker.hpp>
 
+#include <weave/block/changes.hpp>
+
 #include <studio/document/thumbnail.hpp>
 #include <utility>
 

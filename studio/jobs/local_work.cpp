@@ -1,10 +1,10 @@
 #include <studio/jobs/local_work.hpp>
 
 #include <weave/design/evaluate.hpp>
-#include <weave/sim/forecast.hpp>
 #include <weave/wire/shown.hpp>
 
 #include <algorithm>
+#include <studio/jobs/memory_room.hpp>
 #include <studio/jobs/plan_summary.hpp>
 #include <utility>
 
@@ -32,32 +32,30 @@ void LocalWork::run() {
 }
 
 Status LocalWork::begin() {
-    if (!m_means.memory_bytes) m_means.memory_bytes = free_memory();
+    if (const auto room = room_here(); room && !m_means.memory_bytes) m_means.memory_bytes = room->bytes;
     WEAVE_CHECK_OK(foresee_room());
     auto run = sim::Run::begin(m_design, m_request, m_means.threads);
     if (!run) return std::move(run).error();
     m_run = std::move(*run);
     m_outbox.tell(std::make_shared<const PlanSummary>(summary_of(m_run->now().plan(), m_design.title)));
-    return check_room(1);
+    return check_room_for(1);
 }
 
 /// Whether the memory is expected to do for so many times the piece that is simulated.
-Status LocalWork::check_room(std::size_t times) const {
-    const std::uint64_t needed = sim::expected_bytes(sim::points_of(m_run->now().plan()) * times);
-    if (!m_means.memory_bytes || needed <= *m_means.memory_bytes) return {};
-    return lack_of_memory(needed, *m_means.memory_bytes, m_request.plan.fidelity);
+Status LocalWork::check_room_for(std::size_t times) const {
+    if (!m_means.memory_bytes) return {};
+    MemoryNeed need = need_of(m_run->now().plan());
+    need.points *= times;
+    need.stacks *= times;
+    return check_room(need, {*m_means.memory_bytes, {}});
 }
 
-/// Laying out a cloth that has no room takes half a minute and gigabytes: only what is well beyond doubt is refused
-/// before, as the guess is rough.
+/// Laying out a cloth that has no room takes half a minute and gigabytes.
 Status LocalWork::foresee_room() const {
-    constexpr std::uint64_t doubt = 4;
     if (!m_means.memory_bytes) return {};
     WEAVE_TRY(const Evaluation evaluation, evaluate(m_design));
-    const auto points = foreseen_points(m_design, *evaluation.block, m_request.plan);
-    const std::uint64_t needed = points ? sim::expected_bytes(*points) : 0;
-    if (needed / doubt <= *m_means.memory_bytes) return {};
-    return lack_of_memory(needed, *m_means.memory_bytes, m_request.plan.fidelity);
+    const auto need = foreseen_need(m_design, *evaluation.block, m_request.plan);
+    return need ? check_room(*need, {*m_means.memory_bytes, {}}) : Status();
 }
 
 Status LocalWork::loop() {
@@ -120,7 +118,7 @@ Status LocalWork::make(const Order& change) {
         return {};
     }
     const auto& repeats = m_run->now().plan().repeats;
-    WEAVE_CHECK_OK(check_room(repeats[0] * repeats[1]));
+    WEAVE_CHECK_OK(check_room_for(repeats[0] * repeats[1]));
     if (const auto* pins = std::get_if<wire::Pins>(&change)) return m_run->hold(pins->pins);
     return m_run->push(std::get<wire::Fields>(change).fields);
 }
@@ -128,7 +126,7 @@ Status LocalWork::make(const Order& change) {
 /// Errors: the whole cloth, which a flip needs, cannot be planned.
 Status LocalWork::flip(const Flip& flip) {
     const auto& repeats = m_run->now().plan().repeats;
-    if (const Status room = check_room(repeats[0] * repeats[1]); !room) {
+    if (const Status room = check_room_for(repeats[0] * repeats[1]); !room) {
         m_outbox.tell(FlipEnd{flip, false, room.error().text()});
         return {};
     }

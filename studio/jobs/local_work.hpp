@@ -35,7 +35,7 @@ class LocalWork {
     Status make(const Order& change);
     Status flip(const Flip& flip);
     [[nodiscard]] Status foresee_room() const;
-    [[nodiscard]] Status check_room(std::size_t times) const;
+    [[nodiscard]] Status check_room_for(std::size_t times) const;
     void tell_arrival();
     void rest();
 

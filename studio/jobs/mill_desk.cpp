@@ -7,6 +7,7 @@
 #include <weave/wire/mill_sign_in.hpp>
 
 #include <studio/jobs/background.hpp>
+#include <studio/jobs/words.hpp>
 
 namespace weave::studio {
 
@@ -17,10 +18,6 @@ using namespace std::chrono_literals;
 constexpr auto usual_interval = 3s;
 /// A person who does nothing for so long is not kept signed in by what the desk asks by itself.
 constexpr auto most_rest = 25min;
-
-QString words(const std::string& text) {
-    return QString::fromStdString(text);
-}
 
 /// What a mill refuses names the path of its API, which says nothing to a person; a file or a machine does.
 QString in_words(const Error& error) {
@@ -81,10 +78,17 @@ Result<MillComparison> comparison_of(const WovenDesign& before, const Design& de
     made.same = diff.is_same();
     made.headline = headline_of(diff);
     made.words = words(in_words(diff, "revision " + std::to_string(number), "the open design"));
-    if (diff.card && !diff.card->is_same())
-        if (const auto picture = draw_diff(before, after, diff, PictureFormat::png))
-            made.picture = QImage::fromData(reinterpret_cast<const uchar*>(picture->data()),
-                                            static_cast<int>(picture->size()), "PNG");
+    if (!diff.card || diff.card->is_same()) return made;
+    const auto drawn = [&](const DiffLook& look) {
+        const auto picture = draw_diff(before, after, diff, PictureFormat::png, look);
+        if (!picture) return QImage();
+        QImage image = QImage::fromData(reinterpret_cast<const uchar*>(picture->data()), static_cast<int>(picture->size()), "PNG");
+        image.setDevicePixelRatio(look.scale);
+        return image;
+    };
+    made.picture = drawn({});
+    // As small as it is shown, so that its numbers can be read there; sharp where a display has 200 %.
+    made.small_picture = drawn({.wanted_side = 240, .longest_side = 240, .scale = 2, .has_words = false});
     return made;
 }
 

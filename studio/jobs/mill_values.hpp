@@ -42,8 +42,9 @@ struct MillComparison {
     bool same = false;          ///< the same design; the view may differ
     QString headline;           ///< the card in one line
     QString words;              ///< all that differs
-    QImage
-        picture;  ///< both cards laid on each other; null where one of them has no cloth or nothing differs
+    /// Both cards laid on each other, large with all words, and small to stand beside words; null where one of them has no
+    /// cloth or nothing differs.
+    QImage picture, small_picture;
 };
 
 /// What a person hands in: a revision to save, evidence to file for it, a submission, or several of these.

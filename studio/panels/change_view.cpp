@@ -95,7 +95,8 @@ void ChangeView::show(const MillComparison& comparison) {
     else if (words.isEmpty())
         words = tr("The cards are the same; other parts of the design differ.");
     m_headline->setText(words);
-    m_picture->set_image(comparison.picture);
+    m_picture->set_image(comparison.small_picture);
+    m_large = comparison.picture;
     m_words->setPlainText(comparison.words);
     m_more->setVisible(!comparison.same);
     m_words->setVisible(!comparison.same && m_more->isChecked());
@@ -119,7 +120,7 @@ void ChangeView::open_large() {
     window->setAttribute(Qt::WA_DeleteOnClose);
     window->setWindowTitle(tr("Changes since revision %1").arg(compared_with().value_or(0)));
     auto* picture = new QLabel;
-    picture->setPixmap(QPixmap::fromImage(m_picture->image()));
+    picture->setPixmap(QPixmap::fromImage(m_large));
     auto* area = new QScrollArea;
     area->setWidget(picture);
     area->setAlignment(Qt::AlignCenter);
@@ -127,7 +128,7 @@ void ChangeView::open_large() {
     all->setContentsMargins(0, 0, 0, 0);
     all->addWidget(area);
     const int line = fontMetrics().height();
-    window->resize(m_picture->image().size().boundedTo(QSize(line * 60, line * 45)) +
+    window->resize(m_large.size().boundedTo(QSize(line * 60, line * 45)) +
                    QSize(line * 2, line * 2));
     window->show();
 }

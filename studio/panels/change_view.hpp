@@ -39,6 +39,7 @@ class ChangeView : public QWidget {
     QComboBox* m_revisions;
     QLabel *m_title, *m_headline;
     ScaledPicture* m_picture;
+    QImage m_large;
     QToolButton* m_more;
     QPlainTextEdit* m_words;
     bool m_chosen = false;

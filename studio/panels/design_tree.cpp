@@ -10,6 +10,7 @@
 
 #include <algorithm>
 #include <set>
+#include <studio/jobs/words.hpp>
 #include <studio/panels/plain_tip.hpp>
 
 namespace weave::studio {
@@ -18,10 +19,6 @@ namespace {
 
 constexpr int name_role = Qt::UserRole;
 constexpr int deepest_again = 12, most_items = 4000;  ///< up to there a block unfolds wherever it is used
-
-QString words(const std::string& text) {
-    return QString::fromStdString(text);
-}
 
 /// The words of each kind of block.
 struct MadeBy {

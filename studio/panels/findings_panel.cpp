@@ -17,6 +17,7 @@
 #include <algorithm>
 #include <map>
 #include <studio/jobs/background.hpp>
+#include <studio/jobs/words.hpp>
 #include <studio/panels/plain_tip.hpp>
 #include <studio/panels/rule_fixes.hpp>
 
@@ -30,10 +31,6 @@ namespace weave::studio {
 namespace {
 
 constexpr int pick_role = Qt::UserRole, end_role = Qt::UserRole + 1;
-
-QString words(const std::string& text) {
-    return QString::fromStdString(text);
-}
 
 /// A shape and a colour for each weight, so that neither alone has to tell them apart.
 QIcon icon_of(Severity severity, int side) {
@@ -93,8 +90,11 @@ FindingsPanel::FindingsPanel(QWidget* parent)
     m_soon->setInterval(300);
     connect(m_soon, &QTimer::timeout, this, &FindingsPanel::check);
     connect(m_list, &QTreeWidget::itemClicked, this, [this](const QTreeWidgetItem* item) {
-        const QVariant pick = item->data(0, pick_role), end = item->data(0, end_role);
-        if (pick.isValid() || end.isValid()) Q_EMIT place_wanted({pick.toULongLong(), end.toULongLong()});
+        const auto number = [&](int role) {
+            const QVariant told = item->data(0, role);
+            return told.isValid() ? std::optional<std::size_t>(told.toULongLong()) : std::nullopt;
+        };
+        if (number(pick_role) || number(end_role)) Q_EMIT place_wanted(number(pick_role), number(end_role));
     });
     connect(m_list, &QTreeWidget::itemActivated, m_list, &QTreeWidget::itemClicked);
     list_looms();

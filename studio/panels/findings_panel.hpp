@@ -34,7 +34,8 @@ class FindingsPanel : public QWidget {
 
   Q_SIGNALS:
     /// The person wants to see this crossing of the cloth.
-    void place_wanted(const weave::CardPlace& place);
+    /// Somebody wants to look there; a finding names a pick, an end, or both, from 0.
+    void place_wanted(std::optional<std::size_t> pick, std::optional<std::size_t> end);
     /// How many there are of each weight, for a badge; none too where there is no report.
     void counted(std::size_t errors, std::size_t warnings);
 

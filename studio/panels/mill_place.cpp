@@ -11,6 +11,7 @@
 #include <QUrl>
 
 #include <algorithm>
+#include <studio/jobs/words.hpp>
 #include <studio/panels/approval_flow.hpp>
 #include <studio/panels/plain_tip.hpp>
 #include <studio/panels/sign_in_form.hpp>
@@ -23,10 +24,6 @@ namespace {
 const QRegularExpression& name_pattern() {
     static const QRegularExpression pattern("^[A-Za-z0-9_](?:[A-Za-z0-9._-]{0,62}[A-Za-z0-9_-])?$");
     return pattern;
-}
-
-QString words(const std::string& text) {
-    return QString::fromStdString(text);
 }
 
 /// A title or a file's name as a name for a mill.

@@ -12,15 +12,12 @@
 #include <QTextBrowser>
 
 #include <algorithm>
+#include <studio/jobs/words.hpp>
 #include <studio/panels/approval_flow.hpp>
 
 namespace weave::studio {
 
 namespace {
-
-QString words(const std::string& text) {
-    return QString::fromStdString(text);
-}
 
 /// Foreign words in a rich text.
 QString safe(const std::string& text) {

@@ -12,7 +12,7 @@ namespace weave::studio {
 
 namespace {
 
-constexpr int most_lines = 24;
+constexpr int most_lines = 30;
 
 }  // namespace
 
@@ -36,9 +36,8 @@ void ScaledPicture::set_image(const QImage& image) {
 QSize ScaledPicture::shown_in(int width) const {
     if (m_image.isNull()) return {0, 0};
     const QSize room(std::max(1, width), most_lines * fontMetrics().height());
-    return m_image.width() <= room.width() && m_image.height() <= room.height()
-               ? m_image.size()
-               : m_image.size().scaled(room, Qt::KeepAspectRatio);
+    const QSize whole = m_image.deviceIndependentSize().toSize();
+    return whole.width() <= room.width() && whole.height() <= room.height() ? whole : whole.scaled(room, Qt::KeepAspectRatio);
 }
 
 QSize ScaledPicture::sizeHint() const {

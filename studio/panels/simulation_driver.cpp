@@ -1,9 +1,12 @@
 #include <studio/panels/simulation_driver.hpp>
 
+#include <weave/block/changes.hpp>
 #include <weave/design/edit.hpp>
+#include <weave/design/evaluate.hpp>
 
 #include <algorithm>
 #include <cmath>
+#include <studio/jobs/background.hpp>
 #include <studio/jobs/local_relaxation.hpp>
 #include <studio/jobs/remote_relaxation.hpp>
 #include <studio/panels/simulation_system_group.hpp>
@@ -12,52 +15,38 @@ namespace weave::studio {
 
 namespace {
 
-/// Nodes never change, so those that are one object need not be looked into.
-bool same_source(const NodePtr& one, const NodePtr& other) {
-    return one == other || Node{one->source, {}} == Node{other->source, {}};
-}
+/// More flips are not led at once: each takes some tenths of a second, and to lay the cloth out anew is quicker.
+constexpr std::size_t most_led = 64;
 
-/// But for the flips of the cloth itself, which can be led.
-bool same_blocks(const Design& one, const Design& other) {
+/// Whether all blocks of the two fit each other, one by one.
+template <class Fits>
+bool all_blocks(const Design& one, const Design& other, Fits fits) {
     return std::equal(one.blocks.begin(), one.blocks.end(), other.blocks.begin(), other.blocks.end(),
                       [&](const auto& a, const auto& b) {
-                          if (a.first != b.first) return false;
-                          if (a.first == one.root) return same_source(a.second, b.second);
-                          return a.second == b.second || *a.second == *b.second;
+                          // Nodes never change, so those that are one object need not be looked into.
+                          return a.first == b.first && (a.second == b.second || fits(*a.second, *b.second));
                       });
 }
 
-const std::vector<Flip>& flips_of(const Design& design) {
-    static const std::vector<Flip> none;
-    const auto cloth = design.blocks.find(design.root);
-    return cloth == design.blocks.end() ? none : cloth->second->flips;
+bool same_blocks(const Design& one, const Design& other) {
+    return all_blocks(one, other, [](const Node& a, const Node& b) { return a == b; });
 }
 
-bool same_place(const Flip& one, const Flip& other) {
-    return one.pick == other.pick && one.end == other.end;
-}
-
-/// The flip of a crossing that counts: of several at one place the last.
-const Flip* last_at(const std::vector<Flip>& flips, const Flip& place) {
-    const auto found = std::find_if(flips.rbegin(), flips.rend(), [&](const Flip& one) { return same_place(one, place); });
-    return found == flips.rend() ? nullptr : &*found;
+/// But for flips, which can be led.
+bool same_sources(const Design& one, const Design& other) {
+    return all_blocks(one, other, [](const Node& a, const Node& b) { return Node{a.source, {}} == Node{b.source, {}}; });
 }
 
 Flip opposite(const Flip& flip) {
     return {flip.pick, flip.end, !flip.weft_over};
 }
 
-/// What leads from the crossings as the one has them to those of the other: a flip that is gone goes the other way.
-std::vector<Flip> flips_between(const std::vector<Flip>& before, const std::vector<Flip>& now) {
-    std::vector<Flip> between;
-    for (const Flip& flip : before) {
-        if (last_at(now, flip) == nullptr && last_at(before, flip) == &flip) between.push_back(opposite(flip));
-    }
-    for (const Flip& flip : now) {
-        const Flip* was = last_at(before, flip);
-        if (last_at(now, flip) == &flip && (was == nullptr || *was != flip)) between.push_back(flip);
-    }
-    return between;
+/// What leads the cloth of the one design to that of the other; nothing where that is too much, or there is no cloth.
+std::optional<std::vector<Flip>> flips_between(const Design& before, const Design& after) {
+    Evaluator evaluator;
+    const auto was = evaluator.evaluate(before), is = evaluator.evaluate(after);
+    if (!was || !is) return {};
+    return flips_between(*was->block, *is->block, most_led);
 }
 
 /// Whether a run of the one shows the other, but for what can be led into it.
@@ -69,7 +58,7 @@ bool same_cloth(const Design& one, const Design& other) {
     led.pins = other.scene.pins;
     led.fields = other.scene.fields;
     return same_feed && led == other.scene && one.root == other.root && one.warp == other.warp &&
-           one.weft == other.weft && same_blocks(one, other);
+           one.weft == other.weft && same_sources(one, other);
 }
 
 /// What of these values is not as it was.
@@ -91,7 +80,7 @@ void SimulationDriver::start(const Design& design, const sim::RunRequest& reques
         m_run = std::make_unique<LocalRelaxation>();
     m_state = {};
     m_plan.reset();
-    m_started = design;
+    m_started = m_wanted = design;
     m_highest = 0;
     m_is_to_run = false;
     forget_flips();
@@ -157,12 +146,12 @@ void SimulationDriver::take_flip(const Flip& flip, bool done, const QString& rea
     }
     m_led.erase(led);
     if (done) return;
-    m_refused.push_back(flip);
-    Q_EMIT fell_behind(flip, reason);
-}
-
-bool SimulationDriver::is_refused(const Flip& flip) const {
-    return std::any_of(m_refused.begin(), m_refused.end(), [&](const Flip& one) { return same_place(one, flip); });
+    // A crossing that the run did not turn lies as before, so to turn it back is refused too: then the two agree again.
+    if (std::erase(m_refused, opposite(flip)) == 0) {
+        m_refused.push_back(flip);
+        Q_EMIT flip_refused(flip, reason);
+    }
+    Q_EMIT behind_changed();
 }
 
 void SimulationDriver::run() {
@@ -205,30 +194,52 @@ void SimulationDriver::forget_flips() {
     m_asked.clear();
     m_led.clear();
     m_refused.clear();
+    m_is_other = m_looks = false;
+    ++m_runs;
 }
 
-bool SimulationDriver::follow(const Design& design) {
-    if (m_state.phase == RunPhase::idle) return false;
-    if (!same_cloth(m_started, design)) return true;
-    if (!is_open()) return m_started.scene != design.scene || !flips_between(flips_of(m_started), flips_of(design)).empty();
-    lead_flips(design);
+void SimulationDriver::follow(const Design& design) {
+    if (m_state.phase == RunPhase::idle) return;
+    m_wanted = design;
+    m_is_other = !same_cloth(m_started, design);
+    if (m_is_other) return;
+    if (!is_open()) {
+        m_is_other = m_started.scene != design.scene || !same_blocks(m_started, design);
+        return;
+    }
     lead_parameters(design.scene);
     if (m_started.scene.pins != design.scene.pins) m_run->hold(design.scene.pins);
     if (m_started.scene.fields != design.scene.fields) m_run->push(design.scene.fields);
     m_started.scene = design.scene;
-    return !m_refused.empty();
+    look_for_flips();
 }
 
-/// A crossing that the run did not turn lies as before: turned back in the design, the two agree again, and
-/// there is nothing to lead.
-void SimulationDriver::lead_flips(const Design& design) {
-    for (const Flip& flip : flips_between(flips_of(m_started), flips_of(design))) {
-        if (std::erase_if(m_refused, [&](const Flip& one) { return one == opposite(flip); }) > 0) continue;
-        if (is_refused(flip)) continue;
-        m_led.push_back(flip);
-        if (std::erase(m_asked, flip) == 0) m_run->flip(flip);
+/// A large cloth takes a while to make. What changes meanwhile is looked for afterwards.
+void SimulationDriver::look_for_flips() {
+    if (m_looks || same_blocks(m_started, m_wanted)) return;
+    m_looks = true;
+    in_background(
+        this, [before = m_started, after = m_wanted] { return flips_between(before, after); },
+        [this, before = m_started, after = m_wanted, run = m_runs](const std::optional<std::vector<Flip>>& flips) {
+            if (run == m_runs) take_flips(before, after, flips);
+        });
+}
+
+void SimulationDriver::take_flips(const Design& before, const Design& after,
+                                  const std::optional<std::vector<Flip>>& flips) {
+    m_looks = false;
+    if (is_open() && same_blocks(before, m_started)) {  // no flip asked for in the run came between
+        for (const Flip& flip : flips.value_or(std::vector<Flip>())) lead(flip);
+        if (flips) m_started.blocks = after.blocks;
+        m_is_other = !flips && same_blocks(after, m_wanted);
     }
-    m_started.blocks = design.blocks;
+    if (!m_is_other) follow(m_wanted);
+    Q_EMIT behind_changed();
+}
+
+void SimulationDriver::lead(const Flip& flip) {
+    m_led.push_back(flip);
+    if (std::erase(m_asked, flip) == 0) m_run->flip(flip);
 }
 
 void SimulationDriver::lead_parameters(const Scene& scene) {

@@ -4,6 +4,7 @@
 
 #include <QObject>
 
+#include <cstddef>
 #include <memory>
 #include <optional>
 #include <studio/jobs/relaxation.hpp>
@@ -30,9 +31,11 @@ class SimulationDriver : public QObject {
     /// Nobody looks at the run any more: it ends, and nothing of it arrives from here on.
     void leave();
 
-    /// The design as it is now: strain, stiffness, radii, pins, fields and flips of the cloth are led into the
-    /// run. Whether the run shows another design all the same, so that it would have to start again.
-    bool follow(const Design& design);
+    /// The design as it is now: strain, stiffness, radii, pins and fields are led into the run, and so are flips of whatever
+    /// block, at each place that it has in the cloth, as soon as those are found.
+    void follow(const Design& design);
+    /// Whether the run shows another design all the same, so that it would have to start again.
+    [[nodiscard]] bool is_behind() const { return m_is_other || !m_refused.empty(); }
 
     [[nodiscard]] const RunState& state() const { return m_state; }
     [[nodiscard]] const std::shared_ptr<const PlanSummary>& plan() const { return m_plan; }
@@ -52,8 +55,10 @@ class SimulationDriver : public QObject {
     void yarns_came(const std::shared_ptr<const weave::Yarns>& yarns);
     /// Of flip(): one that is done belongs into the design.
     void flip_ended(const weave::Flip& flip, bool done, const QString& reason);
-    /// A flip of the design that the run does not take: it no longer shows the design.
-    void fell_behind(const weave::Flip& flip, const QString& reason);
+    /// A flip of the design that the run does not take.
+    void flip_refused(const weave::Flip& flip, const QString& reason);
+    /// is_behind() may have changed, after what was found in the background or the run told.
+    void behind_changed();
     void refused(const weave::Error& error);
     void troubled(const QString& words);
 
@@ -63,19 +68,24 @@ class SimulationDriver : public QObject {
     void take(const Progress& progress);
     void take_flip(const Flip& flip, bool done, const QString& reason);
     void lead_parameters(const Scene& scene);
-    void lead_flips(const Design& design);
+    void look_for_flips();
+    void take_flips(const Design& before, const Design& after, const std::optional<std::vector<Flip>>& flips);
+    void lead(const Flip& flip);
     void forget_flips();
-    [[nodiscard]] bool is_refused(const Flip& flip) const;
 
     std::unique_ptr<Relaxation> m_run;
     RunState m_state;
     std::shared_ptr<const PlanSummary> m_plan;
     Design m_started;  ///< what the run shows, with what was led into it
+    Design m_wanted;   ///< what it is to show
     std::vector<Flip> m_asked;    ///< flips under way in the run that the design gets once they are done
     std::vector<Flip> m_led;      ///< flips under way that the design has already
     std::vector<Flip> m_refused;  ///< flips of the design that the run did not take
     double m_highest = 0;
     bool m_is_to_run = false;  ///< asked for, and not yet begun
+    bool m_is_other = false;   ///< what is wanted cannot be led into it
+    bool m_looks = false;      ///< for flips, in the background
+    std::size_t m_runs = 0;    ///< so far; what was looked for in an earlier one is of no use
 };
 
 }  // namespace weave::studio

@@ -40,7 +40,8 @@ void SimulationPanel::set_design(const Design& design) {
     m_warp->set_values(design.scene.warp);
     m_weft->set_values(design.scene.weft);
     m_scene->set_scene(design.scene);
-    set_out_of_date(m_driver->follow(m_design));
+    m_driver->follow(m_design);
+    set_out_of_date(m_driver->is_behind());
 }
 
 void SimulationPanel::clear_design() {
@@ -86,7 +87,8 @@ void SimulationPanel::edit_scene(bool is_dragging) {
     m_scene->put_into(scene);
     if (scene == m_design.scene && is_dragging) return;
     m_design.scene = scene;
-    set_out_of_date(m_driver->follow(m_design));
+    m_driver->follow(m_design);
+    set_out_of_date(m_driver->is_behind());
     Q_EMIT scene_edited(scene, is_dragging);
 }
 

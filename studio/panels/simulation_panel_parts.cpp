@@ -261,12 +261,12 @@ void SimulationPanel::connect_driver() {
                             .arg(QString::number(flip.pick + 1), QString::number(flip.end + 1), reason));
                 Q_EMIT flip_ended(flip, done, reason);
             });
-    connect(m_driver, &SimulationDriver::fell_behind, this, [this](const Flip& flip, const QString& reason) {
+    connect(m_driver, &SimulationDriver::flip_refused, this, [this](const Flip& flip, const QString& reason) {
         m_message->tell(MessageBar::Kind::warning,
                         tr("The simulated cloth does not follow at pick %1, end %2: %3")
                             .arg(QString::number(flip.pick + 1), QString::number(flip.end + 1), reason));
-        set_out_of_date(true);
     });
+    connect(m_driver, &SimulationDriver::behind_changed, this, [this] { set_out_of_date(m_driver->is_behind()); });
     connect(m_driver, &SimulationDriver::refused, this, [this](const Error& error) {
         m_message->tell(MessageBar::Kind::warning, tr("Not done: %1").arg(error_words(error)));
     });

@@ -122,13 +122,9 @@ Box Viewport::shown_box() const {
     return m_model == nullptr ? Box{} : box_of(*m_model, m_shown.repeat);
 }
 
-void Viewport::set_selected(std::vector<YarnName> yarns) {
-    m_selected = std::move(yarns);
-    update_states();
-}
-
-void Viewport::set_dim_others(bool dim) {
-    m_dim_others = dim;
+void Viewport::point_out(std::vector<YarnName> yarns) {
+    let_go();
+    m_pointed_out = std::move(yarns);
     update_states();
 }
 
@@ -160,10 +156,10 @@ void Viewport::update_states() {
         states[*yarn] = static_cast<std::uint8_t>(states[*yarn] | state);
         any = any || state == yarn_selected;
     };
-    for (const YarnName& name : m_selected) mark(m_model->find(name.system, name.number), yarn_selected);
+    for (const YarnName& name : m_pointed_out) mark(m_model->find(name.system, name.number), yarn_selected);
     mark(m_held, yarn_selected);
     mark(m_hovered, yarn_hovered);
-    if (m_dim_others && any) {
+    if (any) {
         for (std::uint8_t& state : states) state = state == yarn_plain ? std::uint8_t{yarn_dimmed} : state;
     }
     m_painter.set_states(std::move(states));
@@ -383,10 +379,23 @@ void Viewport::paint_over(QPainter& painter, const QRectF& area, bool for_screen
     m_cube.paint(painter, m_camera, palette(), m_cube_face);
 }
 
+namespace {
+
+/// `pick 7 and end 12`, counted from 1.
+QString yarn_names(const std::vector<YarnName>& yarns) {
+    QStringList names;
+    for (const YarnName& yarn : yarns)
+        names << (yarn.system == System::weft ? Viewport::tr("pick %1") : Viewport::tr("end %1")).arg(yarn.number + 1);
+    return names.join(Viewport::tr(" and "));
+}
+
+}  // namespace
+
 QString Viewport::hint() const {
     if (m_attach) return tr("choose a side of the block; Esc to let go");
     if (m_missed) return tr("these two do not cross; click a yarn that crosses this one; Esc to let go");
     if (m_held) return tr("click the yarn that crosses it; Esc to let go");
+    if (!m_pointed_out.empty()) return tr("%1; Esc to let go").arg(yarn_names(m_pointed_out));
     return {};
 }
 

@@ -65,9 +65,11 @@ class Viewport : public QWidget {
     [[nodiscard]] const Shown& shown() const { return m_shown; }
     [[nodiscard]] Box shown_box() const;
 
-    void set_selected(std::vector<YarnName> yarns);
-    /// While yarns are selected or held, the others are dimmed.
-    void set_dim_others(bool dim);
+    /// These stand out and all others are dimmed, in whatever is shown, until the person lets go of them.
+    void point_out(std::vector<YarnName> yarns);
+    [[nodiscard]] const std::vector<YarnName>& pointed_out() const { return m_pointed_out; }
+    /// Of the yarns that stand out, and of the one that was clicked first.
+    void let_go();
     /// Faces of the block are offered instead of yarns.
     void set_attach_mode(bool attach);
     [[nodiscard]] bool attach_mode() const { return m_attach; }
@@ -154,7 +156,6 @@ class Viewport : public QWidget {
     void clear_hover();
     void click(const QPointF& place);
     void click_yarn(const QPointF& place);
-    void let_go();
     void drag_to(const QPointF& place, Qt::KeyboardModifiers modifiers);
     bool press_key(QKeyEvent* event);
     bool press_move_key(int key, bool shift);
@@ -175,8 +176,8 @@ class Viewport : public QWidget {
 
     OrientationCube m_cube;
     std::optional<Face> m_cube_face, m_block_face;
-    bool m_attach = false, m_dim_others = true;
-    std::vector<YarnName> m_selected;
+    bool m_attach = false;
+    std::vector<YarnName> m_pointed_out;
     std::optional<std::uint32_t> m_hovered, m_held;
     bool m_missed = false;  ///< the last two yarns clicked do not cross
 

@@ -68,8 +68,9 @@ void Viewport::hover(const QPointF& place, const QPoint& global) {
 
 void Viewport::let_go() {
     m_missed = false;
-    if (!m_held) return;
+    if (!m_held && m_pointed_out.empty()) return;
     m_held.reset();
+    m_pointed_out.clear();
     update_states();
 }
 
@@ -103,6 +104,7 @@ void Viewport::click_yarn(const QPointF& place) {
     if (is_second) crossing = m_model->crossing_of(*m_held, hit.yarn, hit.place);
     const bool missed = is_second && !crossing;
     if (!is_second && !m_held) crossing = crossing_at(*m_model, found, ray);
+    m_pointed_out.clear();
     m_missed = missed;
     m_held = crossing ? std::nullopt : std::optional(hit.yarn);
     update_states();
@@ -195,7 +197,7 @@ bool Viewport::event(QEvent* event) {
         if ((plain &&
              (one_to_six || key->key() == Qt::Key_F || key->key() == Qt::Key_L ||
               key->key() == Qt::Key_Plus || key->key() == Qt::Key_Minus || key->key() == Qt::Key_Equal)) ||
-            (plain && key->key() == Qt::Key_Escape && (m_held || m_attach)))
+            (plain && key->key() == Qt::Key_Escape && (m_held || m_attach || !m_pointed_out.empty())))
             event->accept();
     }
     return QWidget::event(event);
@@ -232,7 +234,7 @@ bool Viewport::press_key(QKeyEvent* event) {
             zoom(1 / key_zoom);
             return true;
         case Qt::Key_Escape:
-            if (!m_held && !m_attach) return false;
+            if (!m_held && !m_attach && m_pointed_out.empty()) return false;
             let_go();
             set_attach_mode(false);
             look_again();

@@ -19,10 +19,6 @@ QString yarn_words(const TubeModel& model, std::uint32_t yarn, const Vec3& place
     return Words::tr("end %1 · beam %2").arg(number).arg(of.beam + 1);
 }
 
-QString crossing_words(const ModelCrossing& crossing) {
-    return Words::tr("pick %1 and end %2").arg(qulonglong{crossing.pick + 1}).arg(qulonglong{crossing.end + 1});
-}
-
 QString face_name(Face face) {
     switch (face) {
         case Face::plus_x:

@@ -9,8 +9,6 @@ namespace weave::studio {
 
 /// "end 12 · beam 1" or "pick 7", counted from 1.
 QString yarn_words(const TubeModel& model, std::uint32_t yarn, const Vec3& place);
-/// "pick 7 over end 12" has no order here: "pick 7 and end 12".
-QString crossing_words(const ModelCrossing& crossing);
 /// What the face of a block is called on the orientation cube: "Face", "Back", "Pick 1" …
 QString face_name(Face face);
 /// What a click on it means: "attach here: after the last pick (+x)".

@@ -26,6 +26,7 @@
 #include <studio/commands/remove_block.hpp>
 #include <studio/commands/rename_block.hpp>
 #include <studio/commands/tile_block.hpp>
+#include <studio/jobs/words.hpp>
 #include <studio/panels/attach_menu.hpp>
 #include <studio/jobs/background.hpp>
 #include <studio/panels/grouping_dialog.hpp>
@@ -38,10 +39,6 @@ namespace {
 constexpr auto clipboard_type = "application/x-weave-design";
 constexpr qsizetype most_pasted = qsizetype{256} << 20;
 constexpr std::array faces{Face::plus_z, Face::minus_z, Face::plus_x, Face::minus_x, Face::plus_y, Face::minus_y};
-
-QString words(const std::string& text) {
-    return QString::fromStdString(text);
-}
 
 /// The part of a design that a block is made from, with the block as its cloth.
 Design part_of(const Design& design, const std::string& block) {

@@ -17,6 +17,7 @@
 #include <QScreen>
 #include <QScrollArea>
 #include <QSettings>
+#include <QShortcut>
 #include <QSplitter>
 #include <QStackedWidget>
 #include <QStatusBar>
@@ -36,6 +37,7 @@
 #include <studio/panels/findings_panel.hpp>
 #include <studio/panels/message_bar.hpp>
 #include <studio/panels/preset_dialog.hpp>
+#include <studio/panels/simulation_findings.hpp>
 #include <studio/panels/simulation_panel.hpp>
 #include <studio/panels/simulation_scene_group.hpp>
 #include <studio/panels/submit_panel.hpp>
@@ -150,7 +152,7 @@ void MainWindow::make_workspace() {
     connect(m_simulation_desk, &SimulationDesk::failed, this, &MainWindow::warn);
     connect(m_simulation_desk, &SimulationDesk::outgrown, this, [this](const QString& words) { m_messages->tell(MessageBar::Kind::note, words, m_simulation->run_action()); });
     connect(m_simulation_desk, &SimulationDesk::told, this, &MainWindow::tell);
-    connect(m_simulation_desk, &SimulationDesk::place_wanted, this, &MainWindow::go_to);
+    connect(m_simulation_desk, &SimulationDesk::place_wanted, this, [this](const CardPlace& place) { show_yarns(place.pick, place.end); });
     connect(m_start, &StartPage::open_wanted, m_files, &DesignFiles::open);
     connect(m_start, &StartPage::file_wanted, this, &MainWindow::open_file);
     connect(m_start, &StartPage::sample_wanted, this, &MainWindow::show_sample);
@@ -208,7 +210,9 @@ void MainWindow::make_docks() {
     m_simulation_dock = simulation;
     setCorner(Qt::BottomLeftCorner, Qt::LeftDockWidgetArea);
     setCorner(Qt::BottomRightCorner, Qt::RightDockWidgetArea);
-    connect(m_findings, &FindingsPanel::place_wanted, this, &MainWindow::go_to);
+    connect(m_findings, &FindingsPanel::place_wanted, this, &MainWindow::show_yarns);
+    for (QWidget* list : std::initializer_list<QWidget*>{m_findings, m_simulation->findings()})
+        new QShortcut(Qt::Key_Escape, list, m_viewer->viewport(), &Viewport::let_go, Qt::WidgetWithChildrenShortcut);
     connect(m_submit, &SubmitPanel::findings_wanted, findings, [findings] {
         findings->show();
         findings->raise();
@@ -230,12 +234,13 @@ void MainWindow::make_docks() {
     });
 }
 
-/// Shows a crossing of the cloth.
-void MainWindow::go_to(const CardPlace& place) {
+/// Shows a pick, an end, or their crossing, of the cloth: on the card, and among its yarns.
+void MainWindow::show_yarns(std::optional<std::size_t> pick, std::optional<std::size_t> end) {
     if (!m_document) return;
     m_document->focus().show_block(m_document->design().root);
-    m_document->focus().go_to(place);
+    m_document->focus().go_to({pick.value_or(0), end.value_or(0)});
     m_editors->setCurrentWidget(m_card);
+    m_viewer_desk->point_out(pick, end);
 }
 
 void MainWindow::flip_at_once(const CardPlace& place) {

@@ -91,7 +91,7 @@ class MainWindow : public QMainWindow {
     void show_undo();
     void warn(const QString& reason);
     void flip(const CardPlace& place);
-    void go_to(const CardPlace& place);
+    void show_yarns(std::optional<std::size_t> pick, std::optional<std::size_t> end);
     void flip_at_once(const CardPlace& place);
     void wait_for_saving();
     void ask_to_save_over(const QString& path);

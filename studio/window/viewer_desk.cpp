@@ -63,6 +63,7 @@ void ViewerDesk::show_document(Document* document) {
     if (m_document != nullptr) {
         m_document->disconnect(this);
         m_document->focus().disconnect(this);
+        m_document->focus().disconnect(m_panel.viewport());
     }
     m_document = document;
     m_shown_block.clear();
@@ -70,10 +71,12 @@ void ViewerDesk::show_document(Document* document) {
     m_wanted_view = {};
     static_cast<void>(m_panel.set_state(whole_and_free()));  // cut, repeats and lock were of the other design
     ++m_wanted;
+    m_panel.viewport()->let_go();
     m_panel.set_caption(ViewerPanel::Mode::planned, {});
     m_panel.set_no_plan();
     if (document == nullptr) return;
     connect(document, &Document::shown_made, this, &ViewerDesk::plan);
+    connect(&document->focus(), &Focus::block_changed, m_panel.viewport(), &Viewport::let_go);  // its yarns have other numbers
     connect(&document->focus(), &Focus::place_changed, this, [this] {
         const auto& place = m_document->focus().place();
         const BlockPtr& block = m_document->shown().block;
@@ -83,6 +86,13 @@ void ViewerDesk::show_document(Document* document) {
         if (!is_in_sight) plan();
     });
     plan();
+}
+
+void ViewerDesk::point_out(std::optional<std::size_t> pick, std::optional<std::size_t> end) {
+    std::vector<YarnName> yarns;
+    if (pick) yarns.push_back({System::weft, *pick});
+    if (end) yarns.push_back({System::warp, *end});
+    m_panel.viewport()->point_out(std::move(yarns));
 }
 
 std::optional<Region> ViewerDesk::region_to_show(const Block& block) const {

@@ -29,6 +29,8 @@ class ViewerDesk : public QObject {
     [[nodiscard]] Json view() const;
     /// Looks at the document as it was looked at when view() gave this; what does not fit it any more is left out.
     void show_view(const Json& view);
+    /// A pick, an end, or both of the cloth stand out among its yarns, until the person lets go or looks at another block.
+    void point_out(std::optional<std::size_t> pick, std::optional<std::size_t> end);
 
   Q_SIGNALS:
     /// A face of the block was clicked: what is to be attached there?

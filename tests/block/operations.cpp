@@ -185,18 +185,18 @@ TEST_CASE("attaching puts both blocks side by side on all six faces") {
     });
 }
 
-TEST_CASE("attaching names the row or column in which blocks differ") {
+TEST_CASE("attaching names the pick or end at which blocks differ, as a weaver counts") {
     Random random(1);
     const Block one = random_block(random, {1, 2, 1}, {2, 2}),
                 wider = random_block(random, {1, 2, 1}, {2, 3});
     const Block deeper = random_block(random, {1, 2, 3}, {2, 2}),
                 longer = random_block(random, {1, 2}, {2, 2});
     REQUIRE(attach(one, wider, Face::plus_x).error().message ==
-            "cannot attach: column 1 has 2 ends in the block and 3 in the other");
+            "cannot attach: at end 3 the block has 2 ends in a stack and the other 3");
     REQUIRE(attach(one, deeper, Face::minus_y).error().message ==
-            "cannot attach: row 2 has 3 picks in the other and 1 in the block");
+            "cannot attach: at pick 4 the other has 3 picks in a stack and the block 1");
     REQUIRE(attach(one, longer, Face::plus_y).error().message ==
-            "the block has 3 rows and the other 2, which must be equal on the faces that meet");
+            "the block has 4 picks (3 rows) and the other 3 picks (2 rows): the rows must be equal on the faces that meet");
     REQUIRE(attach(one, longer, Face::plus_x));
 }
 
@@ -206,20 +206,20 @@ TEST_CASE("attaching says which block has what, on whichever face") {
                 heel = random_block(random, {1, 2}, {2});
     const std::vector<std::string> toe_sole{"toe", "sole"}, toe_heel{"toe", "heel"};
     CHECK(attach(toe, sole, Face::plus_x, toe_sole).error().message ==
-          "cannot attach: column 1 has 2 ends in 'toe' and 3 in 'sole'");
+          "cannot attach: at end 3 'toe' has 2 ends in a stack and 'sole' 3");
     CHECK(attach(toe, sole, Face::minus_x, toe_sole).error().message ==
-          "cannot attach: column 1 has 3 ends in 'sole' and 2 in 'toe'");
+          "cannot attach: at end 3 'sole' has 3 ends in a stack and 'toe' 2");
     CHECK(attach(toe, sole, Face::plus_y, toe_sole).error().message ==
-          "cannot attach: row 2 has 1 pick in 'toe' and 3 in 'sole'");
+          "cannot attach: at pick 4 'toe' has 1 pick in a stack and 'sole' 3");
     CHECK(attach(toe, sole, Face::minus_y, toe_sole).error().message ==
-          "cannot attach: row 2 has 3 picks in 'sole' and 1 in 'toe'");
+          "cannot attach: at pick 4 'sole' has 3 picks in a stack and 'toe' 1");
     CHECK(attach(toe, heel, Face::plus_x, toe_heel).error().message ==
-          "'toe' has 2 columns and 'heel' 1, which must be equal on the faces that meet");
+          "'toe' has 4 ends (2 columns) and 'heel' 2 ends (1 column): the columns must be equal on the faces that meet");
     CHECK(attach(toe, heel, Face::plus_z, toe_heel).error().message ==
-          "'toe' has 3 rows and 2 columns, 'heel' 2 rows and 1 column; on top of each other they must be "
-          "equal");
+          "'toe' has 4 picks (3 rows) and 4 ends (2 columns), 'heel' 3 picks (2 rows) and 2 ends (1 column); on top of "
+          "each other rows and columns must be equal");
     CHECK_THAT(attach(toe, heel, Face::minus_z, toe_heel).error().message,
-               Catch::StartsWith("'heel' has 2 rows and 1 column, 'toe' 3 rows and 2 columns;"));
+               Catch::StartsWith("'heel' has 3 picks (2 rows) and 2 ends (1 column), 'toe' 4 picks (3 rows) and 4 ends (2 columns);"));
 }
 
 TEST_CASE("a stencil takes each stack from the block that it names") {
@@ -261,13 +261,13 @@ TEST_CASE("a stencil of blocks of different sizes fits where their repeated coun
     const std::vector<BlockPtr> differ{share(random_block(random, {2}, {1, 3})),
                                        share(random_block(random, {2, 2, 1}, {1, 3}))};
     REQUIRE(stencil(differ, map).error().message ==
-            "block 0 and block 1 do not fit together: row 2 has 2 picks in block 0 and 1 in block 1");
+            "block 0 and block 1 do not fit together: at pick 5 block 0 has 2 picks in a stack and block 1 1");
     const std::vector<std::string> names{"ground", "figure"};
     REQUIRE(stencil(differ, map, names).error().message ==
-            "'ground' and 'figure' do not fit together: row 2 has 2 picks in 'ground' and 1 in 'figure'");
+            "'ground' and 'figure' do not fit together: at pick 5 'ground' has 2 picks in a stack and 'figure' 1");
     const std::vector<BlockPtr> wide{share(random_block(random, {2}, {1, 3})),
                                      share(random_block(random, {2}, {1, 2}))};
-    REQUIRE_THAT(stencil(wide, map).error().message, Catch::Contains("column 1 has 3 ends"));
+    REQUIRE_THAT(stencil(wide, map).error().message, Catch::Contains("at end 2 block 0 has 3 ends in a stack"));
     REQUIRE_FALSE(stencil(fits, StencilMap{}));
     REQUIRE_FALSE(stencil({}, map));
 }

@@ -248,7 +248,7 @@ TEST_CASE("a design that does not evaluate says which block and why, and evaluat
     REQUIRE_FALSE(failed);
     CHECK(failed.error().code == ErrorCode::bad_input);
     CHECK(failed.error().text() ==
-          "blocks.cloth: 'heel' has 6 rows and 'sole' 4, which must be equal on the faces that meet");
+          "blocks.cloth: 'heel' has 6 picks (6 rows) and 'sole' 4 picks (4 rows): the rows must be equal on the faces that meet");
     edited(design, undo);
     CHECK(computed_for(evaluator, design) == 0);
 
@@ -364,10 +364,10 @@ TEST_CASE("blocks that do not fit are named in the error, in attachments and ste
     Design design = shoe();
     edited(design, PutBlock{"heel", leaf({{"T0 P0"}, {"T0 P0"}, {"T0 P0"}, {"T0 T1 P0"}})});
     CHECK(evaluate(design).error().text() ==
-          "blocks.cloth: cannot attach: row 3 has 2 picks in 'heel' and 1 in 'sole'");
+          "blocks.cloth: cannot attach: at pick 4 'heel' has 2 picks in a stack and 'sole' 1");
     edited(design, PutBlock{"cloth", stencil_of({"toe", "heel"}, 4, 2, {0, 0, 0, 0, 1, 1, 1, 1})});
     CHECK(evaluate(design).error().text() ==
-          "blocks.cloth: 'toe' and 'heel' do not fit together: row 3 has 1 pick in 'toe' and 2 in 'heel'");
+          "blocks.cloth: 'toe' and 'heel' do not fit together: at pick 4 'toe' has 1 pick in a stack and 'heel' 2");
 }
 
 namespace {

@@ -53,7 +53,7 @@ Compared compared(std::size_t picks, std::size_t ends, const Places& changed) {
     DesignDiff diff;
     diff.card = diff_cards(before.cloth->card, after.cloth->card);
     std::vector<Mark> marks;
-    const std::string file = draw_diff(before, after, diff, PictureFormat::png, &marks).value();
+    const std::string file = draw_diff(before, after, diff, PictureFormat::png, {.marks = &marks}).value();
     REQUIRE(draw_diff(before, after, diff, PictureFormat::svg));
     return {read_pixels(file), says(marks, "ring round changes too small")};
 }
@@ -79,6 +79,33 @@ TEST_CASE("one changed crossing of a large card gets a ring that is seen beside 
     CHECK(rings[0].centre.y == Approx(grid.centre(5102, 1046).y));
     CHECK(rings[0].radius >= 6000 / 100);
     CHECK(ChangeRings(grid).line() >= 6000 / 600);
+}
+
+TEST_CASE("a comparison to stand beside words is small whatever the cards, with numbers as large as any, and as fine as asked for") {
+    for (const auto& [picks, ends] : {std::pair<std::size_t, std::size_t>{6000, 2400}, {30, 40}}) {
+        const WovenDesign before = plain(picks, ends, {}), after = plain(picks, ends, {{17, 12}});
+        DesignDiff diff;
+        diff.card = diff_cards(before.cloth->card, after.cloth->card);
+        for (const int scale : {1, 2}) {
+            INFO(picks << " picks, scale " << scale);
+            std::vector<Mark> marks;
+            const DiffLook look{.wanted_side = 240, .longest_side = 240, .scale = scale, .has_words = false, .marks = &marks};
+            const Pixels pixels = read_pixels(draw_diff(before, after, diff, PictureFormat::png, look).value());
+            CHECK(pixels.width <= static_cast<std::size_t>(480 * scale));
+            CHECK(pixels.height <= static_cast<std::size_t>(520 * scale));
+            const auto is_number = [](const Mark& mark) { return mark.kind == Mark::Kind::text && mark.text.find_first_not_of("0123456789") == std::string::npos; };
+            REQUIRE(std::ranges::any_of(marks, is_number));
+            for (const Mark& mark : marks) CHECK((!is_number(mark) || mark.size >= 10));
+            CHECK(says(marks, "end lifted"));
+            CHECK_FALSE(says(marks, "card image compared"));
+            // Drawn whole: the frame's lower right corner is where it was, so many times as far.
+            const Grid grid = make_grid(picks, ends, 28, 240, 240);
+            const double right = scale * (Page::margin + grid_left + static_cast<double>(grid.width())), middle = scale * (Page::margin + 26 + 10.0);
+            bool is_framed = false;
+            for (int x = -scale; x <= scale; ++x) is_framed = is_framed || pixels.at({right + x, middle}).red < 0x90;
+            CHECK(is_framed);
+        }
+    }
 }
 
 TEST_CASE("every change of some scattered at random lies in a ring") {

@@ -183,9 +183,9 @@ TEST_CASE("attach refuses what does not fit and names the row or column") {
     shop.refused({"attach", "plain.weave", "satin.weave", "--face", "+x", "-o", "new.weave"}, 3, {"column"});
     shop.refused({"attach", "plain.weave", "satin.weave", "--face", "+y", "-o", "new.weave"}, 3, {"row"});
     shop.refused({"attach", "plain.weave", "satin.weave", "--face", "-z", "-o", "new.weave"}, 3, {"row"});
-    shop.refused({"attach", "plain.weave", "double.weave", "--face", "-y", "-o", "new.weave"}, 3, {"row 0"});
+    shop.refused({"attach", "plain.weave", "double.weave", "--face", "-y", "-o", "new.weave"}, 3, {"at pick 1 "});
     shop.refused({"attach", "plain.weave", "double.weave", "--face", "-x", "-o", "new.weave"}, 3,
-                 {"column 0"});
+                 {"at end 1 "});
 }
 
 TEST_CASE("tile refuses a cloth that is larger than any card may be") {

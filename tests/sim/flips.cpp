@@ -132,6 +132,27 @@ TEST_CASE("a crossing of relaxed cloth changes sides, and no other does") {
     }
 }
 
+// The yarns round some of these lie so that the first segment of one has a share in its last row alone.
+TEST_CASE("a crossing is flipped at each of its places in a small cloth, one after the other") {
+    Design design = find_sample("plain")->make();
+    REQUIRE(apply_edit(design, PutBlock{"cloth", std::make_shared<const Node>(Node{TileOperation{design.root, 2, 3, 1}, {}})}));
+    REQUIRE(apply_edit(design, SetRoot{"cloth"}));
+    const BlockPtr block = evaluate(design)->block;
+    SimulationRequest request;
+    request.fidelity = Fidelity::draft;
+    request.reduce = false;
+    SimulationOptions options;
+    options.threads = 1;
+    for (const std::size_t pick : {1, 3}) {
+        for (const std::size_t end : {1, 3, 5}) options.flips.push_back({pick, end, !block->weft_over(pick, end)});
+    }
+    const Yarns yarns = simulate(design, make_plan(design, *block, request).value(), options);
+    const Json& flips = yarns.report.at("flips");
+    REQUIRE(flips.size() == 6);
+    for (const Json& flip : flips) CHECK(flip.at("done") == true);
+    CHECK(yarns.report.at("order_kept") == true);
+}
+
 TEST_CASE("a flip that the card cannot make alone, or has made, is not tried in the cloth") {
     Relaxed of = relaxed("layer-to-layer");
     SimulationOptions options;

@@ -26,6 +26,9 @@ TEST_CASE("a plan's points are those of its yarns, and memory grows with them") 
     }
     CHECK(expected_bytes(1'000'000) > 5'700'000'000);  // as was measured of 980,000
     CHECK(expected_bytes(2000) < 100'000'000);
+    CHECK(points_within(expected_bytes(2000)) == 2000);
+    CHECK(points_within(expected_bytes(2000) - 1) == 1999);
+    CHECK(points_within(1000) == 0);
     CHECK(memory_text(std::uint64_t{56} << 20) == "56 MiB");
     CHECK(memory_text(std::uint64_t{31} << 30) == "31.0 GiB");
 }

@@ -1,3 +1,4 @@
+#include <weave/block/changes.hpp>
 #include <weave/curve/cloth_curves.hpp>
 
 #include <studio/commands/add_block.hpp>

@@ -2,6 +2,7 @@
 
 #include <weave/design/edit.hpp>
 
+#include <set>
 #include <studio/commands/tile_block.hpp>
 #include <studio/editors/card_editor.hpp>
 #include <studio/panels/findings_panel.hpp>
@@ -23,6 +24,16 @@ using namespace weave::studio::test;
 
 namespace {
 
+using Places = std::set<std::pair<std::size_t, std::size_t>>;  // picks and ends from 1
+
+/// The cloth of a design, now a block `of`, so many times.
+Design repeated(Design design, std::size_t x, std::size_t y) {
+    REQUIRE(apply_edit(design, RenameBlock{design.root, "of"}));
+    REQUIRE(apply_edit(design, PutBlock{"cloth", std::make_shared<const Node>(Node{TileOperation{"of", x, y, 1}, {}})}));
+    REQUIRE(apply_edit(design, SetRoot{"cloth"}));
+    return design;
+}
+
 /// A window with a design that relaxes as a draft.
 class Loom {
   public:
@@ -33,8 +44,9 @@ class Loom {
         QApplication::setActiveWindow(&window);
         open(name);
     }
-    void open(const char* name) {
-        window.show_design(sample(name), {}, true);
+    void open(const char* name) { open(sample(name)); }
+    void open(Design design) {
+        window.show_design(std::move(design), {}, true);
         simulation().fidelity()->choice()->setCurrentIndex(0);
         settle();
     }
@@ -56,6 +68,16 @@ class Loom {
     [[nodiscard]] bool follows(std::size_t flips) {
         const auto& yarns = simulation().state().yarns;
         return simulation().state().phase == RunPhase::at_rest && yarns && yarns->report.contains("flips") && yarns->report.at("flips").size() == flips;
+    }
+    /// The crossings that the run turned and did not turn back.
+    [[nodiscard]] Places turned() {
+        Places places;
+        for (const Json& flip : simulation().state().yarns->report.at("flips")) {
+            if (!flip.at("done").get<bool>()) continue;
+            const std::pair place{flip.at("pick").get<std::size_t>(), flip.at("end").get<std::size_t>()};
+            if (!places.insert(place).second) places.erase(place);
+        }
+        return places;
     }
     template <class Widget>
     Widget& find(const QString& name = {}) {
@@ -114,6 +136,35 @@ TEST_CASE("a flip made on the card is led into the simulated cloth, and the othe
     CHECK_FALSE(loom.simulation().is_out_of_date());
 }
 
+TEST_CASE("a flip in a block that is repeated is led at each of its places in the simulated cloth, and back when it is undone") {
+    Loom loom("plain");
+    loom.open(repeated(sample("twill-2-2"), 2, 2));
+    loom.relax();
+    REQUIRE(loom.document().perform({"flip", {PutFlip{"of", loom.flip_at(1, 1)}}}));
+    REQUIRE(loom.until([&] { return loom.follows(4); }));
+    CHECK(loom.turned() == Places{{2, 2}, {2, 6}, {6, 2}, {6, 6}});
+    CHECK_FALSE(loom.simulation().is_out_of_date());
+    CHECK(loom.flips().empty());
+    CHECK(loom.document().undo_stack().count() == 1);
+    loom.document().undo();
+    REQUIRE(loom.until([&] { return loom.follows(8); }));
+    CHECK(loom.turned().empty());
+    CHECK_FALSE(loom.simulation().is_out_of_date());
+}
+
+TEST_CASE("a block that is flipped at more places than are led leaves the run out of date, until that is undone") {
+    Loom loom("plain");
+    loom.open(repeated(sample("plain"), 9, 9));
+    loom.simulation().step_action()->trigger();
+    REQUIRE(loom.until([&] { return loom.simulation().state().phase == RunPhase::paused; }));
+    REQUIRE(loom.document().perform({"flip", {PutFlip{"of", loom.flip_at(1, 1)}}}));
+    REQUIRE(loom.until([&] { return loom.simulation().is_out_of_date(); }));
+    loom.document().undo();
+    REQUIRE(loom.until([&] { return !loom.simulation().is_out_of_date(); }));
+    REQUIRE(loom.document().perform({"another weave", {PutBlock{"of", std::make_shared<const Node>(Node{PresetLeaf{{"basket", {}}}, {}})}}}));
+    CHECK(loom.simulation().is_out_of_date());  // no flip: that is known at once
+}
+
 TEST_CASE("a flip made in space is one edit, and its undo turns the cloth back") {
     Loom loom("plain");
     loom.relax();
@@ -128,16 +179,31 @@ TEST_CASE("a flip made in space is one edit, and its undo turns the cloth back")
 
 TEST_CASE("a flip that the run does not take leaves it out of date, until the flip is undone") {
     Loom loom("plain");
+    loom.open(repeated(sample("plain"), 8, 8));
+    RegionGroup& region = *loom.simulation().region();
+    region.part()->setChecked(true);
+    region.last_row()->setValue(6);
+    region.last_column()->setValue(6);
     loom.relax();
     std::vector<bool> told;
     QObject::connect(&loom.simulation(), &SimulationPanel::dated_changed, &loom.window, [&](bool is_dated) { told.push_back(is_dated); });
-    REQUIRE(loom.document().perform(loom.flipping({500, 500, true})));
+    REQUIRE(loom.document().perform(loom.flipping(loom.flip_at(12, 12))));  // beside the part
     REQUIRE(loom.until([&] { return loom.simulation().is_out_of_date(); }));
-    CHECK(loom.simulation().message_bar()->words().contains("does not follow at pick 501, end 501"));
+    CHECK(loom.simulation().message_bar()->words().contains("does not follow at pick 13, end 13"));
     CHECK(loom.simulation().sentence()->text().startsWith("The design before the change: "));
     loom.document().undo();
-    CHECK_FALSE(loom.simulation().is_out_of_date());
+    REQUIRE(loom.until([&] { return !loom.simulation().is_out_of_date(); }));
     CHECK(told == std::vector{true, false});
+}
+
+TEST_CASE("a flip that has no place in the cloth changes nothing, and the run goes on as of this design") {
+    Loom loom("plain");
+    loom.relax();
+    REQUIRE(loom.document().perform(loom.flipping({500, 500, true})));
+    loom.settle();
+    QTest::qWait(50);
+    CHECK_FALSE(loom.simulation().is_out_of_date());
+    CHECK(loom.simulation().message_bar()->words().isEmpty());
 }
 
 TEST_CASE("evidence is of what was simulated, where that ran, and no file") {
@@ -189,6 +255,23 @@ TEST_CASE("findings are of the document that is shown, and none where there is n
     CHECK(loom.find<QLabel>("findings_summary").text().contains("not looked for yet"));
     CHECK(loom.find<QDockWidget>("findings-dock").windowTitle() == "Findings");
     REQUIRE(loom.until([&] { return findings.report().has_value(); }));
+}
+
+TEST_CASE("findings that are still looked for when a document goes do not come afterwards") {
+    const weave::testing::TemporaryFolder folder;
+    Document document(sample("plain"), {}, true, folder.path);
+    FindingsPanel panel;
+    panel.show_document(&document);
+    bool is_left = false;
+    QObject::connect(panel.findChild<QTimer*>({}, Qt::FindDirectChildrenOnly), &QTimer::timeout, &panel, [&] {  // right after the look began
+        if (!document.whole().block) return;
+        panel.show_document(nullptr);
+        is_left = true;
+    });
+    REQUIRE(QTest::qWaitFor([&] { return is_left; }, patience_ms));
+    QThreadPool::globalInstance()->waitForDone();
+    QCoreApplication::processEvents();
+    CHECK_FALSE(panel.report());
 }
 
 TEST_CASE("the loom stays when another profile is asked for and not chosen") {

@@ -7,9 +7,10 @@
 #include <catch2/catch.hpp>
 
 #include <QElapsedTimer>
+#include <QRegularExpression>
 
 #include <studio/jobs/local_relaxation.hpp>
-#include <studio/jobs/plan_summary.hpp>
+#include <studio/jobs/memory_room.hpp>
 #include <studio/support/follow_run.hpp>
 
 using namespace weave;
@@ -244,40 +245,73 @@ TEST_CASE("a run that is stopped while its yarns are laid out is stopped at once
     CHECK_FALSE(run.is_open());
 }
 
-TEST_CASE("a cloth with no room at all is refused before it is laid out, and a draft is not told to be one") {
+TEST_CASE("a cloth with no room at all is refused before it is laid out, with what has room; a draft is not told to be one") {
     const Design shoe = sample("shoe-adult");
     const Evaluation evaluation = evaluate(shoe).value();
-    const auto points = foreseen_points(shoe, *evaluation.block, request_at(sim::Fidelity::draft).plan);
-    REQUIRE(points);
-    CHECK(*points > 5'000'000);  // 14 million, as its plan has them
-    CHECK(*points < 60'000'000);
+    const auto need = foreseen_need(shoe, *evaluation.block, request_at(sim::Fidelity::draft).plan);
+    REQUIRE(need);
+    CHECK(need->points > 7'000'000);  // 14 million, as its plan has them
+    CHECK(need->points < 20'000'000);
     LocalRelaxation run(LocalMeans{.threads = 1, .memory_bytes = std::uint64_t{2} << 30});
     FollowedRun told(run);
     run.start(shoe, request_at(sim::Fidelity::draft));
     REQUIRE(QTest::qWaitFor([&] { return told.error.has_value(); }, patience_ms));
     CHECK_FALSE(told.plan);
-    CHECK_THAT(told.error->message, Catch::Contains("simulate a part of the cloth") && !Catch::Contains("draft"));
-    CHECK_THAT(lack_of_memory(2, 1, sim::Fidelity::standard).message, Catch::Contains("or as draft"));
+    CHECK_THAT(told.error->message, Catch::Contains("simulate a part of the cloth, of about") && !Catch::Contains("draft"));
+    CHECK_THAT(told.error->message, Catch::Contains("2.0 GiB are free"));
+    CHECK_THAT(check_room({1'000'000, 100, sim::Fidelity::standard}, {1, {}}).error().message, Catch::Contains("or as draft"));
 }
 
-TEST_CASE("memory is foreseen about as the plan has it") {
-    std::size_t planned = 0;
-    for (const char* name : {"plain", "angle-interlock-b", "hexagon-tubes", "pocket"}) {
+TEST_CASE("the part that is said to have room has, and a larger one has none") {
+    const Design shoe = sample("shoe-adult");
+    const Evaluation evaluation = evaluate(shoe).value();
+    sim::SimulationRequest request = request_at(sim::Fidelity::draft).plan;
+    const MemoryRoom room{std::uint64_t{1} << 30, {}};
+    const Status refused = check_room(foreseen_need(shoe, *evaluation.block, request).value(), room);
+    REQUIRE_FALSE(refused);
+    const QRegularExpressionMatch told = QRegularExpression("about (\\d+) rows and (\\d+) columns").match(QString::fromStdString(refused.error().message));
+    REQUIRE(told.hasMatch());
+    const std::size_t lines = told.captured(1).toULongLong();
+    CHECK(told.captured(2).toULongLong() == lines);
+    request.region = Region{0, lines - 1, 0, lines - 1};
+    CHECK(check_room(foreseen_need(shoe, *evaluation.block, request).value(), room));
+    request.region = Region{0, lines + lines / 4, 0, lines + lines / 4};
+    CHECK_FALSE(check_room(foreseen_need(shoe, *evaluation.block, request).value(), room));
+}
+
+TEST_CASE("memory is foreseen about as the plan has it, of a part as well") {
+    const auto compare = [](const char* name, std::optional<Region> region) {
         INFO(name);
         Design design = sample(name);
         design.scene.boundary_x = design.scene.boundary_y = Boundary::frozen;
         const Evaluation evaluation = evaluate(design).value();
-        const sim::SimulationRequest request = request_at(sim::Fidelity::draft).plan;
+        sim::SimulationRequest request = request_at(sim::Fidelity::draft).plan;
+        request.region = region;
         const auto plan = sim::make_plan(design, *evaluation.block, request);
-        if (!plan) continue;  // too small to be held at its rims
-        ++planned;
-        const auto points = foreseen_points(design, *evaluation.block, request);
-        REQUIRE(points);
-        CHECK(*points >= sim::points_of(*plan) / 4);
-        CHECK(*points <= 4 * sim::points_of(*plan));
-    }
+        if (!plan) return false;  // too small to be held at its rims
+        const MemoryNeed foreseen = foreseen_need(design, *evaluation.block, request).value(), planned = need_of(*plan);
+        CHECK(foreseen.points >= planned.points / 2);
+        CHECK(foreseen.points <= 2 * planned.points);
+        CHECK(foreseen.stacks == planned.stacks);
+        return true;
+    };
+    int planned = 0;
+    for (const char* name : {"plain", "angle-interlock-b", "hexagon-tubes", "pocket"}) planned += compare(name, {}) ? 1 : 0;
     CHECK(planned >= 1);
-    CHECK_FALSE(foreseen_points(sample("plain"), *evaluate(sample("plain")).value().block, {}));  // its repeat may do
+    CHECK(compare("shoe-adult", Region{400, 419, 200, 219}));
+    CHECK_FALSE(foreseen_need(sample("plain"), *evaluate(sample("plain")).value().block, {}));  // its repeat may do
+}
+
+TEST_CASE("a cloth that needs more than is free is refused before it is laid out, also where it is not much more") {
+    Design design = sample("pocket");
+    design.scene.boundary_x = design.scene.boundary_y = Boundary::frozen;
+    const Evaluation evaluation = evaluate(design).value();
+    const std::uint64_t needed = sim::expected_bytes(foreseen_need(design, *evaluation.block, request_at(sim::Fidelity::draft).plan).value().points);
+    LocalRelaxation run(LocalMeans{.threads = 1, .memory_bytes = needed - 1});
+    FollowedRun told(run);
+    run.start(design, request_at(sim::Fidelity::draft));
+    REQUIRE(QTest::qWaitFor([&] { return told.error.has_value(); }, patience_ms));
+    CHECK_FALSE(told.plan);
 }
 
 TEST_CASE("a design that cannot be simulated is told as it is") {

@@ -22,9 +22,10 @@ namespace {
 /// A simd of its own on a Unix socket, in a folder that goes away with the test.
 class Server {
   public:
-    Server() { start(); }
+    explicit Server(Json settings = Json::object()) : m_settings(std::move(settings)) { start(); }
     void start() {
-        std::ofstream(config()) << R"({"address":""})";
+        m_settings["address"] = "";
+        std::ofstream(config()) << m_settings;
         m_program.emplace(
             "simd", std::vector<std::string>{"serve", folder().string(), "--config", config(), "--json"},
             (m_folder.path / "told").string());
@@ -52,6 +53,7 @@ class Server {
     [[nodiscard]] std::filesystem::path folder() const { return m_folder.path / "box"; }
     [[nodiscard]] std::string config() const { return (m_folder.path / "config.json").string(); }
     weave::testing::TemporaryFolder m_folder;
+    Json m_settings;
     std::optional<weave::testing::Program> m_program;
 };
 
@@ -87,6 +89,19 @@ TEST_CASE("a run on a server comes to the bits of one here, and its session is c
         CHECK(server.sessions() == 1);
     }
     CHECK(QTest::qWaitFor([&] { return server.sessions() == 0; }, patience_ms));
+}
+
+TEST_CASE("a cloth that a server can never have room for is refused here, with what the server has, before it is laid out") {
+    const Server server(Json{{"memory_mib", 41}});
+    Design design = sample("pocket");
+    design.scene.boundary_x = design.scene.boundary_y = Boundary::frozen;
+    RemoteRelaxation run(server.wish());
+    FollowedRun told(run);
+    run.start(design, request_at(sim::Fidelity::draft));
+    REQUIRE(QTest::qWaitFor([&] { return told.error.has_value(); }, patience_ms));
+    CHECK_FALSE(told.plan);
+    CHECK_THAT(told.error->message, Catch::Contains("41 MiB is all that there is on unix:") && Catch::Contains("simulate a part of the cloth"));
+    CHECK_THAT(told.error->message, !Catch::Contains("on a server"));
 }
 
 TEST_CASE("a run on a server takes parameters and flips, and tells what is refused") {

@@ -129,6 +129,20 @@ TEST_CASE("slice: the tools are whole where the editor is narrow, and where lett
     QApplication::setFont(usual);
 }
 
+TEST_CASE("slice: the way to the tools that find no room is seen on dark paper") {
+    SliceEditor editor;
+    editor.setPalette(dark());
+    check_tools(editor);
+    auto* more = editor.findChild<QToolBar*>("slice_tools")->findChild<QToolButton*>("qt_toolbar_ext_button");
+    REQUIRE(more->isVisible());
+    const QImage seen = more->grab().toImage();
+    int lightest = 0;
+    for (int y = 0; y < seen.height(); ++y) {
+        for (int x = 0; x < seen.width(); ++x) lightest = std::max(lightest, qGray(seen.pixel(x, y)));
+    }
+    CHECK(lightest - qGray(dark().color(QPalette::Window).rgb()) > 100);
+}
+
 TEST_CASE("slice: the chooser of lines is long where the editor is narrow") {
     SliceEditor editor;
     editor.resize(500, 420);

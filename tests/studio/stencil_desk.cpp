@@ -37,6 +37,24 @@ Design two_stencils() {
     return design;
 }
 
+/// A window in which a stencil of one block was just begun, and is seen.
+struct StencilCase {
+    StencilCase() {
+        window.show();
+        REQUIRE(QTest::qWaitForWindowExposed(&window));
+        QApplication::setActiveWindow(&window);
+        window.show_sample("twill-2-2");
+        REQUIRE(until([&] { return window.document()->shown_is_current(); }));
+        choose(window, {"Block", "Stencil from the block shown"});
+        window.findChild<QTabWidget*>("editors")->setCurrentWidget(&editor());
+        REQUIRE(until([&] { return editor().isVisible() && window.document()->shown_is_current(); }));
+    }
+    StencilEditor& editor() { return *window.findChild<StencilEditor*>(); }
+    StencilCanvas& canvas() { return editor().canvas(); }
+
+    MainWindow window;
+};
+
 }  // namespace
 
 TEST_CASE("stencil: a picture that was asked for in one stencil never comes into another") {
@@ -76,42 +94,24 @@ TEST_CASE("stencil: a picture that was asked for in one stencil never comes into
 }
 
 TEST_CASE("stencil: Space paints where the focus is, and runs no simulation") {
-    MainWindow window;
-    window.show();
-    REQUIRE(QTest::qWaitForWindowExposed(&window));
-    QApplication::setActiveWindow(&window);
-    window.show_sample("twill-2-2");
-    REQUIRE(until([&] { return window.document()->shown_is_current(); }));
-    choose(window, {"Block", "Stencil from the block shown"});
-    auto* stencil = window.findChild<StencilEditor*>();
-    window.findChild<QTabWidget*>("editors")->setCurrentWidget(stencil);
-    REQUIRE(until([&] { return stencil->isVisible() && window.document()->shown_is_current(); }));
-    QSignalSpy runs(window.findChild<SimulationPanel*>()->run_action(), &QAction::triggered);
-    QAction* run = window.findChild<SimulationPanel*>()->run_action();
+    StencilCase shown;
+    QAction* run = shown.window.findChild<SimulationPanel*>()->run_action();
+    QSignalSpy runs(run, &QAction::triggered);
     REQUIRE(until([&] { return run->isEnabled(); }));
-    stencil->canvas().setFocus();
-    REQUIRE(stencil->canvas().hasFocus());
-    stencil->canvas().set_tool(StencilTool::pick);
-    QSignalSpy picked(&stencil->canvas(), &StencilCanvas::block_picked);
-    QTest::keyClick(&stencil->canvas(), Qt::Key_Space);
+    shown.canvas().setFocus();
+    REQUIRE(shown.canvas().hasFocus());
+    shown.canvas().set_tool(StencilTool::pick);
+    QSignalSpy picked(&shown.canvas(), &StencilCanvas::block_picked);
+    QTest::keyClick(&shown.canvas(), Qt::Key_Space);
     CHECK(runs.isEmpty());
     CHECK(picked.size() == 1);
 }
 
 TEST_CASE("stencil: keys of the view act on the editor that is in sight") {
-    MainWindow window;
-    window.show();
-    REQUIRE(QTest::qWaitForWindowExposed(&window));
-    QApplication::setActiveWindow(&window);
-    window.show_sample("twill-2-2");
-    REQUIRE(until([&] { return window.document()->shown_is_current(); }));
-    choose(window, {"Block", "Stencil from the block shown"});
-    auto* stencil = window.findChild<StencilEditor*>();
-    window.findChild<QTabWidget*>("editors")->setCurrentWidget(stencil);
-    REQUIRE(until([&] { return stencil->isVisible(); }));
-    const double before = stencil->canvas().mapping().cell();
-    choose(window, {"View", "Smaller"});
-    CHECK(stencil->canvas().mapping().cell() < before);
+    StencilCase shown;
+    const double before = shown.canvas().mapping().cell();
+    choose(shown.window, {"View", "Smaller"});
+    CHECK(shown.canvas().mapping().cell() < before);
 }
 
 TEST_CASE("the picture of changes takes Space for itself") {

@@ -167,7 +167,7 @@ TEST_CASE("stencil: a block that does not fit is grey, says why, and paints noth
     REQUIRE(list.item(0)->text().startsWith("plain\n4 stack"));
     REQUIRE(
         list.item(1)->text().toStdString() ==
-        "double\n'plain' and 'double' do not fit together: row 0 has 1 pick in 'plain' and 2 in 'double'");
+        "double\n'plain' and 'double' do not fit together: at pick 1 'plain' has 1 pick in a stack and 'double' 2");
     REQUIRE(list.item(1)->foreground().color() ==
             open.editor.palette_list().palette().color(QPalette::Disabled, QPalette::Text));
     REQUIRE(open.editor.findChild<QLabel*>("stencil_trouble")->isVisible());

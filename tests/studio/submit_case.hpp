@@ -32,6 +32,8 @@ class SubmitWindow {
         REQUIRE(QTest::qWaitForWindowExposed(&panel));
         open_sample("pocket");
     }
+    /// Of dora, a designer, who is signed in.
+    explicit SubmitWindow(const Mill& mill) : SubmitWindow(mill.session_of("dora")) { wait_signed_in(); }
 
     void open_sample(const std::string& name) { open(find_sample(name)->make()); }
     void open(const Design& made) {
@@ -85,6 +87,12 @@ class SubmitWindow {
     }
     void wait_signed_in() {
         REQUIRE(wait([&] { return panel.desk().access().signed_in; }));
+    }
+    /// Saves a revision, the first under this name.
+    void save(const std::string& name, const std::string& note) {
+        type("new_design", name);
+        write_note(note);
+        click("save_revision");
     }
     void submit(const std::string& note) {
         write_note(note);

@@ -80,8 +80,7 @@ TEST_CASE("submit: a simulation server signs what it finds, and the mill takes i
     ScriptedSimd simd;
     simd.work = signing(key, mill.site());
     const KnownServer known(simd.origin());
-    SubmitWindow window(mill.session_of("dora"));
-    window.wait_signed_in();
+    SubmitWindow window(mill);
     window.type("new_design", "cloth");
     choose(window, "standard");
     window.wait_for("signed_evidence", "Signed: standard, at rest; it is filed with the revision");
@@ -108,8 +107,7 @@ TEST_CASE("submit: a simulation server signs what it finds, and the mill takes i
 TEST_CASE("submit: evidence of a stranger is refused in words, and is no obstacle") {
     const Mill mill;
     const KeyPair stranger = KeyPair::generate();
-    SubmitWindow window(mill.session_of("dora"));
-    window.wait_signed_in();
+    SubmitWindow window(mill);
     window.type("new_design", "cloth");
     const std::string file = mill.at("evidence.json");
     REQUIRE(write_file(file, wire::write_evidence(signed_by(stranger, mill.site(), report_of(window.design)))));
@@ -123,8 +121,7 @@ TEST_CASE("submit: evidence of a stranger is refused in words, and is no obstacl
 TEST_CASE("submit: signed evidence of another design, of another scene, and what is none are refused with the file") {
     const Mill mill;
     const KeyPair key = KeyPair::generate();
-    SubmitWindow window(mill.session_of("dora"));
-    window.wait_signed_in();
+    SubmitWindow window(mill);
     const std::string file = mill.at("evidence.json");
     const auto refused = [&](const std::string& bytes, const char* words) {
         REQUIRE(write_file(file, bytes));
@@ -148,8 +145,7 @@ TEST_CASE("submit: a server that has no key, or gives evidence of something else
     const KeyPair key = KeyPair::generate();
     ScriptedSimd simd;
     const KnownServer known(simd.origin());
-    SubmitWindow window(mill.session_of("dora"));
-    window.wait_signed_in();
+    SubmitWindow window(mill);
     simd.signs = false;
     simd.work = signing(key, mill.site());
     choose(window, "reference");

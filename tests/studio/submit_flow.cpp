@@ -1,5 +1,7 @@
 #include "submit_case.hpp"
 
+#include <studio/panels/scaled_picture.hpp>
+
 using namespace weave;
 using namespace weave::studio;
 using namespace weave::studio::test;
@@ -32,8 +34,7 @@ TEST_CASE("submit: a wrong password and a wrong fingerprint are refused, the rig
 
 TEST_CASE("submit: who signed in by a command is signed in here too, and the other way round") {
     const Mill mill;
-    SubmitWindow window(mill.session_of("dora"));
-    window.wait_signed_in();
+    SubmitWindow window(mill);
     QTest::mouseClick(&window.find<QPushButton>("sign_out"), Qt::LeftButton);
     REQUIRE(window.wait([&] { return !window.panel.desk().access().signed_in; }));
     window.type("password", Mill::password);  // mill, fingerprint and name stand there already
@@ -67,17 +68,18 @@ TEST_CASE(
 
 TEST_CASE("submit: a second revision shows what changed, and a rejection its reason") {
     const Mill mill;
-    SubmitWindow window(mill.session_of("dora"));
-    window.wait_signed_in();
-    window.type("new_design", "cloth");
-    window.write_note("A first try");
-    window.click("save_revision");
+    SubmitWindow window(mill);
+    window.save("cloth", "A first try");
     window.wait_for("state", "Revision 1 is saved, not submitted");
     window.wait_for("changes", "is what revision 1 holds");
 
     window.open_sample("twill-2-2");
     window.wait_for("changes", "crossings differ");
-    CHECK(window.find<QWidget>("change_picture").isVisible());
+    const auto& picture = window.find<ScaledPicture>("change_picture");
+    CHECK(picture.isVisible());
+    const double share = picture.heightForWidth(400) / picture.image().deviceIndependentSize().height();
+    CHECK(share * 11 >= 9);                          // its numbers are 11 pixels high
+    CHECK(picture.image().devicePixelRatio() == 2);  // and sharp at 200 %
     QTest::keyClick(&window.find<QWidget>("all_changes"), Qt::Key_Space);
     CHECK(window.find<QPlainTextEdit>("change_words").toPlainText().contains("revision 1"));
 
@@ -97,8 +99,7 @@ TEST_CASE("submit: a second revision shows what changed, and a rejection its rea
 
 TEST_CASE("submit: a wrong signing password keeps what was saved, and the mill's words are shown") {
     const Mill mill;
-    SubmitWindow window(mill.session_of("dora"));
-    window.wait_signed_in();
+    SubmitWindow window(mill);
     window.type("new_design", "cloth");
     window.write_note("Mine");
     window.type("signing_password", "not it");
@@ -115,11 +116,8 @@ TEST_CASE("submit: a wrong signing password keeps what was saved, and the mill's
 
 TEST_CASE("submit: a revision that cannot be compared keeps nobody from saving") {
     const Mill mill;
-    SubmitWindow window(mill.session_of("dora"));
-    window.wait_signed_in();
-    window.type("new_design", "cloth");
-    window.write_note("First");
-    window.click("save_revision");
+    SubmitWindow window(mill);
+    window.save("cloth", "First");
     window.wait_for("changes", "is what revision 1 holds");
     window.write_note("Second");
     window.open_sample("twill-2-2");
@@ -136,11 +134,8 @@ TEST_CASE("submit: what was had from one mill is not taken for another's of the 
     REQUIRE(write_file(file, write_document(find_sample("twill-2-2")->make())));
     other.as("dora", {"design", "make", "cloth"});
     other.as("dora", {"save", file, "cloth", "--message", "Another cloth"});
-    SubmitWindow window(one.session_of("dora"));
-    window.wait_signed_in();
-    window.type("new_design", "cloth");
-    window.write_note("First");
-    window.click("save_revision");
+    SubmitWindow window(one);
+    window.save("cloth", "First");
     window.wait_for("changes", "is what revision 1 holds");
     QTest::mouseClick(&window.find<QPushButton>("sign_out"), Qt::LeftButton);
     REQUIRE(window.wait([&] { return !window.panel.desk().access().signed_in; }));
@@ -151,8 +146,7 @@ TEST_CASE("submit: what was had from one mill is not taken for another's of the 
 
 TEST_CASE("submit: a space in a new name is a hyphen, and an invitation has its way in") {
     const Mill mill;
-    SubmitWindow window(mill.session_of("dora"));
-    window.wait_signed_in();
+    SubmitWindow window(mill);
     window.type("new_design", "My stencil");
     CHECK(window.find<QLineEdit>("new_design").text() == "My-stencil");
     CHECK(window.text("greeting").contains("loomlink user join"));
@@ -160,11 +154,8 @@ TEST_CASE("submit: a space in a new name is a hyphen, and an invitation has its 
 
 TEST_CASE("submit: somebody who saved first is not overwritten unseen") {
     const Mill mill;
-    SubmitWindow window(mill.session_of("dora"));
-    window.wait_signed_in();
-    window.type("new_design", "cloth");
-    window.write_note("Mine");
-    window.click("save_revision");
+    SubmitWindow window(mill);
+    window.save("cloth", "Mine");
     window.wait_for("state", "Revision 1 is");
     const std::string other = mill.at("other.weave");
     REQUIRE(write_file(other, write_document(find_sample("twill-2-2")->make())));
@@ -175,8 +166,7 @@ TEST_CASE("submit: somebody who saved first is not overwritten unseen") {
 
 TEST_CASE("submit: a mill that is gone is told in words, and all goes on when it is back") {
     Mill mill;
-    SubmitWindow window(mill.session_of("dora"));
-    window.wait_signed_in();
+    SubmitWindow window(mill);
     window.type("new_design", "cloth");
     window.write_note("Half a note");
     mill.stop();
@@ -193,8 +183,7 @@ TEST_CASE("submit: a mill that is gone is told in words, and all goes on when it
 
 TEST_CASE("submit: a session that has ended asks to sign in, and keeps what was written") {
     const Mill mill;
-    SubmitWindow window(mill.session_of("dora"));
-    window.wait_signed_in();
+    SubmitWindow window(mill);
     window.type("new_design", "cloth");
     window.write_note("Still here");
     const auto elsewhere = mill.at("copy.session");
@@ -213,8 +202,7 @@ TEST_CASE("submit: a session that has ended asks to sign in, and keeps what was 
 
 TEST_CASE("submit: what is on its way can be given up") {
     Mill mill;
-    SubmitWindow window(mill.session_of("dora"));
-    window.wait_signed_in();
+    SubmitWindow window(mill);
     window.panel.desk().watch(false);
     window.type("new_design", "cloth");
     window.write_note("Too early");
@@ -231,11 +219,8 @@ TEST_CASE("submit: what is on its way can be given up") {
 
 TEST_CASE("submit: another design of the same edition takes the place of the one before") {
     const Mill mill;
-    SubmitWindow window(mill.session_of("dora"));
-    window.wait_signed_in();
-    window.type("new_design", "cloth");
-    window.write_note("First");
-    window.click("save_revision");
+    SubmitWindow window(mill);
+    window.save("cloth", "First");
     window.wait_for("changes", "is what revision 1 holds");
     window.panel.clear_design();
     CHECK_FALSE(window.find<QPushButton>("save_revision").isEnabled());
@@ -246,8 +231,7 @@ TEST_CASE("submit: another design of the same edition takes the place of the one
 
 TEST_CASE("submit: findings, evidence and a cloth that cannot be made are told") {
     const Mill mill;
-    SubmitWindow window(mill.session_of("dora"));
-    window.wait_signed_in();
+    SubmitWindow window(mill);
     window.panel.set_findings(2, 1, "A float of 40 picks on the back");
     CHECK(window.text("findings_summary").contains("2 errors, 1 warning"));
     CHECK(window.text("submit_warning").contains("nobody can approve it"));

@@ -46,7 +46,7 @@ TEST_CASE("pictures of the viewer to look at", "[.screens]") {
     viewport.turn_to(StandardView::corner);
     const Box box = viewport.shown_box();
     viewport.set_clip(Plane{{-1, 0, 0}, -box.centre().x()});
-    viewport.set_selected({{System::warp, 2}});
+    viewport.point_out({{System::warp, 2}});
     save("clip");
     viewport.set_clip({});
     viewport.set_attach_mode(true);

@@ -242,15 +242,21 @@ TEST_CASE(
     CHECK(pixel(viewport, shot.at({2, 5, 1})) == whole);
 }
 
-TEST_CASE("selected yarns stand out and the others pale") {
+TEST_CASE("yarns that are pointed out stand out and the others pale, until Esc or a click lets them go") {
     Shot shot(model_of(crossed_yarns()));
     const QPoint end = shot.at({2, 5, 1}), other = shot.at({2, 8, 1});
     const QColor before = pixel(shot.viewport, other);
-    shot.viewport.set_selected({{weave::System::warp, 11}});
+    const std::vector<YarnName> pointed_out{{weave::System::warp, 11}};
+    shot.viewport.point_out(pointed_out);
     CHECK(pixel(shot.viewport, other).saturation() < before.saturation() / 2);
     CHECK(pixel(shot.viewport, end).saturation() > before.saturation() / 2);
-    shot.viewport.set_dim_others(false);
+    CHECK(shot.viewport.hint() == "end 12; Esc to let go");
+    QTest::keyClick(&shot.viewport, Qt::Key_Escape);
     CHECK(pixel(shot.viewport, other) == before);
+    CHECK(shot.viewport.hint().isEmpty());
+    shot.viewport.point_out(pointed_out);
+    QTest::mouseClick(&shot.viewport, Qt::LeftButton, {}, QPoint(2, 2));
+    CHECK(shot.viewport.pointed_out().empty());
 }
 
 TEST_CASE("OpenGL draws what the processor draws") {

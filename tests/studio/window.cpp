@@ -323,7 +323,20 @@ TEST_CASE("the finding that is clicked is shown, and each rule knows what would 
     CHECK_FALSE(group->text(1).isEmpty());
     group->setExpanded(true);
     QTest::mouseClick(list.viewport(), Qt::LeftButton, {}, list.visualItemRect(group->child(0)).center());
-    CHECK(shown.document().focus().place().has_value());
+    REQUIRE(shown.document().focus().place().has_value());
+    // The end stands out among the yarns until it is let go, or another block is looked at; no pick does, as none is named.
+    auto& viewport = *shown.find<ViewerPanel>().viewport();
+    const std::size_t end = shown.document().focus().place()->end;
+    CHECK(viewport.pointed_out() == std::vector<YarnName>{{System::warp, end}});
+    CHECK(viewport.hint().contains(QString("end %1").arg(end + 1)));
+    list.setFocus();
+    QTest::keyClick(&list, Qt::Key_Escape);
+    CHECK(viewport.pointed_out().empty());
+    QTest::mouseClick(list.viewport(), Qt::LeftButton, {}, list.visualItemRect(group->child(0)).center());
+    REQUIRE_FALSE(viewport.pointed_out().empty());
+    REQUIRE(shown.document().perform({"other", {PutBlock{"other", design.blocks["loose"]}}}));
+    shown.document().focus().show_block("other");
+    CHECK(viewport.pointed_out().empty());
 }
 
 TEST_CASE("yarns are set up in words that count from 1, and what is wrong is told and not taken") {

@@ -6,6 +6,7 @@
 
 #include <algorithm>
 #include <map>
+#include <numeric>
 
 namespace weave {
 
@@ -23,21 +24,28 @@ std::string quoted(const std::string& name) {
     return "'" + name + "'";
 }
 
-std::string differs(const char* line, std::size_t index, const char* yarn, const Pair& names,
-                    std::uint32_t one, std::uint32_t other) {
-    return std::string(line) + " " + std::to_string(index) + " has " + counted(one, yarn) + " in " +
-           names.one + " and " + std::to_string(other) + " in " + names.other;
+/// How many yarns two blocks have in the first line of stacks in which they differ. `before`: yarns of the lines before it,
+/// of which both have as many.
+std::string differs(std::size_t before, const char* yarn, const Pair& names, std::uint32_t one, std::uint32_t other) {
+    return "at " + std::string(yarn) + " " + std::to_string(before + 1) + " " + names.one + " has " +
+           counted(one, yarn) + " in a stack and " + names.other + " " + std::to_string(other);
 }
 
-Status check_same(const Counts& one, const Counts& other, const char* line, const char* yarns,
+/// The size of one side of a block as a weaver counts it, then in stacks: `6 picks (3 rows)`.
+std::string size_of(const Counts& counts, const char* line, const char* yarn) {
+    const auto yarns = std::accumulate(counts.begin(), counts.end(), std::size_t{0});
+    return counted(yarns, yarn) + " (" + counted(counts.size(), line) + ")";
+}
+
+Status check_same(const Counts& one, const Counts& other, const char* line, const char* yarn,
                   const Pair& names) {
     if (one.size() != other.size()) {
-        return bad_input(names.one + " has " + counted(one.size(), line) + " and " + names.other + " " +
-                         std::to_string(other.size()) + ", which must be equal on the faces that meet");
+        return bad_input(names.one + " has " + size_of(one, line, yarn) + " and " + names.other + " " +
+                         size_of(other, line, yarn) + ": the " + line + "s must be equal on the faces that meet");
     }
-    for (std::size_t i = 0; i < one.size(); ++i) {
-        if (one[i] != other[i])
-            return bad_input("cannot attach: " + differs(line, i, yarns, names, one[i], other[i]));
+    std::size_t before = 0;
+    for (std::size_t i = 0; i < one.size(); before += one[i++]) {
+        if (one[i] != other[i]) return bad_input("cannot attach: " + differs(before, yarn, names, one[i], other[i]));
     }
     return {};
 }
@@ -71,10 +79,10 @@ Status check_ordered(GridAndHeight first, GridAndHeight second, Face face, const
     }
     if (one.rows() != other.rows() || one.columns() != other.columns()) {
         const auto size = [](const BlockGrid& grid) {
-            return counted(grid.rows(), "row") + " and " + counted(grid.columns(), "column");
+            return size_of(grid.t(), "row", "pick") + " and " + size_of(grid.p(), "column", "end");
         };
         return bad_input(names.one + " has " + size(one) + ", " + names.other + " " + size(other) +
-                         "; on top of each other they must be equal");
+                         "; on top of each other rows and columns must be equal");
     }
     WEAVE_CHECK_OK(check_height(first.height + second.height));
     return check_card_size(one.picks() + other.picks(), one.ends() + other.ends());
@@ -153,8 +161,7 @@ Status check_stencil(std::span<const BlockPtr> blocks, const StencilMap& map) {
 
 /// The picks (or ends) of each line of the stencil, on which all blocks must agree.
 Result<Counts> common_counts(std::span<const BlockGrid* const> grids, std::span<const std::string> names,
-                             std::size_t lines, const Counts& (BlockGrid::*counts)() const, const char* line,
-                             const char* yarns) {
+                             std::size_t lines, const Counts& (BlockGrid::*counts)() const, const char* yarn) {
     const auto count_at = [&](const BlockGrid* grid, std::size_t i) {
         const Counts& own = (grid->*counts)();
         return own[i % own.size()];
@@ -163,14 +170,15 @@ Result<Counts> common_counts(std::span<const BlockGrid* const> grids, std::span<
         return names.empty() ? "block " + std::to_string(k) : quoted(names[k]);
     };
     Counts common(lines);
-    for (std::size_t i = 0; i < lines; ++i) {
+    std::size_t before = 0;
+    for (std::size_t i = 0; i < lines; before += common[i++]) {
         common[i] = count_at(grids[0], i);
         for (std::size_t k = 1; k < grids.size(); ++k) {
             const std::uint32_t other = count_at(grids[k], i);
             if (other == common[i]) continue;
             const Pair pair{name_of(0), name_of(k)};
             return bad_input(pair.one + " and " + pair.other +
-                             " do not fit together: " + differs(line, i, yarns, pair, common[i], other));
+                             " do not fit together: " + differs(before, yarn, pair, common[i], other));
         }
     }
     return common;
@@ -179,8 +187,8 @@ Result<Counts> common_counts(std::span<const BlockGrid* const> grids, std::span<
 /// The picks of the rows, and the ends of the columns, of a stencil.
 Result<std::pair<Counts, Counts>> stencil_counts(std::span<const BlockGrid* const> grids, std::size_t rows,
                                                  std::size_t columns, std::span<const std::string> names) {
-    WEAVE_TRY(Counts t, common_counts(grids, names, rows, &BlockGrid::t, "row", "pick"));
-    WEAVE_TRY(Counts p, common_counts(grids, names, columns, &BlockGrid::p, "column", "end"));
+    WEAVE_TRY(Counts t, common_counts(grids, names, rows, &BlockGrid::t, "pick"));
+    WEAVE_TRY(Counts p, common_counts(grids, names, columns, &BlockGrid::p, "end"));
     WEAVE_CHECK_OK(check_counts(t, p));
     return std::pair(std::move(t), std::move(p));
 }

@@ -15,6 +15,7 @@ namespace weave {
 
 struct Canvas::State {
     PictureFormat format = PictureFormat::png;
+    int scale = 1;  ///< of a PNG
     cairo_surface_t* surface = nullptr;
     cairo_t* cairo = nullptr;
     std::string svg;  ///< written by cairo while it draws
@@ -143,18 +144,20 @@ std::string printable(std::string_view text, std::size_t most) {
     return out;
 }
 
-Result<Canvas> Canvas::make(PictureFormat format, double width, double height) {
+Result<Canvas> Canvas::make(PictureFormat format, double width, double height, int scale) {
     width = std::ceil(width);
     height = std::ceil(height);
     if (!(width >= 1 && height >= 1 && width <= longest_side && height <= longest_side &&
-          width * height <= most_pixels)) {
+          width * height * scale * scale <= most_pixels)) {
         return invalid("a picture of this cloth would be too large to draw");
     }
     std::unique_ptr<State, Close> state(new State);
     state->format = format;
     if (format == PictureFormat::png) {
-        state->surface =
-            cairo_image_surface_create(CAIRO_FORMAT_RGB24, static_cast<int>(width), static_cast<int>(height));
+        state->scale = scale;
+        state->surface = cairo_image_surface_create(CAIRO_FORMAT_RGB24, static_cast<int>(width) * scale,
+                                                    static_cast<int>(height) * scale);
+        cairo_surface_set_device_scale(state->surface, scale, scale);
     } else {
         state->surface = cairo_svg_surface_create_for_stream(append, &state->svg, width, height);
         cairo_svg_surface_set_document_unit(state->surface, CAIRO_SVG_UNIT_PX);
@@ -318,9 +321,12 @@ void Canvas::pixels(std::size_t x, std::size_t y, std::size_t width, std::size_t
         cairo_surface_flush(m_state->surface);
         unsigned char* bytes = cairo_image_surface_get_data(m_state->surface);
         const auto stride = static_cast<std::size_t>(cairo_image_surface_get_stride(m_state->surface));
-        for (std::size_t row = 0; row < height; ++row) {
-            auto* first = reinterpret_cast<std::uint32_t*>(bytes + (y + row) * stride) + x;
-            fill(row, {first, width});
+        const auto scale = static_cast<std::size_t>(m_state->scale);
+        std::vector<std::uint32_t> colours(width);
+        for (std::size_t line = 0; line < height * scale; ++line) {
+            if (line % scale == 0) fill(line / scale, colours);
+            auto* to = reinterpret_cast<std::uint32_t*>(bytes + (y * scale + line) * stride) + x * scale;
+            for (const std::uint32_t colour : colours) to = std::fill_n(to, scale, colour);
         }
         cairo_surface_mark_dirty(m_state->surface);
         return;

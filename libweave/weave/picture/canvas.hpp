@@ -66,8 +66,8 @@ class Canvas {
     /// Nor more pixels: 400 MB of memory while it is drawn.
     static constexpr double most_pixels = 1e8;
 
-    /// A white page. An error where it would be larger than the limits.
-    static Result<Canvas> make(PictureFormat format, double width, double height);
+    /// A white page, of which a PNG has `scale` × `scale` pixels to each. An error where it would be larger than the limits.
+    static Result<Canvas> make(PictureFormat format, double width, double height, int scale = 1);
 
     void rectangle(const Rectangle& place, Colour fill, double alpha = 1);
     /// Many rectangles of one colour as one shape, which keeps SVG small.

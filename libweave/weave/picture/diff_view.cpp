@@ -273,10 +273,9 @@ PageText words_of(const WovenDesign& before, const WovenDesign& after, const Car
 }
 
 Result<std::string> draw_merged(const MergedCard& card, const Grid& grid, const PageText& text,
-                                const ChangedPlaces& changes, PictureFormat format,
-                                std::vector<Mark>* marks) {
+                                const ChangedPlaces& changes, PictureFormat format, const DiffLook& look) {
     WEAVE_TRY(Page page, Page::open(format, text, grid_left + static_cast<double>(grid.width()) + rim,
-                                    rim + static_cast<double>(grid.height()) + grid_bottom, marks));
+                                    rim + static_cast<double>(grid.height()) + grid_bottom, look.marks, look.scale));
     if (grid.cell >= 4) {
         draw_cells(page.canvas, card, grid);
     } else {
@@ -305,17 +304,18 @@ Result<std::string> draw_merged(const MergedCard& card, const Grid& grid, const 
 }  // namespace
 
 Result<std::string> draw_diff(const WovenDesign& before, const WovenDesign& after, const DesignDiff& diff,
-                              PictureFormat format, std::vector<Mark>* marks) {
+                              PictureFormat format, const DiffLook& look) {
     if (!diff.card || !before.cloth || !after.cloth)
         return invalid("the cards cannot be drawn: " + diff.no_card);
     try {
         const MergedCard card{before.cloth->card, after.cloth->card, lines_of(diff.card->alignment.picks),
                               lines_of(diff.card->alignment.ends)};
-        Grid grid = make_grid(card.picks.size(), card.ends.size(), 28, 900);
-        grid.corner.y = Page::body_top + rim;
+        Grid grid = make_grid(card.picks.size(), card.ends.size(), 28, look.wanted_side, look.longest_side);
+        grid.corner.y = (look.has_words ? Page::body_top : Page::margin) + rim;
         const ChangedPlaces changes = changes_of(card, grid);
-        const PageText text = words_of(before, after, *diff.card, grid, !changes.rings.empty());
-        return draw_merged(card, grid, text, changes, format, marks);
+        PageText text = words_of(before, after, *diff.card, grid, !changes.rings.empty());
+        if (!look.has_words) text = {{}, {}, std::move(text.legend), {}};
+        return draw_merged(card, grid, text, changes, format, look);
     } catch (const std::bad_alloc&) {
         return system_fault("there is not enough memory to draw this comparison");
     }

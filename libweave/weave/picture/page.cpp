@@ -56,7 +56,7 @@ Result<Page> Page::open(const Subject& subject, const PageText& text, double bod
 }
 
 Result<Page> Page::open(PictureFormat format, const PageText& text, double body_width, double body_height,
-                        std::vector<Mark>* marks) {
+                        std::vector<Mark>* marks, int scale) {
     double width = std::max({body_width, 300.0, Canvas::text_width(text.title, title_size, true),
                              Canvas::text_width(text.subtitle, small_size)});
     for (const std::string& note : text.notes) width = std::max(width, Canvas::text_width(note, small_size));
@@ -65,23 +65,28 @@ Result<Page> Page::open(PictureFormat format, const PageText& text, double body_
         if (!row.label.empty())
             label_width = std::max(label_width, Canvas::text_width(row.label, small_size) + 12);
     }
+    for (const LegendRow& row : text.legend) {
+        for (const Swatch& swatch : row.swatches)
+            width = std::max(width, label_width + swatch_width(swatch) - swatch_gap);
+    }
     const std::vector<LegendRow> legend = broken(text.legend, width - label_width);
     const double words =
         row_height * static_cast<double>(legend.size()) + 17 * static_cast<double>(text.notes.size());
-    const double bottom = body_top + body_height + (words > 0 ? 18 + words : 0);
-    WEAVE_TRY(Canvas canvas, Canvas::make(format, width + 2 * margin, bottom + margin));
+    const double top = top_of(text);
+    const double bottom = top + body_height + (words > 0 ? 18 + words : 0);
+    WEAVE_TRY(Canvas canvas, Canvas::make(format, width + 2 * margin, bottom + margin, scale));
     canvas.list_marks(marks);
     canvas.text({margin, margin + 15}, text.title,
                 {.size = title_size, .colour = {0x11, 0x11, 0x11}, .bold = true});
     canvas.text({margin, margin + 34}, text.subtitle, {.size = small_size, .colour = {0x60, 0x60, 0x60}});
-    double y = body_top + body_height + 18;
+    double y = top + body_height + 18;
     draw_legend(canvas, legend, margin, label_width, y);
     y += row_height * static_cast<double>(legend.size());
     for (const std::string& note : text.notes) {
         canvas.text({margin, y + 11}, note, {.size = small_size, .colour = {0x60, 0x60, 0x60}});
         y += 17;
     }
-    return Page{std::move(canvas), {margin, body_top, body_width, body_height}};
+    return Page{std::move(canvas), {margin, top, body_width, body_height}};
 }
 
 bool has_loose(const Stack& stack) {

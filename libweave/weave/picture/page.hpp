@@ -45,7 +45,9 @@ struct Page {
     static Result<Page> open(const Subject& subject, const PageText& text, double body_width,
                              double body_height);
     static Result<Page> open(PictureFormat format, const PageText& text, double body_width, double body_height,
-                             std::vector<Mark>* marks = nullptr);
+                             std::vector<Mark>* marks = nullptr, int scale = 1);
+    /// Where the body of a page with these words begins: right below the rim where there are none above it.
+    static double top_of(const PageText& text) { return text.title.empty() && text.subtitle.empty() ? margin : body_top; }
     Canvas canvas;
     Rectangle body;
 };

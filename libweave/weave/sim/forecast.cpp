@@ -5,6 +5,12 @@
 
 namespace weave::sim {
 
+namespace {
+
+constexpr std::uint64_t of_a_process = 40U << 20U, of_a_point = 8192;  // bytes
+
+}  // namespace
+
 std::size_t points_of(const Plan& plan) {
     std::size_t points = 0;
     for (const SimYarn& yarn : plan.scene.yarns) points += yarn.control.size();
@@ -12,8 +18,11 @@ std::size_t points_of(const Plan& plan) {
 }
 
 std::uint64_t expected_bytes(std::size_t points) {
-    constexpr std::uint64_t of_a_process = 40U << 20U, of_a_point = 8192;
     return of_a_process + of_a_point * points;
+}
+
+std::size_t points_within(std::uint64_t bytes) {
+    return bytes <= of_a_process ? 0 : (bytes - of_a_process) / of_a_point;
 }
 
 std::string memory_text(std::uint64_t bytes) {

@@ -180,8 +180,9 @@ void Hessian<Real>::list_near_segments(Energy<Real>& energy) {
 /// near to these.
 template <class Real>
 void Hessian<Real>::list_columns(std::uint32_t row, std::vector<std::uint32_t>& columns) const {
-    // The next segment of a yarn has three rows of the last one. What lies before belongs to other rows.
-    const std::size_t before = columns.size();
+    // The next segment of a yarn has three rows of the last one. Rows that are shared say nothing of those before them: where a
+    // periodic yarn is held in part, its first segment may have a share in its last row alone.
+    std::uint32_t listed = 0;  // the row after those of the last segment that has rows of its own
     const auto add_slots = [&](std::uint32_t segment) {
         const std::uint32_t first = m_first_row[segment];
         if (first == no_row) {
@@ -189,9 +190,8 @@ void Hessian<Real>::list_columns(std::uint32_t row, std::vector<std::uint32_t>& 
             for (std::uint32_t j = m_first_share[slot]; j < m_first_share[slot + 4]; ++j) columns.push_back(m_shares[j].row);
             return;
         }
-        const bool goes_on = columns.size() > before && columns.back() >= first && columns.back() < first + 4;
-        for (std::uint32_t column = goes_on ? columns.back() + 1 : first; column < first + 4; ++column)
-            columns.push_back(column);
+        for (std::uint32_t column = std::max(first, listed); column < first + 4; ++column) columns.push_back(column);
+        listed = first + 4;
     };
     std::vector<std::uint32_t> near;
     for (std::uint32_t i = m_first_segment[row]; i < m_first_segment[row + 1]; ++i) {
