@@ -74,7 +74,7 @@ QString ending_words(const RunState& state) {
     const Json ending = sim::part_of(state.yarns->report, "ending");
     const QString after = steps(state.progress.step), residual = small(state.progress.residual);
     if (ending == "stuck")
-        return Words::tr("It gets no further: still at residual %1 after %2").arg(residual, after);
+        return Words::tr("It gets no further: still at residual %1 after %2. A target strain or a stiffness nearer to the usual, or a higher fidelity, may help").arg(residual, after);
     if (ending == "time")
         return Words::tr("The time is used up after %2: not at rest, residual %1").arg(residual, after);
     return {};

@@ -3,6 +3,7 @@
 #include <weave/block/changes.hpp>
 #include <weave/design/edit.hpp>
 #include <weave/design/evaluate.hpp>
+#include <weave/design/tree.hpp>
 
 #include <algorithm>
 #include <cmath>
@@ -18,10 +19,19 @@ namespace {
 /// More flips are not led at once: each takes some tenths of a second, and to lay the cloth out anew is quicker.
 constexpr std::size_t most_led = 64;
 
-/// Whether all blocks of the two fit each other, one by one.
+/// The blocks that the cloth is made from: others may lie beside it.
+std::vector<std::pair<std::string, NodePtr>> parts_of_cloth(const Design& design) {
+    std::vector<std::pair<std::string, NodePtr>> parts;
+    for (const std::string& name : bottom_up(design, design.root)) parts.emplace_back(name, design.blocks.at(name));
+    std::ranges::sort(parts, {}, [](const auto& part) { return part.first; });
+    return parts;
+}
+
+/// Whether all that the two cloths are made from fits, one by one.
 template <class Fits>
 bool all_blocks(const Design& one, const Design& other, Fits fits) {
-    return std::equal(one.blocks.begin(), one.blocks.end(), other.blocks.begin(), other.blocks.end(),
+    const auto parts = parts_of_cloth(one), others = parts_of_cloth(other);
+    return std::equal(parts.begin(), parts.end(), others.begin(), others.end(),
                       [&](const auto& a, const auto& b) {
                           // Nodes never change, so those that are one object need not be looked into.
                           return a.first == b.first && (a.second == b.second || fits(*a.second, *b.second));

@@ -66,9 +66,11 @@ bool BlockActions::perform(const EditStep& step) {
     return static_cast<bool>(made);
 }
 
-void BlockActions::add(const std::string& wish, NodeSource source) {
+bool BlockActions::add(const std::string& wish, NodeSource source) {
     std::string name;
-    if (perform(add_block(m_document.design(), wish, std::move(source), name))) m_document.focus().show_block(name);
+    if (!perform(add_block(m_document.design(), wish, std::move(source), name))) return false;
+    m_document.focus().show_block(name);
+    return true;
 }
 
 // ---- New blocks ----
@@ -125,7 +127,7 @@ void BlockActions::look_for_layers(const std::string& block) {
 }
 
 void BlockActions::add_drawing() {
-    add("slice", SliceLeaf{first_drawing()});
+    if (add("slice", SliceLeaf{first_drawing()})) Q_EMIT drawing_begun();
 }
 
 void BlockActions::add_stencil() {

@@ -54,12 +54,13 @@ class BlockActions : public QObject {
     void told(const QString& words);
     /// A stencil was made, and is shown: it is to be painted.
     void stencil_begun();
+    void drawing_begun();
     /// To be read when there is time.
     void noted(const QString& words);
 
   private:
     bool perform(const EditStep& step);
-    void add(const std::string& wish, NodeSource source);
+    bool add(const std::string& wish, NodeSource source);
     void find_groupings(const std::string& block, std::function<void(const CardLeaf& leaf, const std::vector<Grouping>& found)> then);
 
     Document& m_document;

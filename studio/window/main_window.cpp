@@ -254,6 +254,7 @@ void MainWindow::flip_at_once(const CardPlace& place) {
 void MainWindow::flip(const CardPlace& place) {
     m_document->focus().go_to(place);
     const auto step = flip_crossing(*m_document, place);
+    m_viewer_desk->point_out(place.pick, place.end);  // so that it is seen which crossing the menu is about
     QMenu menu;
     if (step) {
         menu.addAction(step->text, this, [&] {
@@ -264,6 +265,7 @@ void MainWindow::flip(const CardPlace& place) {
         menu.addAction(QString::fromStdString(step.error().text()))->setEnabled(false);
     }
     menu.exec(QCursor::pos());
+    m_viewer->viewport()->let_go();
 }
 
 // ---- Documents ----
@@ -317,6 +319,7 @@ void MainWindow::close_document() {
     if (!m_document) return;
     keep_looks();
     show_in_parts(nullptr);
+    m_messages->hide();  // what it says is of this design
     m_is_learning = false;  // it leads through its own design
     m_blocks = nullptr;
     m_document->discard();
@@ -330,6 +333,7 @@ void MainWindow::take(std::unique_ptr<Document> document) {
     connect(m_blocks, &BlockActions::failed, this, &MainWindow::warn);
     connect(m_blocks, &BlockActions::told, this, &MainWindow::tell);
     connect(m_blocks, &BlockActions::stencil_begun, this, [this] { m_editors->setCurrentWidget(m_stencil); });
+    connect(m_blocks, &BlockActions::drawing_begun, this, [this] { m_editors->setCurrentWidget(m_slice); });
     connect(m_blocks, &BlockActions::noted, this, [this](const QString& words) { m_messages->tell(MessageBar::Kind::note, words); });
     follow_document();
     show_in_parts(m_document.get());
@@ -398,7 +402,7 @@ void MainWindow::opened(const Design& design, const QString& path, const QString
 }
 
 void MainWindow::take_opened(const Design& design, const QString& path, const QStringList& warnings) {
-    if (!may_close()) return;
+    if (!may_close()) return tell({});
     show_design(design, path, !path.isEmpty());
     if (!path.isEmpty()) m_viewer_desk->show_view(recent_designs::view(path));
     if (!warnings.isEmpty()) m_messages->tell(MessageBar::Kind::note, warnings.join('\n'));

@@ -58,7 +58,7 @@ SimulationDesk::SimulationDesk(SimulationPanel& panel, ViewerPanel& viewer, QObj
     });
     connect(&panel, &SimulationPanel::place_wanted, this, [this](std::size_t pick, std::size_t end) { Q_EMIT place_wanted({pick, end}); });
     connect(&panel, &SimulationPanel::dated_changed, this, [this](bool is_dated) {
-        m_viewer.set_caption(ViewerPanel::Mode::relaxed, is_dated ? tr("The cloth before the last change; Run (Space) relaxes it anew") : QString());
+        m_viewer.set_caption(ViewerPanel::Mode::relaxed, is_dated ? tr("Before the last change: start the simulation anew") : QString());
     });
     connect(&panel, &SimulationPanel::begun, this, &SimulationDesk::note_cloth);
     connect(&panel, &SimulationPanel::laid_out, this, &SimulationDesk::take_layout);

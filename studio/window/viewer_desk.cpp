@@ -24,6 +24,15 @@ bool holds(const Region& region, std::size_t row, std::size_t column) {
     return row >= region.first_row && row <= region.last_row && column >= region.first_column && column <= region.last_column;
 }
 
+/// A block beside the cloth, or within it: its columns are as wide as the cloth's, however many ends these have, and its wefts do not
+/// turn at edges that are the cloth's.
+Design as_part_of(const Block& cloth, const Block& block, Design design) {
+    const auto ends_a_column = [](const Block& of) { return static_cast<double>(of.ends()) / static_cast<double>(of.columns()); };
+    design.warp.density_ends_per_cm *= ends_a_column(block) / ends_a_column(cloth);
+    design.scene.weft_mode = WeftMode::periodic;
+    return design;
+}
+
 Result<ClothCurves> planned_curves(const Design& design, const Block& block, const std::optional<Region>& region) {
     CurveOptions options;
     options.region = region;
@@ -129,7 +138,9 @@ void ViewerDesk::plan() {
                       .arg(block->first_end(region->first_column) + 1)
                       .arg(block->first_end(region->last_column + 1));
     const std::uint64_t wanted = m_wanted;
-    auto design = std::make_shared<const Design>(m_document->design());
+    const BlockPtr& cloth = m_document->whole().block;
+    const bool is_part = cloth && m_document->shown_block() != m_document->design().root;
+    auto design = std::make_shared<const Design>(is_part ? as_part_of(*cloth, *block, m_document->design()) : m_document->design());
     in_background(
         this, [design, block, region] { return planned_curves(*design, *block, region); },
         [=, this](Result<ClothCurves> curves) {

@@ -425,6 +425,32 @@ TEST_CASE("a click on 'Show me where' leaves the keys where they were") {
     CHECK(shown.find<CardEditor>().canvas().hasFocus());
 }
 
+TEST_CASE("a block of a cloth of two layers is drawn as wide as it lies there") {
+    Desk shown("plain");
+    const auto size = [&] {
+        const TubeModel* model = shown.find<ViewerPanel>().viewport()->model();
+        return model == nullptr ? std::array<double, 2>{} : model->size_mm();
+    };
+    REQUIRE(until([&] { return size()[0] > 0; }));
+    const std::array<double, 2> alone = size();
+    const std::string layer = shown.document().shown_block();
+    choose(shown.window, {"Block", "The chosen block", "Attach a block", "below, on the back", QString::fromStdString(layer)});
+    shown.settle();
+    REQUIRE(shown.document().shown_block() != layer);
+    CHECK(shown.document().whole().block->ends() == 2 * shown.document().whole().block->columns());
+    shown.document().focus().show_block(layer);
+    CHECK(until([&] {
+        const TubeModel* model = shown.find<ViewerPanel>().viewport()->model();
+        return model != nullptr && !model->find(System::warp, 2) && std::abs(size()[0] - alone[0]) < 1e-9 && std::abs(size()[1] - alone[1]) < 1e-9;
+    }));
+}
+
+TEST_CASE("a drawing that is begun is there to be drawn in") {
+    Desk shown("plain");
+    choose(shown.window, {"Block", "Add a drawing (slice)"});
+    CHECK(shown.find<SliceEditor>().isVisible());
+}
+
 TEST_CASE("a stencil that is begun is there to be painted") {
     Desk shown("plain");
     choose(shown.window, {"Block", "Stencil from the block shown"});
