@@ -114,7 +114,7 @@ SimulationPanel::SimulationPanel(QWidget* parent)
     lines->addWidget(m_message);
     lines->addWidget(make_controls());
     m_tabs->addTab(make_result_page(), tr("&Result"));
-    m_tabs->addTab(make_yarns_page(), tr("&Yarns"));
+    m_tabs->addTab(make_yarns_page(), tr("&Behaviour"));
     m_tabs->addTab(make_cloth_page(), tr("&Cloth"));
     lines->addWidget(m_tabs, 1);
     connect_parts();

@@ -59,7 +59,8 @@ void MainWindow::make_file_menu() {
     add(menu, tr("Save &as …"), QKeySequence::SaveAs, [this] { m_files->save_as(*m_document); });
     add(menu, tr("&Export the card image …"), QKeySequence(tr("Ctrl+E")), [this] { m_files->export_card(*m_document); });
     menu.addSeparator();
-    add(menu, tr("&Quit"), QKeySequence::Quit, [this] { close(); }, false);
+    add(menu, tr("&Close the window"), QKeySequence::Close, [this] { close(); }, false);
+    add(menu, tr("&Quit"), QKeySequence::Quit, [] { QApplication::closeAllWindows(); }, false);
 }
 
 void MainWindow::make_edit_menu() {

@@ -53,7 +53,7 @@ SimulationDesk::SimulationDesk(SimulationPanel& panel, ViewerPanel& viewer, QObj
             if (!is_dragging) m_document->end_stroke();
             return;
         }
-        const Status made = m_document->perform(set_scene(scene, is_dragging));
+        const Status made = m_document->perform(set_scene(m_document->design().scene, scene, is_dragging));
         if (!made) Q_EMIT failed(QString::fromStdString(made.error().text()));
     });
     connect(&panel, &SimulationPanel::place_wanted, this, [this](std::size_t pick, std::size_t end) { Q_EMIT place_wanted({pick, end}); });

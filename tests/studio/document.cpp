@@ -90,9 +90,10 @@ TEST_CASE("what a slider is drawn through is one step") {
     Scene scene;
     for (int k = 1; k <= 5; ++k) {
         scene.friction = 0.1 * k;
-        REQUIRE(document.perform(set_scene(scene, true)));
+        REQUIRE(document.perform(set_scene(document.design().scene, scene, true)));
     }
     CHECK(document.undo_stack().count() == 1);
+    CHECK(document.undo_stack().undoText() == "Change the friction");
     document.undo();
     CHECK(document.design().scene == Scene{});
     document.redo();

@@ -469,7 +469,7 @@ TEST_CASE("what is drawn again after an end is a step of its own, also after a c
     Scene scene;
     const auto draw = [&](double friction) {
         scene.friction = friction;
-        REQUIRE(document.perform(set_scene(scene, true)));
+        REQUIRE(document.perform(set_scene(document.design().scene, scene, true)));
     };
     draw(0.1);
     draw(0.2);
@@ -486,6 +486,6 @@ TEST_CASE("what is drawn again after an end is a step of its own, also after a c
     REQUIRE(again);
     CHECK(again->undo_stack().count() == 2);
     scene.friction = 0.6;
-    REQUIRE(again->perform(set_scene(scene, true)));
+    REQUIRE(again->perform(set_scene(again->design().scene, scene, true)));
     CHECK(again->undo_stack().count() == 3);
 }
