@@ -67,7 +67,7 @@ void SimulationPanel::forget_run() {
 
 void SimulationPanel::set_out_of_date(bool is_dated) {
     const bool changes = std::exchange(m_is_out_of_date, is_dated) != is_dated;
-    if (changes && !is_dated) m_message->hide();  // what it did not follow is gone
+    if (changes && !is_dated) m_message->clear();  // what it did not follow is gone
     show_state();
     if (changes) Q_EMIT dated_changed(is_dated);
 }

@@ -21,7 +21,7 @@ constexpr std::array members{"radius_mm", "linear_density_tex", "stretch_stiffne
 
 YarnTable::YarnTable(QWidget* parent) : QTableWidget(parent) {
     setColumnCount(2 + static_cast<int>(members.size()));
-    setHorizontalHeaderLabels({tr("Name"), tr("Colour"), tr("Radius\nmm"), tr("Weight\ntex"), tr("Stretch\nN"), tr("Bending\nN mm²"), tr("Contact\nN/mm²")});
+    setHorizontalHeaderLabels({tr("Name"), tr("Colour"), tr("Radius\nmm"), tr("Weight\ntex"), tr("Stretch\nN"), tr("Bend\nN mm²"), tr("Contact\nN/mm²")});
     horizontalHeader()->setMinimumSectionSize(2 * fontMetrics().height());
     const QStringList tips{tr("Name of the yarn"), tr("Its colour in all pictures"), tr("Half of its thickness"), tr("Grams of a kilometre of it"), tr("How it resists being stretched: the force that would double its length (EA)"),
                            tr("How it resists being bent (EI)"), tr("How it resists being pressed flat: force per length of yarn and depth")};
@@ -58,7 +58,7 @@ void YarnTable::fill_row(int row, const Json& yarn) {
     show_colour(*patch, QString::fromStdString(yarn.value("colour", "#808080")));
     for (std::size_t k = 0; k < members.size(); ++k) {
         const double number = yarn.value(members[k], 0.0);
-        QTableWidgetItem* cell = set(2 + static_cast<int>(k), QString::number(number, 'g', 6));
+        QTableWidgetItem* cell = set(2 + static_cast<int>(k), QString::number(number, 'g', 4));
         cell->setData(exact_role, number);
         cell->setData(shown_role, cell->text());
     }

@@ -2,6 +2,16 @@
 <!DOCTYPE TS>
 <TS version="2.1" language="en" sourcelanguage="en">
 <context>
+    <name>PictureStencil</name>
+    <message numerus="yes">
+        <source>%1 is no card: a card is black and white only, and this picture has %n colour(s).</source>
+        <translation>
+            <numerusform>%1 is no card: a card is black and white only, and this picture has %n colour.</numerusform>
+            <numerusform>%1 is no card: a card is black and white only, and this picture has %n colours.</numerusform>
+        </translation>
+    </message>
+</context>
+<context>
     <name>SliceEdits</name>
     <message numerus="yes">
         <source>Remove %n yarn(s)</source>

@@ -73,7 +73,8 @@ MainWindow::MainWindow(QWidget* parent)
       m_submit(new SubmitPanel), m_submit_desk(new SubmitDesk(*m_submit, *m_findings, *m_simulation, this)), m_tutorial(new Tutorial), m_messages(new MessageBar), m_status(new QLabel) {
     setObjectName("studio");
     m_messages->setObjectName("messages");
-    resize(QSize(fontMetrics().averageCharWidth() * 240, fontMetrics().height() * 62).boundedTo(screen()->availableGeometry().size()));
+    const QSize title(0, fontMetrics().height() * 2);  // of the window, which the screen has to hold as well
+    resize(QSize(fontMetrics().averageCharWidth() * 240, fontMetrics().height() * 62).boundedTo(screen()->availableGeometry().size() - title));
     make_workspace();
     make_docks();
     make_menus();
@@ -187,6 +188,7 @@ void MainWindow::make_docks() {
         auto* scroll = new QScrollArea;  // what is tall must not make the window taller than a laptop's screen
         scroll->setFrameShape(QFrame::NoFrame);
         scroll->setWidgetResizable(true);
+        scroll->setFocusPolicy(Qt::NoFocus);  // a click beside a field leaves the keys where they are
         scroll->setHorizontalScrollBarPolicy(Qt::ScrollBarAlwaysOff);
         scroll->setMinimumWidth(widget->minimumSizeHint().width());
         scroll->setWidget(widget);
@@ -319,7 +321,7 @@ void MainWindow::close_document() {
     if (!m_document) return;
     keep_looks();
     show_in_parts(nullptr);
-    m_messages->hide();  // what it says is of this design
+    m_messages->clear();  // what it says is of this design
     m_is_learning = false;  // it leads through its own design
     m_blocks = nullptr;
     m_document->discard();

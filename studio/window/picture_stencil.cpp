@@ -16,9 +16,9 @@ namespace weave::studio {
 
 namespace {
 
-QString tr(const char* words, int count = -1) {
-    return QCoreApplication::translate("picture_stencil", words, nullptr, count);
-}
+struct Words {
+    Q_DECLARE_TR_FUNCTIONS(PictureStencil)
+};
 
 /// Weaves of one layer that show apart from one another. They are as good as any to begin with: each can be changed afterwards.
 const std::map<std::string, Preset>& weaves_to_choose() {
@@ -47,11 +47,11 @@ std::vector<BlockChoice> choices() {
 }
 
 bool wants_stencil(const ColouredPicture& picture, const QString& path, QWidget* window) {
-    QMessageBox box(QMessageBox::Question, tr("Use it as a stencil?"),
-                    tr("%1 is no card: a card is black and white only, and this picture has %n colour(s).", static_cast<int>(picture.colours.size())).arg(path), QMessageBox::NoButton, window);
+    QMessageBox box(QMessageBox::Question, Words::tr("Use it as a stencil?"),
+                    Words::tr("%1 is no card: a card is black and white only, and this picture has %n colour(s).", nullptr, static_cast<int>(picture.colours.size())).arg(path), QMessageBox::NoButton, window);
     box.setTextFormat(Qt::PlainText);
-    box.setInformativeText(tr("It can be a stencil: each of its pixels is one crossing, each of its colours a weave."));
-    auto* use = box.addButton(tr("Use it as a stencil"), QMessageBox::AcceptRole);
+    box.setInformativeText(Words::tr("It can be a stencil: each of its pixels is one crossing, each of its colours a weave."));
+    auto* use = box.addButton(Words::tr("Use it as a stencil"), QMessageBox::AcceptRole);
     box.addButton(QMessageBox::Cancel);
     box.setDefaultButton(use);
     box.exec();

@@ -300,9 +300,15 @@ TEST_CASE("the part that may be simulated follows the cloth, in picks and ends")
     REQUIRE(loom.until([&] { return region.last_row()->maximum() == static_cast<int>(cloth->rows()); }));
     CHECK(region.last_row()->value() == std::min<int>(20, static_cast<int>(cloth->rows())));
     const std::size_t picks = cloth->grid().first_pick(static_cast<std::size_t>(region.last_row()->value()));
-    bool is_told = false;
-    for (const QLabel* label : region.findChildren<QLabel*>()) is_told = is_told || label->text().contains(QString("picks 1 to %1,").arg(picks));
-    CHECK(is_told);
+    const auto tells = [&](const QString& words) {
+        const auto labels = region.findChildren<QLabel*>();
+        return std::any_of(labels.begin(), labels.end(), [&](const QLabel* label) { return label->text() == words; });
+    };
+    CHECK(tells(QString("all of it: picks 1 to %1, ends 1 to %2").arg(cloth->picks()).arg(cloth->ends())));
+    region.findChildren<QRadioButton*>()[1]->click();
+    REQUIRE(region.region());
+    const std::size_t ends = cloth->grid().first_end(static_cast<std::size_t>(region.last_column()->value()));
+    CHECK(tells(QString("picks 1 to %1, ends 1 to %2").arg(picks).arg(ends)));
 }
 
 TEST_CASE("over the relaxed cloth stands that the design has changed since, until it is as it was") {
@@ -314,9 +320,9 @@ TEST_CASE("over the relaxed cloth stands that the design has changed since, unti
     WarpPlan warp = loom.document().design().warp;
     warp.density_ends_per_cm *= 1.5;
     REQUIRE(loom.document().perform({"denser", {SetWarp{warp}}}));
-    CHECK(viewer.viewport()->caption().contains("before the last change"));
+    CHECK(viewer.viewport()->caption().contains("Before the last change"));
     viewer.set_mode(ViewerPanel::Mode::planned);
-    CHECK_FALSE(viewer.viewport()->caption().contains("before the last change"));
+    CHECK_FALSE(viewer.viewport()->caption().contains("Before the last change"));
     viewer.set_mode(ViewerPanel::Mode::relaxed);
     loom.document().undo();
     CHECK(viewer.viewport()->caption().isEmpty());

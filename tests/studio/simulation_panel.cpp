@@ -364,7 +364,7 @@ TEST_CASE("yarns of the simulation panel are saved and opened, and what goes wro
     REQUIRE(shown.until([&] { return shown.yarns != nullptr; }));
     panel.open(in_folder("none.yarns"));
     REQUIRE(shown.until([&] { return panel.message_bar()->words().contains("none.yarns"); }));
-    QTest::mouseClick(panel.message_bar()->findChild<QToolButton*>(), Qt::LeftButton);
+    QTest::mouseClick(panel.message_bar()->findChild<QToolButton*>("close-message"), Qt::LeftButton);
     CHECK_FALSE(panel.message_bar()->isVisible());
 }
 

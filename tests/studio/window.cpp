@@ -419,6 +419,7 @@ TEST_CASE("a click on 'Show me where' leaves the keys where they were") {
     click(&shown.find<QAbstractButton>("begin-tutorial"));
     shown.settle();
     shown.find<CardEditor>().canvas().setFocus();
+    REQUIRE(shown.find<CardEditor>().canvas().hasFocus());
     for (QPushButton* button : shown.find<Tutorial>().findChildren<QPushButton*>()) {
         if (button->isVisible() && button->text().startsWith("Show")) click(button);
     }
