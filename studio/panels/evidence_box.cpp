@@ -56,6 +56,7 @@ EvidenceBox::EvidenceBox(QWidget* parent)
     m_trouble->setObjectName("evidence_trouble");
     m_sign->setPopupMode(QToolButton::InstantPopup);
     m_sign->setMenu(m_menu);
+    m_sign->setMinimumWidth(m_sign->sizeHint().width() + fontMetrics().height());  // its arrow stands beside the words
     auto* grid = new QGridLayout(this);
     grid->setContentsMargins(0, 0, 0, 0);
     grid->setColumnStretch(0, 1);

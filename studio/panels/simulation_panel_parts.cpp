@@ -180,6 +180,10 @@ QWidget* SimulationPanel::make_controls() {
     lines->addWidget(m_progress);
     m_out_of_date->setWordWrap(true);
     m_out_of_date->setTextFormat(Qt::PlainText);
+    m_out_of_date->setMinimumHeight(2 * fontMetrics().lineSpacing());
+    QSizePolicy kept = m_out_of_date->sizePolicy();
+    kept.setRetainSizeWhenHidden(true);  // else the fields below would move away under the hand that changes them
+    m_out_of_date->setSizePolicy(kept);
     lines->addWidget(m_out_of_date);
     return part;
 }

@@ -149,7 +149,10 @@ void MainWindow::make_workspace() {
     connect(m_viewer_desk, &ViewerDesk::flip_wanted, this, &MainWindow::flip);
     connect(m_stencil, &StencilEditor::status, this, &MainWindow::tell);
     connect(m_stencil_desk, &StencilDesk::failed, this, &MainWindow::warn);
-    connect(m_stencil_desk, &StencilDesk::is_stencil, this, [this](bool is) { m_editors->setTabVisible(m_editors->indexOf(m_stencil), is); });
+    connect(m_stencil_desk, &StencilDesk::is_stencil, this, [this](bool is) {
+        if (!is && m_editors->currentWidget() == m_stencil) m_editors->setCurrentWidget(m_card);
+        m_editors->setTabVisible(m_editors->indexOf(m_stencil), is);
+    });
     connect(m_simulation_desk, &SimulationDesk::failed, this, &MainWindow::warn);
     connect(m_simulation_desk, &SimulationDesk::outgrown, this, [this](const QString& words) { m_messages->tell(MessageBar::Kind::note, words, m_simulation->run_action()); });
     connect(m_simulation_desk, &SimulationDesk::told, this, &MainWindow::tell);

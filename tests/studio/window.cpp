@@ -458,6 +458,7 @@ TEST_CASE("a stencil that is begun is there to be painted") {
     CHECK(shown.find<StencilEditor>().isVisible());
     shown.document().undo();
     CHECK_FALSE(shown.find<StencilEditor>().isVisible());
+    CHECK(shown.find<CardEditor>().isVisible());
 }
 
 TEST_CASE("the window fits the screen of a laptop, and the first step of the tutorial is to be read whole") {
