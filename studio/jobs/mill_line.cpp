@@ -21,9 +21,14 @@ MillLine::~MillLine() {
 void MillLine::add(Errand errand, std::function<void(const Status&, MillLine&)> ended) {
     {
         const std::lock_guard lock(m_mutex);
-        m_calls.push_back({std::move(errand), std::move(ended)});
+        m_calls.push_back({std::move(errand), std::move(ended), ++m_added});
     }
     m_came.notify_all();
+}
+
+void MillLine::give_up() {
+    const std::lock_guard lock(m_mutex);
+    m_given_up = m_added;
 }
 
 void MillLine::work() {
@@ -36,8 +41,8 @@ void MillLine::work() {
             call = std::move(m_calls.front());
             m_calls.pop_front();
         }
-        m_gives_up = false;
-        const Status status = run(call.errand);
+        m_now = call.number;
+        const Status status = is_given_up() ? Status(Error{ErrorCode::refused, "this was given up", ""}) : run(call.errand);
         m_told = nullptr;
         if (!m_closes) call.ended(status, *this);
     }
@@ -87,7 +92,7 @@ Status MillLine::forget() {
 void MillLine::tend(wire::MillClient& client) {
     client.report_to([this](std::size_t sent, std::size_t of) {
         if (m_told && of > 0) m_told(sent, of);
-        return !m_gives_up && !m_closes;
+        return !is_given_up() && !m_closes;
     });
 }
 

@@ -30,15 +30,15 @@ class MillLine {
 
     /// Puts work at the end of the queue; `ended` is called in the thread with its outcome.
     void add(Errand errand, std::function<void(const Status&, MillLine&)> ended);
-    /// Lets the call that is under way now end with an error.
-    void give_up() { m_gives_up = true; }
+    /// Lets all that was added until now, what is under way and what waits behind it, end with an error.
+    void give_up();
 
     // ---- In the thread alone ----
 
     /// Errors: nobody has signed in.
     Result<wire::MillClient*> client();
     /// Whether the call was given up, if it failed.
-    [[nodiscard]] bool is_given_up() const { return m_gives_up; }
+    [[nodiscard]] bool is_given_up() const { return m_now <= m_given_up; }
     [[nodiscard]] bool is_signed_out() const { return !m_client || m_client->is_signed_out(); }
     [[nodiscard]] const wire::MillSession& session() const { return m_session; }
     /// From now on as the kept session says.
@@ -58,6 +58,7 @@ class MillLine {
     struct Call {
         Errand errand;
         std::function<void(const Status&, MillLine&)> ended;
+        std::uint64_t number = 0;  ///< from 1
     };
     void work();
     Status run(const Errand& errand);
@@ -67,10 +68,13 @@ class MillLine {
     std::mutex m_mutex;
     std::condition_variable m_came;
     std::deque<Call> m_calls;
+    std::uint64_t m_added = 0;
     bool m_ends = false;
-    std::atomic<bool> m_gives_up{false}, m_closes{false};
+    std::atomic<std::uint64_t> m_given_up{0};  ///< the last call that is
+    std::atomic<bool> m_closes{false};
 
     // Of the thread alone.
+    std::uint64_t m_now = 0;  ///< the call that is under way
     wire::MillSession m_session;
     std::optional<wire::MillClient> m_client;
     std::function<void(std::size_t, std::size_t)> m_told;

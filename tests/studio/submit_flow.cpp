@@ -223,6 +223,27 @@ TEST_CASE("submit: what is on its way can be given up") {
     mill.resume();
 }
 
+TEST_CASE("submit: what waits behind a call that the mill does not answer can be given up") {
+    Mill mill;
+    SubmitWindow window(mill);
+    window.panel.desk().watch(false);
+    window.type("new_design", "cloth");
+    window.write_note("Too early");
+    mill.suspend();
+    window.panel.desk().list_designs();
+    window.click("save_revision");
+    REQUIRE(window.wait([&] { return window.find<QPushButton>("cancel_hand_in").isVisible(); }));
+    window.click("cancel_hand_in");
+    REQUIRE(window.wait([&] { return !window.panel.desk().is_busy(); }));
+    CHECK(window.text("trouble").contains("Cancelled"));
+    CHECK(window.find<QPlainTextEdit>("note").toPlainText() == "Too early");
+    mill.resume();
+    QSignalSpy told(&window.panel.desk(), &MillDesk::designs_told);
+    window.panel.desk().list_designs();
+    REQUIRE(window.wait([&] { return !told.isEmpty(); }));
+    CHECK(told.last()[0].value<std::vector<wire::MillDesign>>().empty());  // nothing of it came to the mill
+}
+
 TEST_CASE("submit: another design of the same edition takes the place of the one before") {
     const Mill mill;
     SubmitWindow window(mill);
