@@ -433,7 +433,7 @@ void SubmitPanel::tell_what() {
                             .arg(tr("%Ln pick(s)", nullptr, static_cast<int>(m_cloth->picks())),
                                  tr("%Ln end(s)", nullptr, static_cast<int>(m_cloth->ends()))));
     QString findings = tr("Findings: not looked for yet");
-    if (m_has_findings && m_errors + m_warnings == 0) findings = tr("Findings: none");
+    if (m_has_findings && m_errors + m_warnings == 0) findings = tr("Findings: no error, no warning");
     if (m_has_findings && m_errors + m_warnings > 0)
         findings = tr("Findings: %1, %2").arg(tr("%n error(s)", nullptr, static_cast<int>(m_errors)),
                                             tr("%n warning(s)", nullptr, static_cast<int>(m_warnings)));

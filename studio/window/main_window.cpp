@@ -374,7 +374,8 @@ void MainWindow::show_design(Design design, const QString& path, bool is_saved) 
 void MainWindow::recover(std::unique_ptr<Document> left) {
     take(std::move(left));
     const int steps = m_document->undo_stack().index();
-    m_messages->tell(MessageBar::Kind::note, tr("The studio was ended before this design was saved. All of it is here again, with its last %n step(s); undo takes them back.", nullptr, steps));
+    m_messages->tell(MessageBar::Kind::note, steps == 0 ? tr("The studio was ended before this design was saved. All of it is here again.")
+                                                        : tr("The studio was ended before this design was saved. All of it is here again, with its last %n step(s); undo takes them back.", nullptr, steps));
 }
 
 void MainWindow::tell_set_aside(const QStringList& folders) {
