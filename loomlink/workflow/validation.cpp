@@ -146,7 +146,7 @@ Result<std::vector<WaivedFinding>> waivers_with_looms(const Reader& reader, Id r
 std::vector<std::string> open_errors(const Validation& validation, const std::vector<WaivedFinding>& waived) {
     std::vector<std::string> open;
     for (const auto& [rule, count] : validation.error_rules) {
-        const bool is_waived = std::any_of(waived.begin(), waived.end(), [&](const WaivedFinding& one) {
+        const bool is_waived = std::any_of(waived.begin(), waived.end(), [&, &rule = rule](const WaivedFinding& one) {
             return one.waiver.rule == rule && one.loom == validation.loom;
         });
         if (!is_waived)
