@@ -13,11 +13,8 @@ namespace weave::studio {
 namespace {
 
 FoundGl find_gl() {
-    QSurfaceFormat format;
-    format.setVersion(3, 3);
-    format.setProfile(QSurfaceFormat::CoreProfile);
     QOpenGLContext context;
-    context.setFormat(format);
+    context.setFormat(wanted_gl());
     if (!context.create()) return {QCoreApplication::translate("ViewerPanel", "this display has no OpenGL"), false};
     QOffscreenSurface surface;
     surface.setFormat(context.format());
@@ -30,6 +27,14 @@ FoundGl find_gl() {
 }
 
 }  // namespace
+
+QSurfaceFormat wanted_gl() {
+    QSurfaceFormat format;
+    format.setVersion(3, 3);
+    format.setProfile(QSurfaceFormat::CoreProfile);
+    format.setDepthBufferSize(24);
+    return format;
+}
 
 const FoundGl& found_gl() {
     static const FoundGl found = find_gl();

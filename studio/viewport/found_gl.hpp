@@ -1,6 +1,7 @@
 #pragma once
 
 #include <QString>
+#include <QSurfaceFormat>
 
 namespace weave::studio {
 
@@ -9,6 +10,9 @@ struct FoundGl {
     QString trouble;           ///< why the 3D view cannot be drawn, in a few words; empty where it can
     bool is_software = false;  ///< whether the processor draws
 };
+
+/// The OpenGL that the 3D view is written for.
+QSurfaceFormat wanted_gl();
 
 /// Tries OpenGL once in the run of the program, in a moment's context of its own.
 const FoundGl& found_gl();

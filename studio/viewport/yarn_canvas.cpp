@@ -1,5 +1,7 @@
 #include <studio/viewport/yarn_canvas.hpp>
 
+#include <studio/viewport/found_gl.hpp>
+
 #include <QOffscreenSurface>
 #include <QOpenGLContext>
 #include <QOpenGLFramebufferObject>
@@ -14,18 +16,10 @@ namespace weave::studio {
 
 namespace {
 
-QSurfaceFormat format_of_yarns() {
-    QSurfaceFormat format;
-    format.setVersion(3, 3);
-    format.setProfile(QSurfaceFormat::CoreProfile);
-    format.setDepthBufferSize(24);
-    return format;
-}
-
 /// Straight into the window.
 class WindowCanvas : public QOpenGLWidget, public YarnCanvas {
   public:
-    WindowCanvas(Owner owner, QWidget* parent) : QOpenGLWidget(parent), m_owner(std::move(owner)) { setFormat(format_of_yarns()); }
+    WindowCanvas(Owner owner, QWidget* parent) : QOpenGLWidget(parent), m_owner(std::move(owner)) { setFormat(wanted_gl()); }
     ~WindowCanvas() override {
         if (context() != nullptr) disconnect(context(), nullptr, this, nullptr);
     }
@@ -93,7 +87,7 @@ class PictureCanvas : public QWidget, public YarnCanvas {
     }
 
     void start() {
-        m_context.setFormat(format_of_yarns());
+        m_context.setFormat(wanted_gl());
         if (m_context.create()) {
             m_surface.setFormat(m_context.format());
             m_surface.create();
