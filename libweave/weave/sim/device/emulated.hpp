@@ -1,0 +1,71 @@
+#pragma once
+
+// A gang on the processor: every thread of every block is a thread of the operating system, and barriers are real. It shows what a
+// device would do with the same code, missing barriers (under ThreadSanitizer) and accesses beyond the end (with WEAVE_BOUNDS) among it.
+
+#include <weave/sim/device/crew.hpp>
+
+#include <barrier>
+#include <cstddef>
+#include <memory>
+#include <thread>
+#include <vector>
+
+namespace weave::sim {
+
+/// What the threads of an emulated device share.
+struct EmulatedDevice {
+    EmulatedDevice(std::size_t blocks, std::size_t threads_a_block)
+        : threads(threads_a_block), all(static_cast<std::ptrdiff_t>(blocks * threads)), parts(parts_of_gang(blocks)),
+          shared(blocks, std::vector<double>(threads)) {
+        for (std::size_t b = 0; b < blocks; ++b)
+            of_block.push_back(std::make_unique<std::barrier<>>(static_cast<std::ptrdiff_t>(threads)));
+    }
+
+    std::size_t threads;
+    std::barrier<> all;
+    std::vector<std::unique_ptr<std::barrier<>>> of_block;
+    std::vector<double> parts;
+    std::vector<std::vector<double>> shared;
+};
+
+/// One of its threads, as Gang wants it.
+struct EmulatedThread {
+    EmulatedDevice* device;
+    std::size_t m_block, m_thread;
+
+    [[nodiscard]] std::size_t thread() const { return m_thread; }
+    [[nodiscard]] std::size_t threads() const { return device->threads; }
+    [[nodiscard]] std::size_t block() const { return m_block; }
+    [[nodiscard]] std::size_t blocks() const { return device->of_block.size(); }
+    void sync_block() const { device->of_block[m_block]->arrive_and_wait(); }
+    void sync_all() const { device->all.arrive_and_wait(); }
+    [[nodiscard]] double* shared() const { return device->shared[m_block].data(); }
+};
+
+/// kernel(gang) by every thread of so many blocks.
+template <class Kernel>
+void emulate(std::size_t blocks, std::size_t threads_a_block, const Kernel& kernel) {
+    EmulatedDevice device(blocks, threads_a_block);
+    std::vector<std::thread> all;
+    for (std::size_t b = 0; b < blocks; ++b) {
+        for (std::size_t t = 0; t < threads_a_block; ++t) {
+            all.emplace_back([&device, &kernel, b, t] {
+                Gang<EmulatedThread> gang({&device, b, t}, {device.parts.data(), device.parts.size()});
+                kernel(gang);
+            });
+        }
+    }
+    for (std::thread& thread : all) thread.join();
+}
+
+/// kernel(gang) by the calling thread alone.
+template <class Kernel>
+void run_alone(const Kernel& kernel) {
+    double shared = 0;
+    std::vector<double> parts(parts_of_gang(1));
+    Gang<OneThread> gang({&shared}, {parts.data(), parts.size()});
+    kernel(gang);
+}
+
+}  // namespace weave::sim
