@@ -32,8 +32,11 @@ void check_crew(Crew& crew, std::vector<double>& numbers, std::vector<std::uint3
     const View<std::uint32_t> to_scan = view_of(counts);
     crew.each(count, [to_scan](std::size_t i) { to_scan[i] = static_cast<std::uint32_t>(i % 5); });
     const std::size_t total = crew.scan(to_scan, count);
-    double doubled = 0;
-    crew.in_one_block([&](auto& block) { doubled = block.sum(count, [at](std::size_t i) { return 2 * at[i]; }); });
+    crew.in_one_block([&](auto& block) {
+        const double doubled = block.sum(count, [at](std::size_t i) { return 2 * at[i]; });
+        block.alone([&] { sums[3] = doubled; });
+    });
+    const double doubled = crew.read(sums, 3);
     crew.alone([sums] { sums[1] = 5; });
     const double told = crew.read(sums, 1);
     if (!asks) return;  // Catch is asked by one thread
