@@ -1,7 +1,6 @@
 #include "scenes.hpp"
 
 #include <weave/curve/spline.hpp>
-#include <weave/sim/newton.hpp>
 #include <weave/sim/relax.hpp>
 #include <weave/sim/spread.hpp>
 
