@@ -252,7 +252,7 @@ WEAVE_HD inline Real guarded(Real speed, const YarnConstants<Real>& yarn) {
 }
 
 /// The stretch law φ of a yarn of fixed length: ½e² of the strain e; beyond `give` its slope hardly rises. Only the way to
-/// rest gives way (relax.cpp): at rest `give` is infinite.
+/// rest gives way (relaxing.hpp): at rest `give` is infinite.
 template <class Real>
 struct StretchLaw {
     Real value, slope, bend;  ///< φ, dφ/de, d²φ/de²

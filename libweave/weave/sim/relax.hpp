@@ -2,6 +2,7 @@
 
 #include <weave/sim/energy.hpp>
 #include <weave/sim/hessian.hpp>
+#include <weave/sim/newton.hpp>
 
 #include <cstddef>
 #include <functional>
@@ -60,5 +61,12 @@ double greatest_force(const Executor& executor, const std::vector<Real>& gradien
 /// trust region near it or where the others stall (newton.hpp). No step lets yarns pass through one another.
 template <class Real>
 RelaxResult relax(Energy<Real>& energy, std::vector<Real>& state, const RelaxOptions& options);
+
+/// Whether a state of rest is a saddle, as a search of 80 conjugate gradient steps with the exact second derivatives finds
+/// it. The curvature at a state is not that of the rest it is near: a saddle is claimed only where the energy falls to both
+/// sides, on the mean (to which the gradient gives nothing) by more than against a hundredth of `force`, N, which is what
+/// counts as none.
+template <class Real>
+Bend bend_at(Energy<Real>& energy, const std::vector<Real>& state, double force);
 
 }  // namespace weave::sim
