@@ -15,6 +15,12 @@
 #else
 #define WEAVE_HD
 #endif
+/// Before a function template that runs wherever what it is given runs, a cloth or a crew: nvcc need not ask whether that is there.
+#if defined(__CUDACC__)
+#define WEAVE_ANYWHERE _Pragma("nv_exec_check_disable")
+#else
+#define WEAVE_ANYWHERE
+#endif
 /// Becomes part of whatever runs it, so that it is compiled for wide vectors with it (execute.hpp).
 #define WEAVE_INLINE [[gnu::always_inline]]
 

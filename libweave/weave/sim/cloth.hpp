@@ -54,13 +54,6 @@
 
 #include <cstdint>
 
-/// Before a step that runs wherever its cloth is: nvcc does not ask whether the cloth's operations run there too.
-#if defined(__CUDACC__)
-#define WEAVE_STEPS _Pragma("nv_exec_check_disable")
-#else
-#define WEAVE_STEPS
-#endif
-
 namespace weave::sim {
 
 /// Which second derivatives a matrix holds.

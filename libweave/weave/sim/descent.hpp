@@ -16,7 +16,7 @@ template <class Cloth>
 class Descent {
   public:
     /// One step from the cloth's state, whose energy `value`, N·mm, and gradient are given and become those of where it leads.
-    WEAVE_STEPS WEAVE_HD Step step(Cloth& cloth, double& value) {
+    WEAVE_ANYWHERE WEAVE_HD Step step(Cloth& cloth, double& value) {
         cloth.keep_state();
         const Step how = try_step(cloth, value);
         if (how != Step::done) forget(cloth);
@@ -25,13 +25,13 @@ class Descent {
     }
 
     /// What was learnt no longer holds: another step came between.
-    WEAVE_STEPS WEAVE_HD void forget(Cloth& cloth) {
+    WEAVE_ANYWHERE WEAVE_HD void forget(Cloth& cloth) {
         cloth.forget_pairs();
         m_steps_of_matrix = steps_later;
     }
 
   private:
-    WEAVE_STEPS WEAVE_HD Step try_step(Cloth& cloth, double& value) {
+    WEAVE_ANYWHERE WEAVE_HD Step try_step(Cloth& cloth, double& value) {
         if (m_steps == 0 || m_steps_of_matrix >= (m_steps < first_steps ? steps_at_first : steps_later)) {
             renew(cloth);
             if (cloth.lacks_room()) return Step::lacks_room;
@@ -66,7 +66,7 @@ class Descent {
         return cloth.lacks_room() ? Step::lacks_room : Step::none;
     }
 
-    WEAVE_STEPS WEAVE_HD void renew(Cloth& cloth) {
+    WEAVE_ANYWHERE WEAVE_HD void renew(Cloth& cloth) {
         cloth.assemble(Curvature::convex);
         if (cloth.lacks_room()) return;
         cloth.add_to_pivots(damping);
@@ -82,7 +82,7 @@ class Descent {
     }
 
     /// Goes to `farther` if that is lower than `there` at `share`, and comes back from it otherwise.
-    WEAVE_STEPS WEAVE_HD static void go_farther(Cloth& cloth, double farther, double& share, double& there) {
+    WEAVE_ANYWHERE WEAVE_HD static void go_farther(Cloth& cloth, double farther, double& share, double& there) {
         const double value_there = cloth.go(farther);
         if (cloth.lacks_room()) return;
         if (value_there < there) {

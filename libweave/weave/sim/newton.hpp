@@ -40,7 +40,7 @@ struct RadiusPlace {
 
 /// Least of ½ x·A·x + gradient·x among the x no farther out than `radius`, until the residual has fallen to
 /// `tolerance` in the preconditioner's norm.
-WEAVE_STEPS template <class Cloth>
+WEAVE_ANYWHERE template <class Cloth>
 WEAVE_HD RadiusStep step_within(Cloth& cloth, double radius, double tolerance, std::size_t most_iterations) {
     RadiusStep result;
     cloth.start_from_gradient();
@@ -74,7 +74,7 @@ WEAVE_HD RadiusStep step_within(Cloth& cloth, double radius, double tolerance, s
 
 /// Looks for a direction in which the matrix curves downwards by more than `least` of what the preconditioner holds it
 /// for: the cloth's `direction`. False if a search of so many iterations from a random start finds none.
-WEAVE_STEPS template <class Cloth>
+WEAVE_ANYWHERE template <class Cloth>
 WEAVE_HD bool downward_direction(Cloth& cloth, double least, std::size_t most_iterations) {
     cloth.start_at_random();
     double work = cloth.precondition(), size2 = work;
@@ -106,7 +106,7 @@ class Newton {
   public:
     /// One step from the cloth's state, whose energy `value`, N·mm, and gradient are given and become those of where it leads;
     /// `residual` tells how exact it should be.
-    WEAVE_STEPS WEAVE_HD Step step(Cloth& cloth, double& value, double residual) {
+    WEAVE_ANYWHERE WEAVE_HD Step step(Cloth& cloth, double& value, double residual) {
         cloth.keep_state();
         const Step how = try_step(cloth, value, residual);
         if (how == Step::lacks_room) cloth.back();
@@ -117,7 +117,7 @@ class Newton {
     /// little to the side that is lower. None if no such direction is found, or none that is worth it: the
     /// energy must fall as it would against a hundredth of `force`, N, which is what counts as none (a saddle
     /// is flat, so its fall begins with little).
-    WEAVE_STEPS WEAVE_HD Step leave_saddle(Cloth& cloth, double& value, double force) {
+    WEAVE_ANYWHERE WEAVE_HD Step leave_saddle(Cloth& cloth, double& value, double force) {
         cloth.keep_state();
         const Step how = try_to_leave(cloth, value, force);
         if (how == Step::lacks_room) cloth.back();
@@ -126,7 +126,7 @@ class Newton {
 
     /// Whether the cloth's state, evaluated, is a saddle; see bend_at(). The state stays what it is; where the cloth then lacks
     /// room the answer is void.
-    WEAVE_STEPS WEAVE_HD Bend bend(Cloth& cloth, double force) {
+    WEAVE_ANYWHERE WEAVE_HD Bend bend(Cloth& cloth, double force) {
         cloth.keep_state();
         const Bend found = bend_along(cloth, look_down(cloth), force);
         cloth.back();
@@ -138,7 +138,7 @@ class Newton {
     [[nodiscard]] WEAVE_HD std::size_t cg_iterations() const { return m_cg_iterations; }
 
   private:
-    WEAVE_STEPS WEAVE_HD Step try_to_leave(Cloth& cloth, double& value, double force) {
+    WEAVE_ANYWHERE WEAVE_HD Step try_to_leave(Cloth& cloth, double& value, double force) {
         const double share = look_down(cloth);
         if (cloth.lacks_room()) return Step::lacks_room;
         if (!m_curves_down) return Step::none;
@@ -154,7 +154,7 @@ class Newton {
         return best != 0 ? Step::done : Step::none;
     }
 
-    WEAVE_STEPS WEAVE_HD Bend bend_along(Cloth& cloth, double share, double force) const {
+    WEAVE_ANYWHERE WEAVE_HD Bend bend_along(Cloth& cloth, double share, double force) const {
         double there = 0, back = 0;
         if (cloth.lacks_room() || !m_curves_down || !look_to_both_sides(cloth, share, there, back)) return Bend::up;
         const double here = cloth.go(0), against = worth * force * share * cloth.greatest_force(cloth.change);
@@ -162,14 +162,14 @@ class Newton {
     }
 
     /// Energies at a share of the change to either side, N·mm. False if the cloth lacks room.
-    WEAVE_STEPS WEAVE_HD static bool look_to_both_sides(Cloth& cloth, double share, double& there, double& back) {
+    WEAVE_ANYWHERE WEAVE_HD static bool look_to_both_sides(Cloth& cloth, double share, double& there, double& back) {
         there = cloth.go(share);
         if (cloth.lacks_room()) return false;
         back = cloth.go(-share);
         return !cloth.lacks_room();
     }
 
-    WEAVE_STEPS WEAVE_HD Step try_step(Cloth& cloth, double& value, double residual) {
+    WEAVE_ANYWHERE WEAVE_HD Step try_step(Cloth& cloth, double& value, double residual) {
         const bool exact = residual < exact_below;
         make_matrix(cloth, exact ? Curvature::exact : Curvature::convex);
         if (cloth.lacks_room()) return Step::lacks_room;
@@ -203,7 +203,7 @@ class Newton {
 
     /// What the energy did, as a share `held` of what it should, tells how far the next step may go: by the exact matrix
     /// within a radius, by the convex one damped.
-    WEAVE_STEPS WEAVE_HD void learn(Cloth& cloth, bool exact, double held, bool settled, const RadiusStep& found,
+    WEAVE_ANYWHERE WEAVE_HD void learn(Cloth& cloth, bool exact, double held, bool settled, const RadiusStep& found,
                                     const SafeStep& safe) {
         if (exact) {
             if (held > 0.75 && found.at_border)
@@ -219,12 +219,12 @@ class Newton {
     }
 
     /// The energy changes by no more than its rounding, and the forces say that the step leads towards rest.
-    WEAVE_STEPS WEAVE_HD static bool settles(Cloth& cloth, double gain, double value) {
+    WEAVE_ANYWHERE WEAVE_HD static bool settles(Cloth& cloth, double gain, double value) {
         return std::abs(gain) <= Cloth::noise * std::abs(value) &&
                cloth.greatest_force(cloth.trial) < cloth.greatest_force(cloth.gradient);
     }
 
-    WEAVE_STEPS WEAVE_HD static void make_matrix(Cloth& cloth, Curvature curvature) {
+    WEAVE_ANYWHERE WEAVE_HD static void make_matrix(Cloth& cloth, Curvature curvature) {
         constexpr float damping = 1e-7F;
         cloth.assemble(curvature);
         if (cloth.lacks_room()) return;
@@ -233,14 +233,14 @@ class Newton {
     }
 
     /// How much the energy should fall by a step that was cut, N·mm.
-    WEAVE_STEPS WEAVE_HD static double fall_of(Cloth& cloth, const SafeStep& safe) {
+    WEAVE_ANYWHERE WEAVE_HD static double fall_of(Cloth& cloth, const SafeStep& safe) {
         cloth.aim_along_change();
         return -safe.slope - cloth.curvature() / 2;
     }
 
     /// Looks for a direction in which the energy curves downwards: the cloth's change, and how much of it is a little way;
     /// 0 if there is none.
-    WEAVE_STEPS WEAVE_HD double look_down(Cloth& cloth) {
+    WEAVE_ANYWHERE WEAVE_HD double look_down(Cloth& cloth) {
         constexpr double far = 0.05;  // of the least reach
         m_curves_down = false;
         if (cloth.is_empty()) return 0;

@@ -31,17 +31,21 @@ double greatest_force(const Executor& executor, const std::vector<Real>& gradien
     }));
 }
 
-template <class Real>
-double reference_force(Energy<Real>& energy, const std::vector<Real>& state) {
-    const Fabric<Real>& fabric = energy.fabric();
+double force_of_yarns(const SimScene& scene) {
     double reference = 0;
-    for (std::size_t y = 0; y < fabric.yarns().size(); ++y) {
-        const SimYarn& yarn = fabric.scene().yarns[y];
+    for (const SimYarn& yarn : scene.yarns) {
         const double tension = yarn.is_fed ? yarn.stretch_N * (yarn.strain - 1) : 0;
         const double segment = 2 * yarn.radius_mm;
         reference =
             std::max({reference, tension, yarn.bending_N_mm2 / (segment * segment), 1e-6 * yarn.stretch_N});
     }
+    return reference;
+}
+
+template <class Real>
+double reference_force(Energy<Real>& energy, const std::vector<Real>& state) {
+    const Fabric<Real>& fabric = energy.fabric();
+    double reference = force_of_yarns(fabric.scene());
     std::vector<Real> force;
     energy.evaluate(state, force, {.elastic = false, .contact = true});
     std::vector<double> touching;
@@ -57,9 +61,6 @@ double reference_force(Energy<Real>& energy, const std::vector<Real>& state) {
     return reference;
 }
 
-namespace {
-
-/// Greatest strain of yarns of fixed length, each taken as a whole.
 template <class Real>
 double greatest_strain(const Fabric<Real>& fabric, const std::vector<Real>& state) {
     double greatest = 0;
@@ -69,6 +70,8 @@ double greatest_strain(const Fabric<Real>& fabric, const std::vector<Real>& stat
     }
     return greatest;
 }
+
+namespace {
 
 /// Leads a relaxation on the processor: what is told of it, and what ends it.
 template <class Real>
@@ -81,8 +84,7 @@ class Relaxation {
     }
 
     RelaxResult run() {
-        m_cloth.evaluate();
-        if (spread_points(m_energy, m_cloth.state)) m_cloth.evaluate();
+        spread_points(m_energy, m_cloth.state);
         m_relaxing.begin(m_cloth, greatest_strain(m_energy.fabric(), m_cloth.state));
         while (true) {
             m_relaxing.judge(m_cloth);
@@ -141,6 +143,8 @@ Bend bend_at(Energy<Real>& energy, const std::vector<Real>& state, double force)
 
 template double greatest_force(const Executor&, const std::vector<float>&);
 template double greatest_force(const Executor&, const std::vector<double>&);
+template double greatest_strain(const Fabric<float>&, const std::vector<float>&);
+template double greatest_strain(const Fabric<double>&, const std::vector<double>&);
 template double reference_force(Energy<float>&, const std::vector<float>&);
 template double reference_force(Energy<double>&, const std::vector<double>&);
 template RelaxResult relax(Energy<float>&, std::vector<float>&, const RelaxOptions&);

@@ -48,8 +48,15 @@ struct RelaxResult {
     std::vector<Progress> history;
 };
 
-/// The force that residuals are measured by: the greatest of warp tension, median contact force of the
-/// segments that touch, EI/L² and 1e-6·EA, in N; 0 for an empty scene.
+/// The greatest of warp tension, EI/L² and 1e-6·EA, in N; 0 for an empty scene.
+double force_of_yarns(const SimScene& scene);
+
+/// Greatest strain of yarns of fixed length, each taken as a whole.
+template <class Real>
+double greatest_strain(const Fabric<Real>& fabric, const std::vector<Real>& state);
+
+/// The force that residuals are measured by: that of the yarns, or the median contact force of the points that are touched where
+/// that is greater.
 template <class Real>
 double reference_force(Energy<Real>& energy, const std::vector<Real>& state);
 

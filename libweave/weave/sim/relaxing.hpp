@@ -24,13 +24,13 @@ struct Relaxing {
     bool is_looked_at = false, curves_down = false;
 
     /// Energy and gradient of the cloth's state.
-    WEAVE_STEPS WEAVE_HD Step evaluate(Cloth& cloth) {
+    WEAVE_ANYWHERE WEAVE_HD Step evaluate(Cloth& cloth) {
         energy = cloth.evaluate();
         return cloth.lacks_room() ? Step::lacks_room : Step::done;
     }
 
     /// The start; `strain`: the greatest of yarns of fixed length, each taken as a whole.
-    WEAVE_STEPS WEAVE_HD Step begin(Cloth& cloth, double strain) {
+    WEAVE_ANYWHERE WEAVE_HD Step begin(Cloth& cloth, double strain) {
         reference_N = cloth.reference_force();
         if (cloth.lacks_room()) return Step::lacks_room;
         m_gives = strain > strain_of_a_long_start;
@@ -39,7 +39,7 @@ struct Relaxing {
     }
 
     /// How far from rest the state is.
-    WEAVE_STEPS WEAVE_HD Step judge(Cloth& cloth) {
+    WEAVE_ANYWHERE WEAVE_HD Step judge(Cloth& cloth) {
         if (renews_reference() && !renew_reference(cloth)) return Step::lacks_room;
         residual = residual_of(cloth);
         if (m_gives && residual <= greater(residual_that_tightens, goal) && !tighten(cloth)) return Step::lacks_room;
@@ -50,7 +50,7 @@ struct Relaxing {
     [[nodiscard]] WEAVE_HD bool is_at_goal() const { return residual <= goal; }
 
     /// Leaves a state at its goal that is none but a saddle; none if it is no saddle, or enough were left.
-    WEAVE_STEPS WEAVE_HD Step leave_saddle(Cloth& cloth) {
+    WEAVE_ANYWHERE WEAVE_HD Step leave_saddle(Cloth& cloth) {
         if (!leaves_saddles || m_saddles == most_saddles) return Step::none;
         const Step how = m_newton.leave_saddle(cloth, energy, goal * reference_N);
         if (how == Step::none) {
@@ -64,7 +64,7 @@ struct Relaxing {
     }
 
     /// One step; none if nothing leads on.
-    WEAVE_STEPS WEAVE_HD Step step(Cloth& cloth) {
+    WEAVE_ANYWHERE WEAVE_HD Step step(Cloth& cloth) {
         const Choice before = m_choice;
         const Step how = step_by_choice(cloth);
         if (how == Step::done) ++iterations;
@@ -73,7 +73,7 @@ struct Relaxing {
     }
 
     /// The last state's residual and energy, whatever ended the relaxation.
-    WEAVE_STEPS WEAVE_HD Step finish(Cloth& cloth) {
+    WEAVE_ANYWHERE WEAVE_HD Step finish(Cloth& cloth) {
         if (m_gives && !tighten(cloth)) return Step::lacks_room;
         return measure_anew(cloth) ? Step::done : Step::lacks_room;
     }
@@ -90,13 +90,13 @@ struct Relaxing {
         double best = 1e300, best_before = 1e300, energy_before = 1e300, gain = 0, matrix_gain = 1e300;
     };
 
-    WEAVE_STEPS WEAVE_HD double residual_of(Cloth& cloth) const {
+    WEAVE_ANYWHERE WEAVE_HD double residual_of(Cloth& cloth) const {
         const double force = cloth.greatest_force(cloth.gradient);
         return reference_N > 0 ? force / reference_N : 0;
     }
 
     /// The residual with the reference of this very state. Like those that follow false where the cloth lacks room.
-    WEAVE_STEPS WEAVE_HD bool measure_anew(Cloth& cloth) {
+    WEAVE_ANYWHERE WEAVE_HD bool measure_anew(Cloth& cloth) {
         if (m_referred != iterations && !renew_reference(cloth)) return false;
         residual = residual_of(cloth);
         return true;
@@ -107,7 +107,7 @@ struct Relaxing {
         return m_referred != iterations && (iterations % 32 == 0 || (iterations & (iterations - 1)) == 0);
     }
 
-    WEAVE_STEPS WEAVE_HD bool renew_reference(Cloth& cloth) {
+    WEAVE_ANYWHERE WEAVE_HD bool renew_reference(Cloth& cloth) {
         const double reference = cloth.reference_force();
         if (cloth.lacks_room()) return false;
         cloth.evaluate_trial();
@@ -118,7 +118,7 @@ struct Relaxing {
     }
 
     /// Yarns give way no longer.
-    WEAVE_STEPS WEAVE_HD bool tighten(Cloth& cloth) {
+    WEAVE_ANYWHERE WEAVE_HD bool tighten(Cloth& cloth) {
         cloth.give_beyond(std::numeric_limits<double>::infinity());
         if (evaluate(cloth) == Step::lacks_room) return false;
         m_descent.forget(cloth);
@@ -129,7 +129,7 @@ struct Relaxing {
     /// Near rest the exact matrix leads home. Farther off it is little worth, cloth being far from a
     /// quadratic form, unless steps that learn make no way: then something is so stiff against the rest that
     /// only the matrix knows it.
-    WEAVE_STEPS WEAVE_HD Step step_by_choice(Cloth& cloth) {
+    WEAVE_ANYWHERE WEAVE_HD Step step_by_choice(Cloth& cloth) {
         m_choice.best = lesser(m_choice.best, residual);
         if (--m_choice.left <= 0) choose();
         if (m_choice.is_by_matrix || residual < newton_below) {

@@ -23,13 +23,6 @@
 #include <cstddef>
 #include <cstdint>
 
-/// Before a function template that any crew runs: whether it is called here or on the device, its crew decides, so nvcc need not ask.
-#if defined(__CUDACC__)
-#define WEAVE_ANY_CREW _Pragma("nv_exec_check_disable")
-#else
-#define WEAVE_ANY_CREW
-#endif
-
 namespace weave::sim {
 
 inline constexpr std::size_t most_sums = 64;

@@ -133,7 +133,7 @@ struct ForcesRoom {
 };
 
 /// Energy, N·mm, and ∂E/∂q of a state whose lists are made, 3 numbers a row.
-WEAVE_ANY_CREW template <class Real, class Crew>
+WEAVE_ANYWHERE template <class Real, class Crew>
 WEAVE_HD double pull(Crew& crew, const ClothView<Real>& cloth, const ListsView<Real>& lists, const ForcesRoom<Real>& room,
                      const View<const double>& state, Real give, Terms terms, const View<Real>& gradient) {
     if (terms.contact)

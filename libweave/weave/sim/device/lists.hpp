@@ -42,7 +42,7 @@ class Lists {
 
     /// Lays the samples of a state and makes the lists anew where they no longer hold. False where an array is too short: then
     /// there are no lists, and state() tells what is needed.
-    WEAVE_ANY_CREW template <class Crew>
+    WEAVE_ANYWHERE template <class Crew>
     WEAVE_HD bool update(Crew& crew, const View<const double>& state) {
         crew.each(m_cloth.samples, LaySamples<Real>{m_cloth, state, m_room.sample});
         if (m_state.made && gone_since(crew, m_room.built) <= square(skin_mm() / 2)) {
@@ -66,17 +66,17 @@ class Lists {
     WEAVE_HD double wide_skin_mm() const { return (skin_share + travel_share) * m_cloth.least_reach_mm; }
 
     /// The farthest that a sample has gone since, squared, mm².
-    WEAVE_ANY_CREW template <class Crew>
+    WEAVE_ANYWHERE template <class Crew>
     WEAVE_HD double gone_since(Crew& crew, const View<Sample<Real>>& built) {
         return crew.greatest(m_cloth.samples, GoneSince<Real>{m_room.sample, built, static_cast<Real>(m_cloth.scale.step_mm)});
     }
 
-    WEAVE_ANY_CREW template <class Crew>
+    WEAVE_ANYWHERE template <class Crew>
     WEAVE_HD void move_halo(Crew& crew) {
         crew.each(m_state.halo, MoveImages<Real>{m_cloth, m_room.halo, m_room.sample});
     }
 
-    WEAVE_ANY_CREW template <class Crew>
+    WEAVE_ANYWHERE template <class Crew>
     WEAVE_HD bool build(Crew& crew) {
         if (m_state.builds == 0) crew.each(m_cloth.samples, KeepWeights<Real>{m_room.sample, m_room.first_weight});
         if (!m_state.wide || gone_since(crew, m_room.wide_built) > square((wide_skin_mm() - skin_mm()) / 2)) {
@@ -96,7 +96,7 @@ class Lists {
         return false;
     }
 
-    WEAVE_ANY_CREW template <class Crew>
+    WEAVE_ANYWHERE template <class Crew>
     WEAVE_HD bool build_wide(Crew& crew) {
         m_state.wide = false;
         if (!find_images(crew)) return false;
@@ -114,7 +114,7 @@ class Lists {
     }
 
     /// Images of samples that come within reach of the box that holds all own samples.
-    WEAVE_ANY_CREW template <class Crew>
+    WEAVE_ANYWHERE template <class Crew>
     WEAVE_HD bool find_images(Crew& crew) {
         const double reach = 2 * m_cloth.greatest_radius_mm + wide_skin_mm();
         FindImages<Real> find{m_cloth, m_room.sample, {0, 0}, {0, 0}, m_room.first_image, m_room.halo, m_room.radius, false};
@@ -132,7 +132,7 @@ class Lists {
         return true;
     }
 
-    WEAVE_ANY_CREW template <class Crew>
+    WEAVE_ANYWHERE template <class Crew>
     WEAVE_HD void fill_cells(Crew& crew) {
         const std::uint32_t all = m_cloth.samples + m_state.halo;
         crew.each(std::size_t(m_room.cells.mask) + 2, EmptyCells{m_room.cells});
@@ -142,7 +142,7 @@ class Lists {
         crew.each(all, sort.filling());
     }
 
-    WEAVE_ANY_CREW template <class Crew>
+    WEAVE_ANYWHERE template <class Crew>
     WEAVE_HD bool list_neighbours(Crew& crew) {
         const ListNeighbours<Real> list{m_cloth, view(), skin_mm(), m_room.first_weight, m_room.first_candidate, m_room.candidate, false};
         crew.each(m_cloth.samples + 1, list);

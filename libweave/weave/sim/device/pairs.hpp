@@ -34,7 +34,7 @@ class Pairs {
     [[nodiscard]] WEAVE_HD std::uint32_t newest() const { return m_newest; }
 
     /// Keeps a share of the change and how it changed the gradient, unless the energy hardly curves upwards along it.
-    WEAVE_ANY_CREW template <class Crew>
+    WEAVE_ANYWHERE template <class Crew>
     WEAVE_HD void remember(Crew& crew, Real share, const View<const Real>& change, const View<const Real>& gradient, const View<const Real>& trial) {
         constexpr double least_bend = 1e-3;
         const std::uint32_t next = (m_newest + 1) % places_for_pairs;
@@ -51,7 +51,7 @@ class Pairs {
 
     /// direction := −H·gradient, H being what the pairs make of the preconditioner `apply(residual, step)`. `work` and `solved` are
     /// scratch.
-    WEAVE_ANY_CREW template <class Crew, class Apply>
+    WEAVE_ANYWHERE template <class Crew, class Apply>
     WEAVE_HD void find_direction(Crew& crew, const View<const Real>& gradient, Apply& apply, const View<Real>& work, const View<Real>& solved,
                                  const View<Real>& direction) {
         if (m_count == 0) {

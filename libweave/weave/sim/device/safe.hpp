@@ -137,7 +137,7 @@ struct SafeSteps {
     View<double> share;       ///< per segment
 
     /// How much of a change, at most `most`, may be made at once so that no two yarns can pass through one another.
-    WEAVE_ANY_CREW template <class Crew>
+    WEAVE_ANYWHERE template <class Crew>
     WEAVE_HD double safe_share(Crew& crew, const ListsView<Real>& lists, const View<const double>& state, const View<const Real>& change,
                                double most) const {
         crew.each(cloth.samples, MoveSamples<Real>{cloth, change, moved});
@@ -146,7 +146,7 @@ struct SafeSteps {
 
     /// Shortens a change where it is not safe: each row goes as far as the samples near it allow, and not at all where they do not
     /// come to agree. At least 0.9 of what is left is safe.
-    WEAVE_ANY_CREW template <class Crew>
+    WEAVE_ANYWHERE template <class Crew>
     WEAVE_HD void shorten(Crew& crew, const ListsView<Real>& lists, const View<const double>& state, const View<Real>& change) const {
         constexpr int rounds = 6, most_rounds = 20;
         constexpr double enough = 0.9;
