@@ -88,7 +88,29 @@ std::vector<Sphere<Real>> spheres_of(const SimScene& scene) {
     return spheres;
 }
 
-/// Second derivatives of the same. Convex: only what curves upwards.
+/// Second derivatives of a field at one Gauss point, by the place y and the slope y' (t) there.
+template <class Real>
+struct FieldCurvature {
+    Mat<Real> yy, yt, tt;
+};
+
+/// Convex: only what curves upwards; yt is then left. So is what only fed yarns have, of others. `unit` is that of the tangent,
+/// `speed` its length.
+template <class Real>
+WEAVE_INLINE WEAVE_HD inline FieldCurvature<Real> field_curvature(const YarnConstants<Real>& yarn, Real weight, Real speed,
+                                                                  const Vec<Real>& unit, Real stiffness,
+                                                                  const SpherePush<Real>& push, bool convex) {
+    const bool fed = yarn.supply == Supply::tension;
+    Real along = stiffness, side = -stiffness * push.depth / push.distance, pull = push.value / speed;
+    if (convex) along = std::max(along, Real(0)), side = std::max(side, Real(0)), pull = std::max(pull, Real(0));
+    FieldCurvature<Real> all;
+    const Mat<Real> by_place = along * push.out * push.out.transpose() + side * across(push.out);
+    all.yy = weight * (fed ? speed : yarn.rest_mm) * by_place;
+    if (fed) all.tt = weight * pull * across(unit);
+    if (fed && !convex) all.yt = -weight * stiffness * push.depth * push.out * unit.transpose();
+    return all;
+}
+
 inline void add_field_curvature(const YarnConstants<double>& yarn, const Gauss<double>& gauss, const double* slots,
                                 const std::vector<Sphere<double>>& spheres, bool convex, SlotBlocks& sum) {
     const bool fed = yarn.supply == Supply::tension;
@@ -100,17 +122,14 @@ inline void add_field_curvature(const YarnConstants<double>& yarn, const Gauss<d
         for (const Sphere<double>& sphere : spheres) {
             const SpherePush<double> push(sphere, at);
             if (push.depth <= 0 || push.distance <= 0) continue;
-            double along = sphere.stiffness, side = -sphere.stiffness * push.depth / push.distance,
-                   pull = push.value / speed;
-            if (convex) along = std::max(along, 0.0), side = std::max(side, 0.0), pull = std::max(pull, 0.0);
-            const Mat<double> by_place = along * push.out * push.out.transpose() + side * across(push.out);
-            sum.add(basis.value, basis.value, weight * (fed ? speed : yarn.rest_mm) * by_place);
+            const FieldCurvature<double> field =
+                field_curvature(yarn, weight, speed, unit, sphere.stiffness, push, convex);
+            sum.add(basis.value, basis.value, field.yy);
             if (!fed) continue;
-            sum.add(basis.slope, basis.slope, weight * pull * across(unit));
+            sum.add(basis.slope, basis.slope, field.tt);
             if (convex) continue;
-            const Mat<double> mixed = -weight * sphere.stiffness * push.depth * push.out * unit.transpose();
-            sum.add(basis.value, basis.slope, mixed);
-            sum.add(basis.slope, basis.value, mixed.transpose());
+            sum.add(basis.value, basis.slope, field.yt);
+            sum.add(basis.slope, basis.value, field.yt.transpose());
         }
     }
 }
