@@ -1,5 +1,6 @@
 #include <weave/sim/device/crew_arrays.hpp>
 
+#include <weave/sim/hierarchy.hpp>
 #include <weave/sim/relax.hpp>
 
 namespace weave::sim {
@@ -13,7 +14,8 @@ constexpr std::size_t vectors_of_rows = 9;
 
 template <class Real>
 CrewArrays<Real>::CrewArrays(Memory& memory, const Fabric<double>& fabric, const std::vector<double>& state)
-    : m_cloth(memory, fabric, state), m_lists(memory, m_cloth.view()), m_curvature(memory, m_cloth.view(), fabric), m_pieces(memory, fabric),
+    : m_cloth(memory, fabric, state), m_lists(memory, m_cloth.view()), m_curvature(memory, m_cloth.view()),
+      m_pieces(memory, Hierarchy(rows_of_yarns(fabric), places_of(fabric), device_last_rows)),
       m_numbers(3 * std::size_t(m_cloth.view().rows)), m_contact(memory, fabric.samples()), m_energy(memory, fabric.segments()),
       m_share(memory, fabric.segments()), m_state(memory, state), m_before(memory, state.size()),
       m_products(memory, places_for_pairs * places_for_pairs), m_sums(memory, most_sums), m_pair_share(memory, most_pairs),
@@ -27,8 +29,8 @@ CrewRoom<Real> CrewArrays<Real>::room() const {
     room.cloth = m_cloth.view();
     room.lists = m_lists.room();
     room.forces = {m_contact.view(), m_energy.view(), m_by_segment.view()};
-    room.curvature = m_curvature.room();
-    room.pieces = m_pieces.room();
+    room.curvature = m_curvature.view();
+    room.pieces = m_pieces.view();
     room.pairs = {m_numbers, m_pair_change.view(), m_pair_bend.view(), m_products.view(), m_sums.view(), m_pair_share.view()};
     room.moved = m_moved.view();
     room.share = m_share.view();
@@ -45,9 +47,13 @@ CrewRoom<Real> CrewArrays<Real>::room() const {
 
 template <class Real>
 void CrewArrays<Real>::grow(CrewState& state) {
-    m_lists.grow(state.lists);
-    m_curvature.grow(state.curvature);
-    m_pieces.grow(state.pieces);
+    switch (state.lacking) {
+        case Lacking::nothing: return;
+        case Lacking::lists: m_lists.grow(state.lists); break;
+        case Lacking::curvature: m_curvature.grow(); break;
+        case Lacking::pieces: m_pieces.grow(); break;
+    }
+    state.shape_of_build = 0;
 }
 
 template <class Real>

@@ -4,7 +4,7 @@
 #include <weave/sim/device/crew_cloth.hpp>
 #include <weave/sim/device/curvature_arrays.hpp>
 #include <weave/sim/device/lists_arrays.hpp>
-#include <weave/sim/device/pieces_arrays.hpp>
+#include <weave/sim/device/piece_arrays.hpp>
 
 #include <cstddef>
 #include <vector>
@@ -28,7 +28,7 @@ class CrewArrays {
     ClothArrays<Real> m_cloth;
     ListsArrays<Real> m_lists;
     CurvatureArrays<Real> m_curvature;
-    PiecesArrays<Real> m_pieces;
+    PieceArrays<Real> m_pieces;
     std::size_t m_numbers;  ///< of a vector of rows
     Array<ContactSum<Real>> m_contact;
     Array<double> m_energy, m_share, m_state, m_before, m_products, m_sums, m_pair_share;

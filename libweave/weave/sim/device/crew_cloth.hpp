@@ -6,7 +6,7 @@
 #include <weave/sim/device/forces.hpp>
 #include <weave/sim/device/lists.hpp>
 #include <weave/sim/device/pairs.hpp>
-#include <weave/sim/device/pieces.hpp>
+#include <weave/sim/device/pieces_apply.hpp>
 #include <weave/sim/device/rows.hpp>
 #include <weave/sim/device/safe.hpp>
 
@@ -21,8 +21,8 @@ struct CrewRoom {
     ClothView<Real> cloth;
     ListsRoom<Real> lists;
     ForcesRoom<Real> forces;
-    CurvatureRoom<Real> curvature;
-    PiecesRoom<Real> pieces;
+    CurvatureView<Real> curvature;
+    PiecesView<Real> pieces;
     PairsRoom<Real> pairs;
     View<Moved<Real>> moved;      ///< per own sample
     View<double> share;           ///< per segment
@@ -32,13 +32,20 @@ struct CrewRoom {
     double reference_floor_N = 0; ///< the reference force without contact
 };
 
+/// What there is too little room for.
+enum class Lacking : std::uint8_t { nothing, lists, curvature, pieces };
+
+/// A strain that no yarn comes to, in float as well: StretchLaw::give where nothing gives way.
+inline constexpr double unlimited_give = 1e30;
+
 /// Numbers that a crew's cloth goes on with.
 struct CrewState {
     ListsState lists;
-    CurvatureState curvature;
-    PiecesState pieces;
+    Lacking lacking = Lacking::nothing;
+    std::uint32_t shape_of_build = 0;  ///< which lists the matrix has the shape of, by ListsState::builds; 0: none
+    bool are_pieces_shaped = false;    ///< for this shape
     std::uint32_t pairs = 0, newest_pair = 0;
-    double give = 1e300;
+    double give = unlimited_give;
     /// What evaluating and solving cost so far.
     std::uint64_t evaluations = 0;
     bool is_traded = false;  ///< gradient and trial have changed places
@@ -55,15 +62,14 @@ class CrewCloth {
     WEAVE_ANYWHERE WEAVE_HD CrewCloth(Crew& crew, const CrewRoom<Real>& room, const CrewState& state)
         : gradient(state.is_traded ? room.trial : room.gradient), trial(state.is_traded ? room.gradient : room.trial), change(room.change),
           cut(room.cut), direction(room.direction), step(room.step), m_crew(crew), m_room(room), m_state(state),
-          m_lists(room.cloth, room.lists, state.lists), m_curvature(room.cloth, room.curvature, state.curvature),
-          m_pieces(room.pieces, state.pieces), m_pairs(room.pairs, state.pairs, state.newest_pair) {}
+          m_lists(room.cloth, room.lists, state.lists), m_pairs(room.pairs, state.pairs, state.newest_pair) {
+        m_state.lacking = Lacking::nothing;
+    }
 
     /// What another kernel can go on from.
     [[nodiscard]] WEAVE_HD CrewState state() const {
         CrewState state = m_state;
         state.lists = m_lists.state();
-        state.curvature = m_curvature.state();
-        state.pieces = m_pieces.state();
         state.pairs = m_pairs.count();
         state.newest_pair = m_pairs.newest();
         return state;
@@ -71,7 +77,7 @@ class CrewCloth {
 
     View<Real> gradient, trial, change, cut, direction, step;
 
-    [[nodiscard]] WEAVE_HD bool lacks_room() const { return m_lacks_room; }
+    [[nodiscard]] WEAVE_HD bool lacks_room() const { return m_state.lacking != Lacking::nothing; }
     [[nodiscard]] WEAVE_HD bool is_empty() const { return m_room.cloth.rows == 0; }
     [[nodiscard]] WEAVE_HD double least_reach() const { return m_room.cloth.least_reach_mm; }
 
@@ -79,7 +85,7 @@ class CrewCloth {
 
     WEAVE_ANYWHERE WEAVE_HD double evaluate() { return evaluate_into(gradient, {}); }
     WEAVE_ANYWHERE WEAVE_HD double evaluate_trial() { return evaluate_into(trial, {}); }
-    WEAVE_HD void give_beyond(double strain) { m_state.give = strain < 1e300 ? strain : 1e300; }
+    WEAVE_HD void give_beyond(double strain) { m_state.give = lesser(strain, unlimited_give); }
 
     WEAVE_ANYWHERE WEAVE_HD double go(double share) {
         m_crew.each(m_room.cloth.slots, GoAlong<Real>{m_room.cloth, m_room.before, change, share, m_room.state});
@@ -98,7 +104,7 @@ class CrewCloth {
     /// what their lengths may be.
     WEAVE_ANYWHERE WEAVE_HD double reference_force() {
         evaluate_into(trial, {.elastic = false, .contact = true});
-        if (m_lacks_room) return 0;
+        if (lacks_room()) return 0;
         m_crew.each(m_room.cloth.rows, ForceKey<Real>{trial, m_room.key});
         std::uint32_t low = 1, high = 0x7f800000U;  // the keys of all lengths
         const double touched = m_crew.sum(m_room.cloth.rows, KeyUpTo{m_room.key, high});
@@ -130,11 +136,21 @@ class CrewCloth {
     // ---- Matrix ----
 
     WEAVE_ANYWHERE WEAVE_HD void assemble(Curvature curvature) {
-        m_lacks_room = !m_curvature.assemble(m_crew, m_lists.view(), m_lists.state().builds, m_room.state, static_cast<Real>(m_state.give), curvature);
+        if (m_state.shape_of_build != m_lists.state().builds) {
+            m_state.are_pieces_shaped = false;
+            if (lacks(!make_shape(m_crew, m_room.cloth, m_lists.view(), m_room.curvature), Lacking::curvature)) return;
+            m_state.shape_of_build = m_lists.state().builds;
+        }
+        sim::assemble(m_crew, m_room.cloth, m_lists.view(), m_room.state,
+                      CurvatureLaw<Real>{curvature == Curvature::convex, static_cast<Real>(m_state.give)}, m_room.curvature);
     }
-    WEAVE_ANYWHERE WEAVE_HD void add_to_pivots(float share) { m_curvature.matrix().add_to_pivots(m_crew, share); }
+    WEAVE_ANYWHERE WEAVE_HD void add_to_pivots(float share) { sim::add_to_pivots(m_crew, m_room.curvature.matrix, share); }
     WEAVE_ANYWHERE WEAVE_HD void factor() {
-        m_lacks_room = !m_pieces.factor(m_crew, m_curvature.matrix(), m_curvature.state().shapes);
+        if (!m_state.are_pieces_shaped &&
+            lacks(!shape_pieces(m_crew, m_room.curvature.matrix, m_room.pieces), Lacking::pieces))
+            return;
+        m_state.are_pieces_shaped = true;
+        sim::factor(m_crew, m_room.curvature.matrix, m_room.pieces);
     }
     WEAVE_ANYWHERE WEAVE_HD void find_direction() {
         Apply apply{*this};
@@ -148,7 +164,7 @@ class CrewCloth {
     WEAVE_ANYWHERE WEAVE_HD void start_from_gradient() { m_crew.each(numbers(), StartDownhill<Real>{gradient, step, m_room.residual}); }
     WEAVE_ANYWHERE WEAVE_HD void start_at_random() { m_crew.each(numbers(), StartAnyhow<Real>{step, m_room.residual}); }
     WEAVE_ANYWHERE WEAVE_HD double precondition() {
-        m_pieces.apply(m_crew, m_room.residual, m_room.solved);
+        apply(m_crew, m_room.pieces, View<const Real>(m_room.residual), m_room.solved);
         return dot(m_room.residual, m_room.solved);
     }
     WEAVE_ANYWHERE WEAVE_HD void turn(double share) {
@@ -156,7 +172,7 @@ class CrewCloth {
         else m_crew.each(numbers(), AddScaled<Real>{static_cast<Real>(share), direction, m_room.solved, direction});
     }
     WEAVE_ANYWHERE WEAVE_HD double curvature() {
-        m_curvature.matrix().multiply(m_crew, direction, m_room.product);
+        multiply(m_crew, m_room.curvature.matrix, View<const Real>(direction), m_room.product);
         return dot(direction, m_room.product);
     }
     WEAVE_ANYWHERE WEAVE_HD void move(double share) {
@@ -167,17 +183,21 @@ class CrewCloth {
     struct Apply {
         CrewCloth& cloth;
         WEAVE_ANYWHERE WEAVE_HD void operator()(const View<const Real>& residual, const View<Real>& step) {
-            cloth.m_pieces.apply(cloth.m_crew, residual, step);
+            apply(cloth.m_crew, cloth.m_room.pieces, residual, step);
         }
     };
 
     [[nodiscard]] WEAVE_HD std::size_t numbers() const { return 3 * std::size_t(m_room.cloth.rows); }
     [[nodiscard]] WEAVE_HD SafeSteps<Real> safe() const { return {m_room.cloth, m_room.moved, m_room.share}; }
 
+    WEAVE_HD bool lacks(bool does, Lacking what) {
+        m_state.lacking = does ? what : Lacking::nothing;
+        return does;
+    }
+
     WEAVE_ANYWHERE WEAVE_HD double evaluate_into(const View<Real>& into, Terms terms) {
         ++m_state.evaluations;
-        m_lacks_room = !m_lists.update(m_crew, m_room.state);
-        if (m_lacks_room) return 0;
+        if (lacks(!m_lists.update(m_crew, m_room.state), Lacking::lists)) return 0;
         return pull(m_crew, m_room.cloth, m_lists.view(), m_room.forces, m_room.state, static_cast<Real>(m_state.give), terms, into);
     }
 
@@ -185,10 +205,7 @@ class CrewCloth {
     CrewRoom<Real> m_room;
     CrewState m_state;
     Lists<Real> m_lists;
-    CurvatureOf<Real> m_curvature;
-    Pieces<Real> m_pieces;
     Pairs<Real> m_pairs;
-    bool m_lacks_room = false;
 };
 
 }  // namespace weave::sim

@@ -95,7 +95,7 @@ struct SegmentPull {
 
 /// Each row adds up what the segments that reach its slots have found: segment s - c of its yarn at its place c.
 template <class Real>
-struct GatherRow {
+struct GatherPull {
     ClothView<Real> cloth;
     View<const Real> by_segment;
     View<Real> gradient;
@@ -139,7 +139,7 @@ WEAVE_HD double pull(Crew& crew, const ClothView<Real>& cloth, const ListsView<R
     if (terms.contact)
         crew.each(cloth.samples, SampleContact<Real>{lists, cloth.floor, static_cast<Real>(cloth.scale.step_mm), room.contact});
     crew.each(cloth.segments, SegmentPull<Real>{cloth, lists, state, room.contact, give, terms, room.energy, room.by_segment});
-    crew.each(cloth.rows, GatherRow<Real>{cloth, room.by_segment, gradient});
+    crew.each(cloth.rows, GatherPull<Real>{cloth, room.by_segment, gradient});
     return crew.sum(cloth.segments, Number<double>{room.energy});
 }
 

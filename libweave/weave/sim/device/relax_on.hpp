@@ -115,8 +115,6 @@ class RelaxingOn {
 /// machine's memory does not suffice; the state is then what it was, or one on the way.
 template <class Real, class Machine>
 RelaxResult relax_on(Machine& machine, Energy<double>& energy, std::vector<double>& state, const RelaxOptions& options) {
-    std::vector<double> unused;
-    energy.evaluate(state, unused);
     spread_points(energy, state);
     return RelaxingOn<Real, Machine>(machine, energy, state, options).run();
 }
