@@ -21,6 +21,13 @@
 #else
 #define WEAVE_ANYWHERE
 #endif
+/// Is compiled once and called: a relaxation in one kernel calls it from many places, and its threads wait far longer for one another
+/// than a call takes.
+#if defined(__CUDACC__)
+#define WEAVE_CALLED __noinline__
+#else
+#define WEAVE_CALLED
+#endif
 /// Becomes part of whatever runs it, so that it is compiled for wide vectors with it (execute.hpp).
 #define WEAVE_INLINE [[gnu::always_inline]]
 

@@ -16,7 +16,7 @@ template <class Cloth>
 class Descent {
   public:
     /// One step from the cloth's state, whose energy `value`, N·mm, and gradient are given and become those of where it leads.
-    WEAVE_ANYWHERE WEAVE_HD Step step(Cloth& cloth, double& value) {
+    WEAVE_ANYWHERE WEAVE_CALLED WEAVE_HD Step step(Cloth& cloth, double& value) {
         cloth.keep_state();
         const Step how = try_step(cloth, value);
         if (how != Step::done) forget(cloth);
@@ -31,7 +31,7 @@ class Descent {
     }
 
   private:
-    WEAVE_ANYWHERE WEAVE_HD Step try_step(Cloth& cloth, double& value) {
+    WEAVE_ANYWHERE WEAVE_CALLED WEAVE_HD Step try_step(Cloth& cloth, double& value) {
         if (m_steps == 0 || m_steps_of_matrix >= (m_steps < first_steps ? steps_at_first : steps_later)) {
             renew(cloth);
             if (cloth.lacks_room()) return Step::lacks_room;

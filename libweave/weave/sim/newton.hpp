@@ -106,7 +106,7 @@ class Newton {
   public:
     /// One step from the cloth's state, whose energy `value`, N·mm, and gradient are given and become those of where it leads;
     /// `residual` tells how exact it should be.
-    WEAVE_ANYWHERE WEAVE_HD Step step(Cloth& cloth, double& value, double residual) {
+    WEAVE_ANYWHERE WEAVE_CALLED WEAVE_HD Step step(Cloth& cloth, double& value, double residual) {
         cloth.keep_state();
         const Step how = try_step(cloth, value, residual);
         if (how == Step::lacks_room) cloth.back();
@@ -117,7 +117,7 @@ class Newton {
     /// little to the side that is lower. None if no such direction is found, or none that is worth it: the
     /// energy must fall as it would against a hundredth of `force`, N, which is what counts as none (a saddle
     /// is flat, so its fall begins with little).
-    WEAVE_ANYWHERE WEAVE_HD Step leave_saddle(Cloth& cloth, double& value, double force) {
+    WEAVE_ANYWHERE WEAVE_CALLED WEAVE_HD Step leave_saddle(Cloth& cloth, double& value, double force) {
         cloth.keep_state();
         const Step how = try_to_leave(cloth, value, force);
         if (how == Step::lacks_room) cloth.back();
@@ -169,7 +169,7 @@ class Newton {
         return !cloth.lacks_room();
     }
 
-    WEAVE_ANYWHERE WEAVE_HD Step try_step(Cloth& cloth, double& value, double residual) {
+    WEAVE_ANYWHERE WEAVE_CALLED WEAVE_HD Step try_step(Cloth& cloth, double& value, double residual) {
         const bool exact = residual < exact_below;
         make_matrix(cloth, exact ? Curvature::exact : Curvature::convex);
         if (cloth.lacks_room()) return Step::lacks_room;

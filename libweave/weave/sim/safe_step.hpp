@@ -14,7 +14,7 @@ struct SafeStep {
 /// Shortens the cloth's change so that no yarns can pass through one another: as a whole, or only where it must be,
 /// whichever keeps more of its slope. `farthest` is at most `most`.
 WEAVE_ANYWHERE template <class Cloth>
-WEAVE_HD SafeStep make_safe(Cloth& cloth, double most) {
+WEAVE_CALLED WEAVE_HD SafeStep make_safe(Cloth& cloth, double most) {
     constexpr double least_kept = 0.2;  // a cut change that keeps less of its slope is worth little
     const double slope = cloth.dot(cloth.gradient, cloth.change), safe = cloth.safe_share(cloth.change, most);
     if (safe >= 1) return {slope, 1, safe};

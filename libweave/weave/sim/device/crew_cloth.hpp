@@ -102,7 +102,7 @@ class CrewCloth {
 
     /// The greatest of warp tension, EI/L² and 1e-6·EA, and the median of the contact forces on points that are touched, found by halving
     /// what their lengths may be.
-    WEAVE_ANYWHERE WEAVE_HD double reference_force() {
+    WEAVE_ANYWHERE WEAVE_CALLED WEAVE_HD double reference_force() {
         evaluate_into(trial, {.elastic = false, .contact = true});
         if (lacks_room()) return 0;
         m_crew.each(m_room.cloth.rows, ForceKey<Real>{trial, m_room.key});
@@ -120,12 +120,12 @@ class CrewCloth {
 
     // ---- Vectors ----
 
-    WEAVE_ANYWHERE WEAVE_HD double dot(const View<Real>& a, const View<Real>& b) { return m_crew.sum(numbers(), Dot<Real>{a, b}); }
-    WEAVE_ANYWHERE WEAVE_HD double greatest_force(const View<Real>& of) { return sqrt(m_crew.greatest(m_room.cloth.rows, Length2<Real>{of})); }
-    WEAVE_ANYWHERE WEAVE_HD double safe_share(const View<Real>& of, double most) {
+    WEAVE_ANYWHERE WEAVE_CALLED WEAVE_HD double dot(const View<Real>& a, const View<Real>& b) { return m_crew.sum(numbers(), Dot<Real>{a, b}); }
+    WEAVE_ANYWHERE WEAVE_CALLED WEAVE_HD double greatest_force(const View<Real>& of) { return sqrt(m_crew.greatest(m_room.cloth.rows, Length2<Real>{of})); }
+    WEAVE_ANYWHERE WEAVE_CALLED WEAVE_HD double safe_share(const View<Real>& of, double most) {
         return safe().safe_share(m_crew, m_lists.view(), m_room.state, of, most);
     }
-    WEAVE_ANYWHERE WEAVE_HD void shorten(const View<Real>& of) { safe().shorten(m_crew, m_lists.view(), m_room.state, of); }
+    WEAVE_ANYWHERE WEAVE_CALLED WEAVE_HD void shorten(const View<Real>& of) { safe().shorten(m_crew, m_lists.view(), m_room.state, of); }
     WEAVE_ANYWHERE WEAVE_HD void stop_uphill(const View<Real>& of) { m_crew.each(m_room.cloth.rows, StopUphill<Real>{gradient, of}); }
     WEAVE_ANYWHERE WEAVE_HD void scale(const View<Real>& of, double share) { m_crew.each(numbers(), Scale<Real>{static_cast<Real>(share), of}); }
     WEAVE_ANYWHERE WEAVE_HD void cut_from_change() { m_crew.each(numbers(), Copy<Real>{change, cut}); }
@@ -135,7 +135,7 @@ class CrewCloth {
 
     // ---- Matrix ----
 
-    WEAVE_ANYWHERE WEAVE_HD void assemble(Curvature curvature) {
+    WEAVE_ANYWHERE WEAVE_CALLED WEAVE_HD void assemble(Curvature curvature) {
         if (m_state.shape_of_build != m_lists.state().builds) {
             m_state.are_pieces_shaped = false;
             if (lacks(!make_shape(m_crew, m_room.cloth, m_lists.view(), m_room.curvature), Lacking::curvature)) return;
@@ -145,18 +145,18 @@ class CrewCloth {
                       CurvatureLaw<Real>{curvature == Curvature::convex, static_cast<Real>(m_state.give)}, m_room.curvature);
     }
     WEAVE_ANYWHERE WEAVE_HD void add_to_pivots(float share) { sim::add_to_pivots(m_crew, m_room.curvature.matrix, share); }
-    WEAVE_ANYWHERE WEAVE_HD void factor() {
+    WEAVE_ANYWHERE WEAVE_CALLED WEAVE_HD void factor() {
         if (!m_state.are_pieces_shaped &&
             lacks(!shape_pieces(m_crew, m_room.curvature.matrix, m_room.pieces), Lacking::pieces))
             return;
         m_state.are_pieces_shaped = true;
         sim::factor(m_crew, m_room.curvature.matrix, m_room.pieces);
     }
-    WEAVE_ANYWHERE WEAVE_HD void find_direction() {
+    WEAVE_ANYWHERE WEAVE_CALLED WEAVE_HD void find_direction() {
         Apply apply{*this};
         m_pairs.find_direction(m_crew, gradient, apply, m_room.residual, m_room.solved, change);
     }
-    WEAVE_ANYWHERE WEAVE_HD void remember(double share) { m_pairs.remember(m_crew, static_cast<Real>(share), change, gradient, trial); }
+    WEAVE_ANYWHERE WEAVE_CALLED WEAVE_HD void remember(double share) { m_pairs.remember(m_crew, static_cast<Real>(share), change, gradient, trial); }
     WEAVE_HD void forget_pairs() { m_pairs.forget(); }
 
     // ---- Conjugate gradients ----
@@ -164,14 +164,14 @@ class CrewCloth {
     WEAVE_ANYWHERE WEAVE_HD void start_from_gradient() { m_crew.each(numbers(), StartDownhill<Real>{gradient, step, m_room.residual}); }
     WEAVE_ANYWHERE WEAVE_HD void start_at_random() { m_crew.each(numbers(), StartAnyhow<Real>{step, m_room.residual}); }
     WEAVE_ANYWHERE WEAVE_HD double precondition() {
-        apply(m_crew, m_room.pieces, View<const Real>(m_room.residual), m_room.solved);
+        Apply{*this}(m_room.residual, m_room.solved);
         return dot(m_room.residual, m_room.solved);
     }
     WEAVE_ANYWHERE WEAVE_HD void turn(double share) {
         if (share == 0) m_crew.each(numbers(), Copy<Real>{m_room.solved, direction});
         else m_crew.each(numbers(), AddScaled<Real>{static_cast<Real>(share), direction, m_room.solved, direction});
     }
-    WEAVE_ANYWHERE WEAVE_HD double curvature() {
+    WEAVE_ANYWHERE WEAVE_CALLED WEAVE_HD double curvature() {
         multiply(m_crew, m_room.curvature.matrix, View<const Real>(direction), m_room.product);
         return dot(direction, m_room.product);
     }
@@ -182,7 +182,7 @@ class CrewCloth {
   private:
     struct Apply {
         CrewCloth& cloth;
-        WEAVE_ANYWHERE WEAVE_HD void operator()(const View<const Real>& residual, const View<Real>& step) {
+        WEAVE_ANYWHERE WEAVE_CALLED WEAVE_HD void operator()(const View<const Real>& residual, const View<Real>& step) {
             apply(cloth.m_crew, cloth.m_room.pieces, residual, step);
         }
     };
@@ -195,7 +195,7 @@ class CrewCloth {
         return does;
     }
 
-    WEAVE_ANYWHERE WEAVE_HD double evaluate_into(const View<Real>& into, Terms terms) {
+    WEAVE_ANYWHERE WEAVE_CALLED WEAVE_HD double evaluate_into(const View<Real>& into, Terms terms) {
         ++m_state.evaluations;
         if (lacks(!m_lists.update(m_crew, m_room.state), Lacking::lists)) return 0;
         return pull(m_crew, m_room.cloth, m_lists.view(), m_room.forces, m_room.state, static_cast<Real>(m_state.give), terms, into);
