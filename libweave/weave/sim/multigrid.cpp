@@ -45,7 +45,7 @@ void Multigrid::invert_pivots(const BlockMatrix& matrix, std::vector<double>& in
     each_row(matrix.rows(), [&](std::size_t row) {
         const Eigen::Matrix3d pivot =
             Eigen::Map<const BlockMatrix::Block>(matrix.value(matrix.diagonal(row))).cast<double>();
-        Eigen::Map<Eigen::Matrix3d>(&inverse[9 * row]) = inverse_of_pivot((pivot + pivot.transpose()) / 2);
+        Eigen::Map<Eigen::Matrix3d>(inverse.data() + 9 * row) = inverse_of_pivot((pivot + pivot.transpose()) / 2);
     });
 }
 

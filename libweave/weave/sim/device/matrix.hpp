@@ -5,6 +5,7 @@
 
 #include <cstddef>
 #include <cstdint>
+#include <type_traits>
 
 namespace weave::sim {
 
@@ -73,7 +74,7 @@ struct MultiplyRow {
 
 /// result = A·x, 3 numbers a row. One barrier.
 template <class Crew, class Real>
-WEAVE_HD void multiply(Crew& crew, const MatrixView& matrix, View<const Real> x, View<Real> result) {
+WEAVE_HD void multiply(Crew& crew, const MatrixView& matrix, std::type_identity_t<View<const Real>> x, View<Real> result) {
     crew.each(3 * std::size_t(matrix.rows), MultiplyRow<Real>{matrix, x, result});
 }
 

@@ -236,6 +236,7 @@ struct CoarsenPiece {
     /// What one row adds with the rows of another piece, which are members from `begin` on, before `past`. Both lists rise.
     WEAVE_HD void add_row(const PieceShare<Real>& mine, std::uint32_t begin, std::uint32_t past, double (&sum)[9]) const {
         const std::uint32_t end = finer.first[mine.of + 1];
+        if (begin == past) return;
         std::uint32_t at = first_from(finer.column, finer.first[mine.of], end, view.member[begin].of);
         for (std::uint32_t m = begin; m < past && at < end;) {
             const PieceShare<Real> theirs = view.member[m];

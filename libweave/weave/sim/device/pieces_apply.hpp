@@ -4,6 +4,7 @@
 
 #include <cstddef>
 #include <cstdint>
+#include <type_traits>
 
 namespace weave::sim {
 
@@ -74,7 +75,7 @@ struct StepOfFew {
 };
 
 template <class Crew, class Real>
-WEAVE_HD void restrict_to(Crew& crew, const PiecesView<Real>& view, View<const Real> residual, std::uint32_t depth) {
+WEAVE_HD void restrict_to(Crew& crew, const PiecesView<Real>& view, std::type_identity_t<View<const Real>> residual, std::uint32_t depth) {
     crew.each(3 * std::size_t(view.depths.pieces_at(depth)),
               RestrictPiece<Real>{view, depth == 1 ? residual : View<const Real>(view.residual), view.depths.first[depth - 1]});
 }
@@ -94,16 +95,17 @@ struct StepOfFewPieces {
     template <class Crew>
     WEAVE_HD void operator()(Crew& crew) const {
         for (std::uint32_t depth = restrict_from; depth <= view.depths.depths; ++depth)
-            restrict_to<Crew, Real>(crew, view, view.residual, depth);
+            restrict_to(crew, view, view.residual, depth);
         for (std::uint32_t depth = view.depths.depths; depth >= steps_to; --depth) step_of(crew, view, depth);
     }
 };
 
-/// step = the multigrid's inverse times `residual`, 3 numbers a row. Barriers: with d depths of more than few_pieces pieces, 2d + 2 and
-/// one for the block that does the others; where none has more, 3 in all (cells of up to 4,000 points; a million points: 11); of few
-/// rows that are solved as a whole, 1.
+/// step = the multigrid's inverse times `residual`, 3 numbers a row. Barriers: with d depths of more than few_pieces pieces 2d + 3, one of
+/// them for the block that does all other depths: 3 for cells of up to 4,000 points, 13 for a million points; 1 for so few rows that they
+/// are solved as a whole.
 template <class Crew, class Real>
-WEAVE_HD void apply(Crew& crew, const PiecesView<Real>& view, View<const Real> residual, View<Real> step) {
+WEAVE_HD void apply(Crew& crew, const PiecesView<Real>& view, std::type_identity_t<View<const Real>> residual,
+                    std::type_identity_t<View<Real>> step) {
     const PieceDepths& depths = view.depths;
     if (depths.depths == 0) {
         crew.each(3 * std::size_t(depths.rows), StepOfFew<Real>{view, residual, step});
