@@ -27,7 +27,9 @@ class View {
 #endif
     }
     /// Of numbers that may be written, for who only reads them.
-    WEAVE_HD View(const View<std::remove_const_t<T>>& other) requires std::is_const_v<T> : View(other.m_at, other.checked_size()) {}
+    template <class Other>
+        requires std::is_same_v<T, const Other>
+    WEAVE_HD View(const View<Other>& other) : View(other.m_at, other.checked_size()) {}
 
     WEAVE_HD T& operator[](std::size_t index) const {
         check(index, 1);
