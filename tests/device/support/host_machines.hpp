@@ -39,8 +39,8 @@ struct Emulated {
 
 }  // namespace device_tests
 
-#if defined(__SANITIZE_THREAD__) // asks about threads
-#define WEAVE_MACHINES device_tests::TwoCores, device_tests::Emulated
+#if defined(__SANITIZE_THREAD__) // asks about barriers; of what the cores share it sees but a part here (the preset tsan sees all)
+#define WEAVE_MACHINES device_tests::Emulated
 #else
 #define WEAVE_MACHINES device_tests::OneThread, device_tests::TwoCores, device_tests::Emulated
 #endif
