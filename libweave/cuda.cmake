@@ -44,6 +44,6 @@ endif()
 
 # Says how a target's .cu files are compiled, and that it is linked as C++.
 function(weave_compiles_cuda target)
-  target_link_libraries(${target} PRIVATE weave_cuda_options)
+  target_link_libraries(${target} PRIVATE weave_cuda_options weave_options)
   set_target_properties(${target} PROPERTIES NO_SYSTEM_FROM_IMPORTED ON LINKER_LANGUAGE CXX)
 endfunction()
