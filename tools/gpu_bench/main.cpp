@@ -39,12 +39,17 @@ Json measure(const std::string& name, std::vector<Figure> (*run)(), bool& failed
     return measured;
 }
 
+std::string text(const Json& of, const char* key) {
+    return of.at(key).get<std::string>();
+}
+
 void print(const Json& measured) {
+    const std::string name = text(measured, "case");
     for (const Json& figure : measured.at("figures")) {
-        std::printf("%-10s %-48s %12.3f %-5s %s\n", measured.at("case").get<std::string>().c_str(), figure.at("name").get<std::string>().c_str(),
-                    figure.at("value").get<double>(), figure.at("unit").get<std::string>().c_str(), figure.at("how").get<std::string>().c_str());
+        std::printf("%-10s %-48s %12.3f %-5s %s\n", name.c_str(), text(figure, "name").c_str(), figure.at("value").get<double>(),
+                    text(figure, "unit").c_str(), text(figure, "how").c_str());
     }
-    if (measured.contains("error")) std::printf("%s FAILED: %s\n", measured.at("case").get<std::string>().c_str(), measured.at("error").get<std::string>().c_str());
+    if (measured.contains("error")) std::printf("%s FAILED: %s\n", name.c_str(), text(measured, "error").c_str());
 }
 
 }  // namespace

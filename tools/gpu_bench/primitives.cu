@@ -115,7 +115,8 @@ std::vector<Figure> measure_barriers() {
         figures.push_back({what + "one block", 1000 * alone / turns, "µs", "256 threads, 2000 in a row; median of 9 rows"});
         for (const std::size_t blocks : {std::size_t{2}, std::size_t{16}, queue.multiprocessors(), runner.most_blocks(kernel)}) {
             const double all = watch.median_ms(9, [&] { runner.start(kernel, blocks); });
-            figures.push_back({what + std::to_string(blocks) + " blocks", 1000 * all / turns, "µs", "256 threads each, 2000 in a row; median of 9 rows"});
+            const std::string name = what + std::to_string(blocks) + " blocks";
+            figures.push_back({name, 1000 * all / turns, "µs", "256 threads each, 2000 in a row; median of 9 rows"});
         }
     }
     return figures;

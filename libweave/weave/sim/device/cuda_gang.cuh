@@ -102,7 +102,8 @@ class GangRunner {
         if (gangs == 0) return;
         m_queue->use();
         ask_for(parts_of_gang(1) * gangs);
-        block_gangs_kernel<threads, Kernel><<<static_cast<unsigned>(gangs), threads, shared_bytes(threads), m_queue->stream()>>>(kernel, m_parts.view());
+        const auto blocks = static_cast<unsigned>(gangs);
+        block_gangs_kernel<threads, Kernel><<<blocks, threads, shared_bytes(threads), m_queue->stream()>>>(kernel, m_parts.view());
         WEAVE_CUDA_CHECK(cudaGetLastError());
         m_queue->wait();
     }
