@@ -37,7 +37,27 @@ struct SpherePush {
 };
 
 /// Adds ∫ φ(y) dl of one segment. A yarn of fixed length counts its own unstretched length; a fed one, which runs
-/// through, that which lies there: its tension then rises by φ inside, as force along the yarn asks.
+/// through, that which lies there: its tension then rises by φ inside, as force along the yarn asks. `sphere_at(s)` is field s,
+/// `slots` count from where its centre does.
+template <class Real, class SphereAt>
+WEAVE_HD inline void add_fields(const YarnConstants<Real>& yarn, const Gauss<Real>& gauss, const Real* slots, std::size_t count,
+                                const SphereAt& sphere_at, SegmentSum<Real>& sum) {
+    for (std::size_t g = 0; g < gauss_points; ++g) {
+        const Basis<Real>& basis = gauss.basis[g];
+        const Vec<Real> at = combine(basis.value, slots), tangent = combine(basis.slope, slots);
+        const bool fed = yarn.supply == Supply::tension;
+        const Real speed = tangent.norm(), share = gauss.weight[g] * (fed ? speed : yarn.rest_mm);
+        for (std::size_t s = 0; s < count; ++s) {
+            const Sphere<Real> sphere = sphere_at(s);
+            const SpherePush<Real> push(sphere, at);
+            if (push.depth <= 0) continue;
+            sum.energy += share * push.value;
+            sum.add(basis.value, push.out * (-share * sphere.stiffness * push.depth));
+            if (fed) sum.add(basis.slope, tangent * (gauss.weight[g] * push.value / guarded(speed, yarn)));
+        }
+    }
+}
+
 template <class Real>
 struct FieldForces {
     FabricView<Real> fabric;
@@ -48,22 +68,9 @@ struct FieldForces {
 
     WEAVE_HD void operator()(std::size_t index) const {
         const SegmentPlace segment = fabric.segments[index];
-        const YarnConstants<Real>& yarn = fabric.yarns[segment.yarn];
-        const Real* slots = fabric.place + 3 * std::size_t(segment.slot);
         SegmentSum<Real> sum;
-        for (std::size_t g = 0; g < gauss_points; ++g) {
-            const Basis<Real>& basis = fabric.gauss->basis[g];
-            const Vec<Real> at = combine(basis.value, slots), tangent = combine(basis.slope, slots);
-            const bool fed = yarn.supply == Supply::tension;
-            const Real speed = tangent.norm(), share = fabric.gauss->weight[g] * (fed ? speed : yarn.rest_mm);
-            for (std::size_t s = 0; s < count; ++s) {
-                const SpherePush<Real> push(spheres[s], at);
-                if (push.depth <= 0) continue;
-                sum.energy += share * push.value;
-                sum.add(basis.value, push.out * (-share * spheres[s].stiffness * push.depth));
-                if (fed) sum.add(basis.slope, tangent * (fabric.gauss->weight[g] * push.value / guarded(speed, yarn)));
-            }
-        }
+        add_fields(fabric.yarns[segment.yarn], *fabric.gauss, fabric.place + 3 * std::size_t(segment.slot), count,
+                   [this](std::size_t s) { return spheres[s]; }, sum);
         energy[index] += sum.energy;
         for (int k = 0; k < 12; ++k) gradient[12 * index + std::size_t(k)] += sum.gradient[k];
     }
