@@ -146,8 +146,8 @@ WEAVE_INLINE WEAVE_HD inline Real evenness_link(const Gauss<Real>& gauss, const 
            both * speeds.square / (length * length * length);
 }
 
-/// By all four slots. What stretch_curvature() says stands here once more: called from here, it made the processor's last bits
-/// others and its code slower.
+/// By all four slots. What stretch_curvature() says stands here once more: called from here it rounds otherwise, and results of the
+/// processor keep their bits.
 [[gnu::always_inline]] inline void add_stretch_curvature(const YarnConstants<double>& yarn, const Gauss<double>& gauss,
                                                          const Speeds<double>& speeds, double give, bool convex,
                                                          GaussBlocks& sum) {
