@@ -75,6 +75,23 @@ struct TwoCloths {
     static Eigen::Matrix3d block(const float* at) { return Eigen::Map<const BlockMatrix::Block>(at).cast<double>(); }
 };
 
+/// Whether two samples lie so near to where they cease to touch that float may not tell on which side: there the law's second
+/// derivative jumps.
+bool just_touches(const SimScene& scene) {
+    Bench<double> bench(scene);
+    bench.evaluate();
+    Neighbours<double>& lists = bench.energy.neighbours();
+    const SamplesView<double> at = lists.samples();
+    for (std::size_t a = 0; a < bench.fabric.samples(); ++a) {
+        for (std::uint32_t e = lists.first()[a]; e < lists.first()[a + 1]; ++e) {
+            const std::size_t b = lists.others()[e];
+            const double distance = weave::Vec3(at.x[a] - at.x[b], at.y[a] - at.y[b], at.z[a] - at.z[b]).norm();
+            if (std::abs(distance / (at.radius[a] + at.radius[b]) - 1) < 1e-6) return true;
+        }
+    }
+    return false;
+}
+
 /// Holds about a third of the points of each yarn.
 SimScene held(Random& random, SimScene scene) {
     for (SimYarn& yarn : scene.yarns) {
@@ -84,9 +101,11 @@ SimScene held(Random& random, SimScene scene) {
     return scene;
 }
 
-SimScene shaken(Random& random, SimScene scene) {
-    for (SimYarn& yarn : scene.yarns) shake(random, yarn, 0.02);
-    return scene;
+SimScene shaken(Random& random, const SimScene& scene) {
+    for (SimScene shaken = scene;; shaken = scene) {
+        for (SimYarn& yarn : shaken.yarns) shake(random, yarn, 0.02);
+        if (!just_touches(shaken)) return shaken;
+    }
 }
 
 SimScene with_fields(SimScene scene) {
@@ -96,7 +115,7 @@ SimScene with_fields(SimScene scene) {
 }
 
 std::vector<SimScene> scenes(Random& random) {
-    const SimScene heaped = heap(random, 6, 0.02), cloth = shaken(random, plain_weave({.count = 4}));
+    const SimScene heaped = shaken(random, heap(random, 6, 0.02)), cloth = shaken(random, plain_weave({.count = 4}));
     return {heaped,
             cloth,
             held(random, heaped),
@@ -111,9 +130,9 @@ std::vector<SimScene> scenes(Random& random) {
             SimScene{}};
 }
 
-/// Measured over 40 seeds: 2.6e-7 and 1.1e-5 at most.
+/// Measured over 40 seeds: 2.1e-7 and 3.8e-6 at most.
 template <class Real>
-constexpr double tolerance = std::is_same_v<Real, float> ? 4e-5 : 1e-6;
+constexpr double tolerance = std::is_same_v<Real, float> ? 2e-5 : 1e-6;
 
 template <class Real>
 void check_scene(const SimScene& scene) {

@@ -146,6 +146,8 @@ WEAVE_INLINE WEAVE_HD inline Real evenness_link(const Gauss<Real>& gauss, const 
            both * speeds.square / (length * length * length);
 }
 
+/// By all four slots. What stretch_curvature() says stands here once more: called from here it rounds otherwise, and results of the
+/// processor keep their bits.
 [[gnu::always_inline]] inline void add_stretch_curvature(const YarnConstants<double>& yarn, const Gauss<double>& gauss,
                                                          const Speeds<double>& speeds, double give, bool convex,
                                                          GaussBlocks& sum) {
@@ -154,10 +156,17 @@ WEAVE_INLINE WEAVE_HD inline Real evenness_link(const Gauss<Real>& gauss, const 
     Vec<double> units[gauss_points];
     for (std::size_t g = 0; g < gauss_points; ++g) units[g] = speeds.tangent[g] / guarded(speeds.speed[g], yarn);
     for (std::size_t g = 0; g < gauss_points; ++g) {
-        const StretchCurvature<double> own =
-            stretch_curvature(yarn, gauss.weight[g], guarded(speeds.speed[g], yarn), length, ratio, give, convex);
-        sum.slope[g].add(gauss.basis[g].slope, Nine::along(own.side, own.along, units[g]));
-        if (!fed) continue;
+        const double speed = guarded(speeds.speed[g], yarn), weight = gauss.weight[g];
+        const StretchLaw<double> law = StretchLaw<double>::at(fed ? 0 : speed / yarn.rest_mm - 1, give);
+        double pull = fed ? yarn.tension_N + yarn.evenness_N * (speed / length - (ratio + 1) / 2) : yarn.stretch_N * law.slope;
+        if (convex) pull = std::max(pull, 0.0);
+        const double side = weight * pull / speed;
+        if (!fed) {
+            sum.slope[g].add(gauss.basis[g].slope, Nine::along(side, yarn.stretch_N * law.bend * weight / yarn.rest_mm - side, units[g]));
+            continue;
+        }
+        sum.slope[g].add(gauss.basis[g].slope, Nine::along(side, -side, units[g]));
+        // What evenness links: the speeds at all Gauss points.
         Vec<double> others[4];
         for (Vec<double>& other : others) other.setZero();
         for (std::size_t h = 0; h < gauss_points; ++h) {

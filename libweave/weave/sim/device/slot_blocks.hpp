@@ -42,6 +42,7 @@ struct SumSample {
         const YarnConstants<Real>& yarn = cloth.yarn[place.yarn];
         SampleSums<Real> sum{};
         Real spread = 0;
+        bool touches = false;
         const Sample<Real> own = lists.sample[a];
         const Real radius = lists.radius[a], step = Real(cloth.scale.step_mm);
         for (std::uint32_t e = lists.first[a], end = lists.first[a + 1]; e < end; ++e) {
@@ -50,6 +51,7 @@ struct SumSample {
             const Vec<Real> u = apart(own, other, step);
             const Real reach = radius + lists.radius[b], square = u.squaredNorm();
             if (square >= reach * reach) continue;
+            touches = true;  // where yarns just touch the spread may be lost in rounding, and the curvature is not
             const PairCurvature<Real> pair = pair_curvature(square, reach * reach, cloth.floor, convex);
             const Real side = other.weight * pair.side, along = other.weight * pair.along, pull = other.weight * pair.pull;
             spread += other.weight * pair.value;
@@ -58,7 +60,7 @@ struct SumSample {
                 sum.push[j] += pull * u[j];
             }
         }
-        if (spread != 0 || !convex) {
+        if (touches || !convex) {
             Real slots[12];
             load_around_first(state, place.slot, slots);
             const Vec<Real> tangent = combine(cloth.basis[yarn.basis + (std::uint32_t(a) - place.sample)].slope, slots);
@@ -235,7 +237,7 @@ struct MakeSlotBlocks {
     /// `share`: its weight over |T|, and so that of its pull over T's unit.
     WEAVE_HD void add_sample(std::size_t a, Real share, const Basis<Real>& basis, int c, Real (&sum)[36]) const {
         const SampleSums<Real>& at = sums[a];
-        if (at.side == 0) return;
+        if (at.side == 0 && at.yy[0] + at.yy[2] + at.yy[5] == 0) return;  // touches nothing
         const Real value = lists.sample[a].weight * basis.value[c], slope = basis.slope[c];
         const Vec<Real> pull = load(at.pull), push = load(at.push);
         const Real across = slope * at.side, less = across / (share * share);
