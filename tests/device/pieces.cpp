@@ -151,7 +151,7 @@ TEST_CASE("pieces: the multigrid on a device is the processor's", "[device]") {
 TEST_CASE("pieces: every crew comes to the same step, to the bit of its sums", "[device]") {
     Random random(weave::testing::run_seed());
     CrookedCloth cloth(crooked(random, {.count = 7}), Curvature::convex);
-    const Hierarchy hierarchy(rows_of_yarns(cloth.bench.fabric), places_of(cloth.bench.fabric), device_last_rows);
+    const Hierarchy hierarchy(rows_of_yarns(cloth.bench.fabric), places_of(cloth.bench.fabric));
     REQUIRE(hierarchy.levels().size() > 3);
     const std::vector<double> load = cloth.random_load(random);
     std::vector<std::vector<double>> steps;
@@ -177,7 +177,7 @@ TEST_CASE("pieces: symmetric and positive, for matrices that curve down too", "[
             for (std::size_t row = 0; row < cloth.matrix.rows(); row += 5) cloth.matrix.value(cloth.matrix.diagonal(row))[4] -= 100;
             cloth.upload();
         }
-        const Hierarchy hierarchy(rows_of_yarns(cloth.bench.fabric), places_of(cloth.bench.fabric), device_last_rows);
+        const Hierarchy hierarchy(rows_of_yarns(cloth.bench.fabric), places_of(cloth.bench.fabric));
         DeviceMultigrid<double> device(CrewKind::alone, cloth, hierarchy);
         device.factor();
         const auto size = static_cast<Eigen::Index>(3 * cloth.matrix.rows());
@@ -202,7 +202,7 @@ TEST_CASE("pieces: with few last rows conjugate gradients need hardly more steps
     const RowPlaces places = places_of(cloth.bench.fabric);
     Multigrid right(cloth.bench.executor, yarns, places);
     right.factor(cloth.matrix);
-    DeviceMultigrid<float> device(CrewKind::alone, cloth, Hierarchy(yarns, places, device_last_rows));
+    DeviceMultigrid<float> device(CrewKind::alone, cloth, Hierarchy(yarns, places));
     device.factor();
     const std::vector<double> load = cloth.random_load(random);
     std::vector<double> x;

@@ -27,6 +27,7 @@ const std::map<std::string, std::vector<std::string>> commands{
     {"export", {"FILE", "--loom", "--out"}},
     {"jobs", {"--on", "fetch", "cancel"}},
     {"sessions", {"--on", "close"}},
+    {"devices", {"CUDA", "why"}},
 };
 
 }  // namespace

@@ -122,5 +122,6 @@ void add_inspection_commands(CLI::App& app, CommandOutcome& outcome);  // inspec
 void add_job_commands(CLI::App& app, CommandOutcome& outcome);         // jobs
 void add_session_commands(CLI::App& app, CommandOutcome& outcome);     // sessions
 void add_bench_commands(CLI::App& app, CommandOutcome& outcome);       // bench
+void add_device_commands(CLI::App& app, CommandOutcome& outcome);      // devices
 
 }  // namespace weave::program

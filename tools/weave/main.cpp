@@ -21,7 +21,7 @@ int main(int count, char** words) {
           weave::program::add_look_commands, weave::program::add_diff_command,
           weave::program::add_loom_commands, weave::program::add_simulation_commands,
           weave::program::add_inspection_commands, weave::program::add_job_commands, weave::program::add_session_commands,
-          weave::program::add_bench_commands})
+          weave::program::add_bench_commands, weave::program::add_device_commands})
         add(app, outcome);
     return weave::run_program(app, outcome, count, words);
 }

@@ -69,6 +69,15 @@ enum class Step : std::uint8_t {
     lacks_room,  ///< the cloth's lists are too short; the state is what it was. With room made and the state evaluated, again
 };
 
+/// The number that a random start has at a place, from −1 to 1 (splitmix64): the same on every machine.
+WEAVE_HD inline double some_number(std::uint64_t place) {
+    std::uint64_t mixed = (place + 1) * 0x9e3779b97f4a7c15ULL;
+    mixed = (mixed ^ mixed >> 30) * 0xbf58476d1ce4e5b9ULL;
+    mixed = (mixed ^ mixed >> 27) * 0x94d049bb133111ebULL;
+    mixed ^= mixed >> 31;
+    return static_cast<double>(mixed >> 11) / static_cast<double>(1ULL << 52) - 1;
+}
+
 /// By value: the standard's take references, which constants have none of on a device.
 template <class Number>
 WEAVE_HD constexpr Number lesser(Number a, Number b) {

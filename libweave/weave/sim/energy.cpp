@@ -212,7 +212,7 @@ void Energy<Real>::shorten(const std::vector<Real>& state, std::vector<Real>& ch
     constexpr int rounds = 6, most_rounds = 20;
     constexpr double enough = 0.9;
     const FabricView<Real> fabric = view(state);
-    std::vector<double> share(m_fabric.segments());
+    std::vector<double> share(m_fabric.segments()), least(m_fabric.slots());
     const std::vector<YarnPlace>& yarns = m_fabric.yarns();
     for (int round = 0; round < most_rounds; ++round) {
         move_samples(state, change);
@@ -230,13 +230,18 @@ void Energy<Real>::shorten(const std::vector<Real>& state, std::vector<Real>& ch
         m_executor.each(m_fabric.slots(), [&](std::size_t slot) {
             const YarnPlace& yarn = yarns[m_fabric.yarn_of_slot()[slot]];
             const std::size_t within = slot - yarn.first_slot;
-            double least = 1;
+            least[slot] = 1;
             for (std::size_t c = 0; c < 4 && c <= within; ++c) {
                 if (within - c < yarn.segments)
-                    least = std::min(least, share[yarn.first_segment + within - c]);
+                    least[slot] = std::min(least[slot], share[yarn.first_segment + within - c]);
             }
-            for (std::size_t k = 0; k < 3; ++k) change[3 * slot + k] *= static_cast<Real>(least);
         });
+        for (const FollowSlot& follow : m_fabric.follows()) {
+            for (std::size_t k = 0; k < 2; ++k) {
+                if (follow.weight[k] != 0) least[follow.from[k]] = std::min(least[follow.from[k]], least[follow.slot]);
+            }
+        }
+        m_executor.each(change.size(), [&](std::size_t i) { change[i] *= static_cast<Real>(least[i / 3]); });
         m_fabric.follow_change(change);
     }
     // Rounds may run out before all places agree; then all of it is shortened alike.

@@ -48,8 +48,9 @@ struct PieceLevel {
 /// alone, not from a matrix.
 class Hierarchy {
   public:
-    /// So few rows are solved as a whole.
-    static constexpr std::size_t usual_last_rows = 128;
+    /// So few rows are solved as a whole. A device inverts them one after the other while the rest of it waits: with 128 that would
+    /// be a tenth of its time; on the processor 32 to 128 cost the same steps, to a few per cent more or less.
+    static constexpr std::size_t usual_last_rows = 64;
 
     /// The yarns follow one another and cover all rows. Without `places` there are no grids.
     explicit Hierarchy(std::vector<YarnRows> yarns, RowPlaces places = {}, std::size_t last_rows = usual_last_rows);

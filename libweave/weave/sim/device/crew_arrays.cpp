@@ -1,5 +1,6 @@
 #include <weave/sim/device/crew_arrays.hpp>
 
+#include <weave/sim/device/relax_device.hpp>
 #include <weave/sim/hierarchy.hpp>
 #include <weave/sim/relax.hpp>
 
@@ -15,7 +16,7 @@ constexpr std::size_t vectors_of_rows = 9;
 template <class Real>
 CrewArrays<Real>::CrewArrays(Memory& memory, const Fabric<double>& fabric, const std::vector<double>& state)
     : m_cloth(memory, fabric, state), m_lists(memory, m_cloth.view()), m_curvature(memory, m_cloth.view()),
-      m_pieces(memory, Hierarchy(rows_of_yarns(fabric), places_of(fabric), device_last_rows)),
+      m_pieces(memory, Hierarchy(rows_of_yarns(fabric), places_of(fabric))),
       m_numbers(3 * std::size_t(m_cloth.view().rows)), m_contact(memory, fabric.samples()), m_energy(memory, fabric.segments()),
       m_share(memory, fabric.segments()), m_state(memory, state), m_before(memory, state.size()),
       m_products(memory, places_for_pairs * places_for_pairs), m_sums(memory, most_sums), m_pair_share(memory, most_pairs),
@@ -63,7 +64,7 @@ std::size_t CrewArrays<Real>::bytes() const {
            m_by_segment.bytes() + m_vectors.bytes() + m_pair_change.bytes() + m_pair_bend.bytes() + m_moved.bytes() + m_key.bytes();
 }
 
-bool can_relax(const SimScene& scene) {
+bool device_can_relax(const SimScene& scene) {
     return scene.friction == 0 && !scene.transition;
 }
 

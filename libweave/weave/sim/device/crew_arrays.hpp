@@ -11,7 +11,7 @@
 
 namespace weave::sim {
 
-/// All that a crew relaxes a cloth in, in the memory of its machine. What a scene asks for in vain there (can_relax()) is left out.
+/// All that a crew relaxes a cloth in, in the memory of its machine. Of the scene device_can_relax() (relax_device.hpp) must hold.
 template <class Real>
 class CrewArrays {
   public:
@@ -40,8 +40,5 @@ class CrewArrays {
 
 extern template class CrewArrays<float>;
 extern template class CrewArrays<double>;
-
-/// Whether crews model all that a scene holds: not friction, and not a crossing on its way to the other side.
-bool can_relax(const SimScene& scene);
 
 }  // namespace weave::sim

@@ -102,4 +102,17 @@ WEAVE_HD void run_leg(Crew& crew, const CrewRoom<Real>& room, Leg<CrewCloth<Real
     leg.cloth = cloth.state();
 }
 
+/// The same as a kernel.
+template <class Real>
+struct RunLeg {
+    CrewRoom<Real> room;
+    View<StepRecord> history;
+    std::uint32_t steps;
+
+    WEAVE_ANYWHERE template <class Crew>
+    WEAVE_HD void operator()(Crew& crew, Leg<CrewCloth<Real, Crew>>& leg) const {
+        run_leg(crew, room, leg, steps, history);
+    }
+};
+
 }  // namespace weave::sim

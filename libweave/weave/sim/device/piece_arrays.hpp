@@ -9,9 +9,6 @@
 
 namespace weave::sim {
 
-/// So few rows a device solves as a whole: it inverts them one after the other, while the rest of it waits.
-inline constexpr std::size_t device_last_rows = 32;
-
 /// The multigrid of a cloth in the memory of some machine.
 template <class Real>
 class PieceArrays {

@@ -32,7 +32,7 @@ class RelaxingOn {
     RelaxResult run() {
         while (m_leg.phase != Phase::over) {
             const double began = seconds();
-            m_machine.run(RunLeg{m_arrays.room(), m_history.view(), m_steps}, m_leg);
+            m_machine.run(RunLeg<Real>{m_arrays.room(), m_history.view(), m_steps}, m_leg);
             if (m_leg.lacks_room) m_arrays.grow(m_leg.cloth);
             if (m_leg.records > 0 && m_leg.phase != Phase::over) look(began);
         }
@@ -48,16 +48,6 @@ class RelaxingOn {
     static constexpr std::uint32_t most_steps_of_leg = 256;
     /// A leg that someone watches: short enough for 60 pictures a second.
     static constexpr double watched_leg_s = 0.012, unwatched_leg_s = 0.2;
-
-    struct RunLeg {
-        CrewRoom<Real> room;
-        View<StepRecord> history;
-        std::uint32_t steps;
-
-        WEAVE_ANYWHERE WEAVE_HD void operator()(typename Machine::Crew& crew, Leg<Cloth>& leg) const {
-            run_leg(crew, room, leg, steps, history);
-        }
-    };
 
     [[nodiscard]] double seconds() const {
         return std::chrono::duration<double>(std::chrono::steady_clock::now() - m_start).count();
@@ -111,7 +101,7 @@ class RelaxingOn {
     std::chrono::steady_clock::time_point m_start = std::chrono::steady_clock::now();
 };
 
-/// relax() (relax.hpp) by the crew of a machine, with forces in `Real`. Of the scene can_relax() must hold. Throws std::bad_alloc where the
+/// relax() (relax.hpp) by the crew of a machine, with forces in `Real`. Of the scene device_can_relax() (relax_device.hpp) must hold. Throws std::bad_alloc where the
 /// machine's memory does not suffice; the state is then what it was, or one on the way.
 template <class Real, class Machine>
 RelaxResult relax_on(Machine& machine, Energy<double>& energy, std::vector<double>& state, const RelaxOptions& options) {

@@ -2,6 +2,7 @@
 
 // Bodies and terms over vectors of rows: what steps and conjugate gradients do with them.
 
+#include <weave/sim/cloth.hpp>
 #include <weave/sim/device/cloth_view.hpp>
 
 #include <bit>
@@ -80,18 +81,14 @@ struct StartDownhill {
     }
 };
 
-/// The same from numbers between −1 and 1, by their index (splitmix64).
+/// The same from numbers between −1 and 1.
 template <class Real>
 struct StartAnyhow {
     View<Real> step, residual;
 
     WEAVE_HD void operator()(std::size_t index) const {
-        std::uint64_t mixed = (index + 1) * 0x9e3779b97f4a7c15ULL;
-        mixed = (mixed ^ mixed >> 30) * 0xbf58476d1ce4e5b9ULL;
-        mixed = (mixed ^ mixed >> 27) * 0x94d049bb133111ebULL;
-        mixed ^= mixed >> 31;
         step[index] = 0;
-        residual[index] = static_cast<Real>(static_cast<double>(mixed >> 11) / static_cast<double>(1ULL << 52) - 1);
+        residual[index] = static_cast<Real>(some_number(index));
     }
 };
 

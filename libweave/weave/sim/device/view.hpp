@@ -28,7 +28,8 @@ class View {
     }
     /// Of numbers that may be written, for who only reads them.
     template <class Other>
-    WEAVE_HD View(const View<Other>& other) requires std::is_same_v<T, const Other> : View(other.m_at, other.checked_size()) {}
+        requires std::is_same_v<T, const Other>
+    WEAVE_HD View(const View<Other>& other) : View(other.m_at, other.checked_size()) {}
 
     WEAVE_HD T& operator[](std::size_t index) const {
         check(index, 1);
