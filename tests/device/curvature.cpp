@@ -127,6 +127,9 @@ std::vector<SimScene> scenes(Random& random) {
             held(random, shaken(random, plain_weave({.count = 3, .points_a_crossing = 1}))),
             shaken(random, plain_weave({.count = 1, .points_a_crossing = 1, .pitch_mm = 0.3})),
             held(random, shaken(random, plain_weave({.count = 1, .points_a_crossing = 4, .pitch_mm = 0.3}))),
+            // Yarns that touch their own images: those in a period less than their diameter, and one point's.
+            shaken(random, plain_weave({.count = 1, .points_a_crossing = 6, .pitch_mm = 0.2})),
+            held(random, shaken(random, plain_weave({.count = 2, .points_a_crossing = 3, .pitch_mm = 0.1}))),
             SimScene{}};
 }
 
@@ -192,7 +195,37 @@ TEST_CASE("curvature: where arrays are too small it tells by how much, and write
         const std::size_t before = arrays.bytes();
         arrays.grow({1, 1, 1, 1});
         CHECK(arrays.bytes() == before);
+        // One by one.
+        const CurvatureNeeds room = arrays.view().room;
+        for (const CurvatureNeeds& little : {CurvatureNeeds{1, room.pairs, room.blocks, room.slot_blocks}, CurvatureNeeds{room.near, 1, room.blocks, room.slot_blocks},
+                                             CurvatureNeeds{room.near, room.pairs, 1, room.slot_blocks}, CurvatureNeeds{room.near, room.pairs, room.blocks, 1}}) {
+            CurvatureArrays<double> again(cloths.memory, cloths.cloth->view());
+            again.grow(little);
+            CHECK(cloths.assemble(kind, again, true) == 1);
+            CHECK(cloths.farthest(again) < tolerance<double>);
+        }
     }
+}
+
+TEST_CASE("curvature: yarns that just touch resist in float too, where the contact law itself is lost in rounding", "[device]") {
+    SimScene scene;
+    for (const bool across : {false, true}) {
+        const double z = across ? 0.24 * (1 - 1e-5) : 0, half = 0.72;
+        const weave::Vec3 along = across ? weave::Vec3(0, half, 0) : weave::Vec3(half, 0, 0), middle(0, 0, z);
+        SimYarn yarn = usual_yarn();
+        yarn.is_fed = false;
+        // Samples of both lie right above one another in the middle: that pair alone touches.
+        scene.yarns.push_back(laid(yarn, middle - along, middle + along, 4));
+    }
+    TwoCloths<float> cloths(scene);
+    const std::uint32_t samples = cloths.cloth->view().yarn[0].samples;
+    REQUIRE(samples % 2 == 1);
+    CurvatureArrays<float> arrays(cloths.memory, cloths.cloth->view());
+    cloths.assemble(CrewKind::alone, arrays, true);
+    bool touches = false;
+    for (std::uint32_t a = 0; a < cloths.cloth->view().samples; ++a) touches = touches || arrays.view().sums[a].yy[5] > 0;
+    CHECK(touches);
+    CHECK(cloths.farthest(arrays) < tolerance<float>);
 }
 
 TEST_CASE("curvature: the matrix is symmetric, the same by every crew, and multiplies as the processor's does", "[device]") {
