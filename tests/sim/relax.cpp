@@ -1,7 +1,6 @@
 #include "scenes.hpp"
 
 #include <weave/curve/spline.hpp>
-#include <weave/sim/newton.hpp>
 #include <weave/sim/relax.hpp>
 #include <weave/sim/spread.hpp>
 
@@ -217,22 +216,6 @@ TEST_CASE("frozen points stay where they are, and what is wholly frozen is at re
     CHECK(relax(still.energy, still.state, {.residual = 1e-8, .watch = {}}).residual == 0);
     CHECK(still.fabric.control(still.state)[1] == scene.yarns[1].control);
 }
-
-namespace {
-
-/// A rod without weight, straight and pressed together along itself, held at both ends.
-SimScene pressed_rod() {
-    SimScene scene;
-    SimYarn yarn = laid(usual_yarn(), {0, 0, 0}, {2, 0, 0}, 17, false);
-    yarn.is_fed = false;
-    yarn.rest_mm = 2.2;
-    yarn.frozen.assign(17, 0);
-    for (const std::size_t point : {0, 1, 15, 16}) yarn.frozen[point] = 1;
-    scene.yarns = {yarn};
-    return scene;
-}
-
-}  // namespace
 
 TEST_CASE("a rest that is none but a saddle is left: a straight rod that is pressed buckles") {
     Bench straight(pressed_rod()), buckled(pressed_rod());

@@ -146,4 +146,16 @@ inline double error_of(double value, double right) {
     return std::abs(value / right - 1);
 }
 
+/// A rod without weight, straight and pressed together along itself, held at both ends.
+inline SimScene pressed_rod() {
+    SimScene scene;
+    SimYarn yarn = laid(usual_yarn(), {0, 0, 0}, {2, 0, 0}, 17, false);
+    yarn.is_fed = false;
+    yarn.rest_mm = 2.2;
+    yarn.frozen.assign(17, 0);
+    for (const std::size_t point : {0, 1, 15, 16}) yarn.frozen[point] = 1;
+    scene.yarns = {yarn};
+    return scene;
+}
+
 }  // namespace weave::sim::testing

@@ -15,6 +15,19 @@
 #else
 #define WEAVE_HD
 #endif
+/// Before a function template that runs wherever what it is given runs, a cloth or a crew: nvcc need not ask whether that is there.
+#if defined(__CUDACC__)
+#define WEAVE_ANYWHERE _Pragma("nv_exec_check_disable")
+#else
+#define WEAVE_ANYWHERE
+#endif
+/// Is compiled once and called: a relaxation in one kernel calls it from many places, and its threads wait far longer for one another
+/// than a call takes.
+#if defined(__CUDACC__)
+#define WEAVE_CALLED __noinline__
+#else
+#define WEAVE_CALLED
+#endif
 /// Becomes part of whatever runs it, so that it is compiled for wide vectors with it (execute.hpp).
 #define WEAVE_INLINE [[gnu::always_inline]]
 
@@ -153,30 +166,22 @@ struct ContactSum {
     Real fx = 0, fy = 0, fz = 0;  ///< Σ w_b ∂f/∂y
 };
 
-#if defined(__CUDACC__)
+/// Adds what one neighbour does: `apart` is the sample's place less the neighbour's, `reach` the sum of their radii, `weight` the
+/// neighbour's.
 template <class Real>
-WEAVE_HD inline ContactSum<Real> contact_of(const FabricView<Real>& fabric, std::size_t sample) {
-    const SamplesView<Real>& all = fabric.samples;
-    const Real x = all.x[sample], y = all.y[sample], z = all.z[sample], radius = all.radius[sample];
-    const std::uint32_t *at = fabric.neighbours + fabric.first_neighbour[sample],
-                        *end = fabric.neighbours + fabric.first_neighbour[sample + 1];
-    ContactSum<Real> sum;
-    for (; at != end; ++at) {
-        const std::uint32_t b = *at;
-        const Real dx = x - all.x[b], dy = y - all.y[b], dz = z - all.z[b], reach = radius + all.radius[b];
-        const Real square = dx * dx + dy * dy + dz * dz, limit = reach * reach;
-        if (square >= limit) continue;
-        const Real inverse = 1 / limit;
-        const ContactLaw<Real> law = ContactLaw<Real>::at(square * inverse, fabric.floor);
-        const Real weight = all.weight[b], pull = 2 * weight * law.slope * inverse;
-        sum.spread += weight * law.value;
-        sum.fx += pull * dx;
-        sum.fy += pull * dy;
-        sum.fz += pull * dz;
-    }
-    return sum;
+WEAVE_HD inline void add_neighbour(const Vec<Real>& apart, Real reach, Real weight, Real floor, ContactSum<Real>& sum) {
+    const Real square = apart.squaredNorm(), limit = reach * reach;
+    if (square >= limit) return;
+    const Real inverse = 1 / limit;
+    const ContactLaw<Real> law = ContactLaw<Real>::at(square * inverse, floor);
+    const Real pull = 2 * weight * law.slope * inverse;
+    sum.spread += weight * law.value;
+    sum.fx += pull * apart.x();
+    sum.fy += pull * apart.y();
+    sum.fz += pull * apart.z();
 }
-#else
+
+#if !defined(__CUDACC__)
 /// Four numbers that are worked on at once.
 template <class Real>
 struct FourOf {
@@ -260,7 +265,7 @@ WEAVE_HD inline Real guarded(Real speed, const YarnConstants<Real>& yarn) {
 }
 
 /// The stretch law φ of a yarn of fixed length: ½e² of the strain e; beyond `give` its slope hardly rises. Only the way to
-/// rest gives way (relax.cpp): at rest `give` is infinite.
+/// rest gives way (relaxing.hpp): at rest `give` is infinite.
 template <class Real>
 struct StretchLaw {
     Real value, slope, bend;  ///< φ, dφ/de, d²φ/de²
@@ -315,17 +320,17 @@ WEAVE_INLINE WEAVE_HD inline void add_bending(const YarnConstants<Real>& yarn, c
 }
 
 /// Contact: k ∬ f(d/D) dl dl over current arc length, both derivatives: by place and by arc length. Every pair is seen
-/// from both sides, so each side counts half the energy and the whole of its own force.
-template <class Real>
-WEAVE_INLINE WEAVE_HD inline void add_contact(const FabricView<Real>& fabric, const SegmentPlace& segment,
-                                 const YarnConstants<Real>& yarn, const Real* slots, SegmentSum<Real>& sum) {
+/// from both sides, so each side counts half the energy and the whole of its own force. `contact_at(k)` is what the neighbours do to
+/// the segment's k-th sample, `weight_at(k)` that sample's.
+template <class Real, class ContactOf, class WeightOf>
+WEAVE_INLINE WEAVE_HD inline void add_contact(const YarnConstants<Real>& yarn, const Basis<Real>* bases, const Real* slots,
+                                 const ContactOf& contact_at, const WeightOf& weight_at, SegmentSum<Real>& sum) {
     const Real share = yarn.root_k / Real(yarn.samples);
     for (std::uint32_t k = 0; k < yarn.samples; ++k) {
-        const std::size_t sample = segment.sample + k;
-        const ContactSum<Real> contact = contact_of(fabric, sample);
+        const ContactSum<Real> contact = contact_at(k);
         if (contact.spread == 0) continue;
-        const Basis<Real>& basis = fabric.bases[yarn.basis + k];
-        const Real weight = fabric.samples.weight[sample];
+        const Basis<Real>& basis = bases[k];
+        const Real weight = weight_at(k);
         sum.energy += weight * contact.spread / 2;
         sum.add(basis.value, Vec<Real>(contact.fx, contact.fy, contact.fz) * weight);
         const Vec<Real> tangent = combine(basis.slope, slots);
@@ -338,6 +343,7 @@ struct Terms {
     bool elastic = true, contact = true;
 };
 
+#if !defined(__CUDACC__)
 /// Energy and gradient of one segment.
 template <class Real>
 struct SegmentForces {
@@ -356,10 +362,16 @@ struct SegmentForces {
             add_stretch(yarn, *fabric.gauss, speeds, fabric.give, sum);
             add_bending(yarn, *fabric.gauss, slots, speeds, sum);
         }
-        if (terms.contact) add_contact(fabric, segment, yarn, slots, sum);
+        if (terms.contact) {
+            add_contact(
+                yarn, fabric.bases + yarn.basis, slots,
+                [&](std::uint32_t k) __attribute__((always_inline)) { return contact_of(fabric, segment.sample + k); },
+                [&](std::uint32_t k) __attribute__((always_inline)) { return fabric.samples.weight[segment.sample + k]; }, sum);
+        }
         energy[index] = sum.energy;
         for (int k = 0; k < 12; ++k) gradient[12 * index + std::size_t(k)] = sum.gradient[k];
     }
 };
+#endif
 
 }  // namespace weave::sim

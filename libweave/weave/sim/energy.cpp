@@ -1,5 +1,7 @@
 #include <weave/sim/energy.hpp>
 
+#include <weave/sim/approach.hpp>
+
 #include <algorithm>
 #include <cmath>
 
@@ -9,16 +11,6 @@ namespace {
 
 /// Below a tenth of the reach the contact law goes on linearly.
 constexpr double contact_floor = 0.01;
-/// Share of their distance by which yarns may come closer in one step: below a half, so that both may.
-constexpr double closest = 0.45;
-
-/// What of `apart` is across two nearly parallel directions, the same whichever of them comes first.
-template <class Real>
-Vec<Real> away_from(const Vec<Real>& apart, const Vec<Real>& along, const Vec<Real>& other) {
-    const Real turn = along.dot(other) < 0 ? Real(-1) : Real(1);
-    const Vec<Real> both = along / along.norm() + turn * other / other.norm();
-    return apart - both * (both.dot(apart) / both.squaredNorm());
-}
 
 }  // namespace
 
@@ -194,7 +186,8 @@ double Energy<Real>::safe_share_of(const FabricView<Real>& fabric, std::size_t a
                         change = mine - load(&m_moved[3 * std::size_t(own)]);
         const Real near2 = apart.squaredNorm(), closing2 = change.squaredNorm(),
                    reach = all.radius[a] + all.radius[b];
-        if (near2 < reach * reach / 4) share = std::min(share, crossing_share(a, own, apart, change, reach));
+        if (near2 < reach * reach / 4)
+            share = std::min(share, crossing_share(load(&m_tangent[3 * a]), load(&m_tangent[3 * std::size_t(own)]), apart, change, reach));
         if (closing2 * apart2 <= change2 * near2) continue;
         change2 = closing2;
         apart2 = near2;
@@ -203,32 +196,6 @@ double Energy<Real>::safe_share_of(const FabricView<Real>& fabric, std::size_t a
         share =
             std::min(share, closest * std::sqrt(static_cast<double>(apart2) / static_cast<double>(change2)));
     return share;
-}
-
-/// Yarns that lie deep in one another may pass between their samples: there it counts how far apart the
-/// straight lines through two samples are, if these lie about where the lines are nearest. Nearer than the
-/// lines stand for the curves they do not come at all, whatever presses them together.
-template <class Real>
-double Energy<Real>::crossing_share(std::size_t a, std::size_t b, const Vec<Real>& apart,
-                                    const Vec<Real>& change, Real reach) const {
-    constexpr double none = 1e300, beside = 0.3, least_height = 0.02, least_sine = 0.1, least_segment = 0.1;
-    const Vec<Real> along = load(&m_tangent[3 * a]), other = load(&m_tangent[3 * b]);
-    // Segments as short as that have samples so close that nothing passes between them, and tangents that say
-    // little.
-    const auto shortest = static_cast<double>(std::min(along.squaredNorm(), other.squaredNorm()));
-    if (shortest < least_segment * least_segment * static_cast<double>(reach * reach)) return none;
-    Vec<Real> across = along.cross(other);
-    if (across.squaredNorm() < Real(least_sine * least_sine) * along.squaredNorm() * other.squaredNorm())
-        across = away_from(apart, along, other);
-    const auto size = static_cast<double>(across.norm());
-    if (!(size > 0)) return none;
-    const double height = static_cast<double>(apart.dot(across)) / size,
-                 rise = static_cast<double>(change.dot(across)) / size;
-    const double aside2 = static_cast<double>(apart.squaredNorm()) - height * height,
-                 most = beside * static_cast<double>(reach);
-    if (aside2 >= most * most || height * rise >= 0) return none;
-    return std::abs(height) < least_height * static_cast<double>(reach) ? 0
-                                                                        : closest * std::abs(height / rise);
 }
 
 template <class Real>
@@ -245,7 +212,7 @@ void Energy<Real>::shorten(const std::vector<Real>& state, std::vector<Real>& ch
     constexpr int rounds = 6, most_rounds = 20;
     constexpr double enough = 0.9;
     const FabricView<Real> fabric = view(state);
-    std::vector<double> share(m_fabric.segments());
+    std::vector<double> share(m_fabric.segments()), least(m_fabric.slots());
     const std::vector<YarnPlace>& yarns = m_fabric.yarns();
     for (int round = 0; round < most_rounds; ++round) {
         move_samples(state, change);
@@ -263,13 +230,18 @@ void Energy<Real>::shorten(const std::vector<Real>& state, std::vector<Real>& ch
         m_executor.each(m_fabric.slots(), [&](std::size_t slot) {
             const YarnPlace& yarn = yarns[m_fabric.yarn_of_slot()[slot]];
             const std::size_t within = slot - yarn.first_slot;
-            double least = 1;
+            least[slot] = 1;
             for (std::size_t c = 0; c < 4 && c <= within; ++c) {
                 if (within - c < yarn.segments)
-                    least = std::min(least, share[yarn.first_segment + within - c]);
+                    least[slot] = std::min(least[slot], share[yarn.first_segment + within - c]);
             }
-            for (std::size_t k = 0; k < 3; ++k) change[3 * slot + k] *= static_cast<Real>(least);
         });
+        for (const FollowSlot& follow : m_fabric.follows()) {
+            for (std::size_t k = 0; k < 2; ++k) {
+                if (follow.weight[k] != 0) least[follow.from[k]] = std::min(least[follow.from[k]], least[follow.slot]);
+            }
+        }
+        m_executor.each(change.size(), [&](std::size_t i) { change[i] *= static_cast<Real>(least[i / 3]); });
         m_fabric.follow_change(change);
     }
     // Rounds may run out before all places agree; then all of it is shortened alike.

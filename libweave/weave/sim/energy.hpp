@@ -54,8 +54,6 @@ class Energy {
     void lay_samples(const std::vector<Real>& state);
     void move_samples(const std::vector<Real>& state, const std::vector<Real>& change);
     [[nodiscard]] double safe_share_of(const FabricView<Real>& fabric, std::size_t sample, double most) const;
-    [[nodiscard]] double crossing_share(std::size_t a, std::size_t b, const Vec<Real>& apart,
-                                        const Vec<Real>& change, Real reach) const;
     void gather(std::vector<Real>& gradient) const;
     [[nodiscard]] double image_pull(const FabricView<Real>& fabric, std::size_t sample,
                                     std::size_t axis) const;

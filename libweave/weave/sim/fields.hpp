@@ -37,7 +37,27 @@ struct SpherePush {
 };
 
 /// Adds ∫ φ(y) dl of one segment. A yarn of fixed length counts its own unstretched length; a fed one, which runs
-/// through, that which lies there: its tension then rises by φ inside, as force along the yarn asks.
+/// through, that which lies there: its tension then rises by φ inside, as force along the yarn asks. `sphere_at(s)` is field s,
+/// `slots` count from where its centre does.
+template <class Real, class SphereAt>
+WEAVE_HD inline void add_fields(const YarnConstants<Real>& yarn, const Gauss<Real>& gauss, const Real* slots, std::size_t count,
+                                const SphereAt& sphere_at, SegmentSum<Real>& sum) {
+    for (std::size_t g = 0; g < gauss_points; ++g) {
+        const Basis<Real>& basis = gauss.basis[g];
+        const Vec<Real> at = combine(basis.value, slots), tangent = combine(basis.slope, slots);
+        const bool fed = yarn.supply == Supply::tension;
+        const Real speed = tangent.norm(), share = gauss.weight[g] * (fed ? speed : yarn.rest_mm);
+        for (std::size_t s = 0; s < count; ++s) {
+            const Sphere<Real> sphere = sphere_at(s);
+            const SpherePush<Real> push(sphere, at);
+            if (push.depth <= 0) continue;
+            sum.energy += share * push.value;
+            sum.add(basis.value, push.out * (-share * sphere.stiffness * push.depth));
+            if (fed) sum.add(basis.slope, tangent * (gauss.weight[g] * push.value / guarded(speed, yarn)));
+        }
+    }
+}
+
 template <class Real>
 struct FieldForces {
     FabricView<Real> fabric;
@@ -48,22 +68,9 @@ struct FieldForces {
 
     WEAVE_HD void operator()(std::size_t index) const {
         const SegmentPlace segment = fabric.segments[index];
-        const YarnConstants<Real>& yarn = fabric.yarns[segment.yarn];
-        const Real* slots = fabric.place + 3 * std::size_t(segment.slot);
         SegmentSum<Real> sum;
-        for (std::size_t g = 0; g < gauss_points; ++g) {
-            const Basis<Real>& basis = fabric.gauss->basis[g];
-            const Vec<Real> at = combine(basis.value, slots), tangent = combine(basis.slope, slots);
-            const bool fed = yarn.supply == Supply::tension;
-            const Real speed = tangent.norm(), share = fabric.gauss->weight[g] * (fed ? speed : yarn.rest_mm);
-            for (std::size_t s = 0; s < count; ++s) {
-                const SpherePush<Real> push(spheres[s], at);
-                if (push.depth <= 0) continue;
-                sum.energy += share * push.value;
-                sum.add(basis.value, push.out * (-share * spheres[s].stiffness * push.depth));
-                if (fed) sum.add(basis.slope, tangent * (fabric.gauss->weight[g] * push.value / guarded(speed, yarn)));
-            }
-        }
+        add_fields(fabric.yarns[segment.yarn], *fabric.gauss, fabric.place + 3 * std::size_t(segment.slot), count,
+                   [this](std::size_t s) { return spheres[s]; }, sum);
         energy[index] += sum.energy;
         for (int k = 0; k < 12; ++k) gradient[12 * index + std::size_t(k)] += sum.gradient[k];
     }
@@ -81,7 +88,29 @@ std::vector<Sphere<Real>> spheres_of(const SimScene& scene) {
     return spheres;
 }
 
-/// Second derivatives of the same. Convex: only what curves upwards.
+/// Second derivatives of a field at one Gauss point, by the place y and the slope y' (t) there.
+template <class Real>
+struct FieldCurvature {
+    Mat<Real> yy, yt, tt;
+};
+
+/// Convex: only what curves upwards; yt is then left. So is what only fed yarns have, of others. `unit` is that of the tangent,
+/// `speed` its length.
+template <class Real>
+WEAVE_INLINE WEAVE_HD inline FieldCurvature<Real> field_curvature(const YarnConstants<Real>& yarn, Real weight, Real speed,
+                                                                  const Vec<Real>& unit, Real stiffness,
+                                                                  const SpherePush<Real>& push, bool convex) {
+    const bool fed = yarn.supply == Supply::tension;
+    Real along = stiffness, side = -stiffness * push.depth / push.distance, pull = push.value / speed;
+    if (convex) along = std::max(along, Real(0)), side = std::max(side, Real(0)), pull = std::max(pull, Real(0));
+    FieldCurvature<Real> all;
+    const Mat<Real> by_place = along * push.out * push.out.transpose() + side * across(push.out);
+    all.yy = weight * (fed ? speed : yarn.rest_mm) * by_place;
+    if (fed) all.tt = weight * pull * across(unit);
+    if (fed && !convex) all.yt = -weight * stiffness * push.depth * push.out * unit.transpose();
+    return all;
+}
+
 inline void add_field_curvature(const YarnConstants<double>& yarn, const Gauss<double>& gauss, const double* slots,
                                 const std::vector<Sphere<double>>& spheres, bool convex, SlotBlocks& sum) {
     const bool fed = yarn.supply == Supply::tension;
@@ -93,17 +122,14 @@ inline void add_field_curvature(const YarnConstants<double>& yarn, const Gauss<d
         for (const Sphere<double>& sphere : spheres) {
             const SpherePush<double> push(sphere, at);
             if (push.depth <= 0 || push.distance <= 0) continue;
-            double along = sphere.stiffness, side = -sphere.stiffness * push.depth / push.distance,
-                   pull = push.value / speed;
-            if (convex) along = std::max(along, 0.0), side = std::max(side, 0.0), pull = std::max(pull, 0.0);
-            const Mat<double> by_place = along * push.out * push.out.transpose() + side * across(push.out);
-            sum.add(basis.value, basis.value, weight * (fed ? speed : yarn.rest_mm) * by_place);
+            const FieldCurvature<double> field =
+                field_curvature(yarn, weight, speed, unit, sphere.stiffness, push, convex);
+            sum.add(basis.value, basis.value, field.yy);
             if (!fed) continue;
-            sum.add(basis.slope, basis.slope, weight * pull * across(unit));
+            sum.add(basis.slope, basis.slope, field.tt);
             if (convex) continue;
-            const Mat<double> mixed = -weight * sphere.stiffness * push.depth * push.out * unit.transpose();
-            sum.add(basis.value, basis.slope, mixed);
-            sum.add(basis.slope, basis.value, mixed.transpose());
+            sum.add(basis.value, basis.slope, field.yt);
+            sum.add(basis.slope, basis.value, field.yt.transpose());
         }
     }
 }

@@ -367,7 +367,7 @@ inline void Hessian<Real>::add_sample(const Neighbours<Real>& neighbours, const 
                             static_cast<double>(all.z[a] - all.z[b]));
         const double reach = static_cast<double>(all.radius[a] + all.radius[b]), square = u.squaredNorm();
         if (square >= reach * reach) continue;
-        const PairCurvature pair = pair_curvature(square, reach * reach, floor, convex);
+        const PairCurvature<double> pair = pair_curvature(square, reach * reach, floor, convex);
         const double other_weight = static_cast<double>(all.weight[b]);
         const Nine pair_by_place = Nine::along(other_weight * pair.side, other_weight * pair.along, u);
         by_place += pair_by_place;

@@ -1,6 +1,7 @@
 #pragma once
 
 #include <weave/sim/block_matrix.hpp>
+#include <weave/sim/cloth.hpp>
 #include <weave/sim/energy.hpp>
 #include <weave/sim/hessian_terms.hpp>
 
@@ -9,12 +10,6 @@
 #include <vector>
 
 namespace weave::sim {
-
-/// Which second derivatives a matrix holds.
-enum class Curvature : std::uint8_t {
-    convex,  ///< only what curves upwards: far from rest every step then leads down
-    exact,   ///< all of them: near rest, for convergence
-};
 
 /// Second derivatives of the energy by the control points that move, one row of blocks each.
 template <class Real>

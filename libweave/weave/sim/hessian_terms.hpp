@@ -13,27 +13,29 @@
 namespace weave::sim {
 
 /// A 3×3 matrix column by column: plain numbers, which compilers bring into wide vectors better than matrices.
-struct Nine {
-    double at[9];
+template <class Real>
+struct NineOf {
+    Real at[9];
 
     /// a bᵀ
-    [[gnu::always_inline]] static Nine outer(const Vec<double>& a, const Vec<double>& b) {
+    WEAVE_INLINE WEAVE_HD static NineOf outer(const Vec<Real>& a, const Vec<Real>& b) {
         return {{a[0] * b[0], a[1] * b[0], a[2] * b[0], a[0] * b[1], a[1] * b[1], a[2] * b[1], a[0] * b[2], a[1] * b[2],
                  a[2] * b[2]}};
     }
     /// s I + f a aᵀ
-    [[gnu::always_inline]] static Nine along(double s, double f, const Vec<double>& a) {
-        const double x = f * a[0], y = f * a[1], z = f * a[2];
+    WEAVE_INLINE WEAVE_HD static NineOf along(Real s, Real f, const Vec<Real>& a) {
+        const Real x = f * a[0], y = f * a[1], z = f * a[2];
         return {{s + x * a[0], y * a[0], z * a[0], x * a[1], s + y * a[1], z * a[1], x * a[2], y * a[2], s + z * a[2]}};
     }
-    [[gnu::always_inline]] Nine& operator+=(const Nine& other) {
+    WEAVE_INLINE WEAVE_HD NineOf& operator+=(const NineOf& other) {
         for (int k = 0; k < 9; ++k) at[k] += other.at[k];
         return *this;
     }
-    [[gnu::always_inline]] Nine transposed() const {
+    WEAVE_INLINE WEAVE_HD NineOf transposed() const {
         return {{at[0], at[3], at[6], at[1], at[4], at[7], at[2], at[5], at[8]}};
     }
 };
+using Nine = NineOf<double>;
 
 /// Sums of 3×3 matrices, one for each of four slots that columns belong to, before they are handed to rows: a sum over
 /// what one sample meets of another segment then costs four products of matrices instead of sixteen.
@@ -95,8 +97,9 @@ struct SlotBlocks {
     }
 };
 
-inline Mat<double> across(const Vec<double>& unit) {
-    return Mat<double>::Identity() - unit * unit.transpose();
+template <class Real>
+WEAVE_HD inline Mat<Real> across(const Vec<Real>& unit) {
+    return Mat<Real>::Identity() - unit * unit.transpose();
 }
 
 /// Second derivatives by the slope y' and the bend y'' at each Gauss point of one segment: their rows, by its slots.
@@ -114,11 +117,42 @@ struct GaussBlocks {
     }
 };
 
+/// What the second derivative of stretch by the slope y' is made of at one Gauss point: side · I + along · t tᵀ, t being the
+/// tangent's unit.
+template <class Real>
+struct StretchCurvature {
+    Real side, along;
+};
+
+/// `ratio`: the mean square of the speeds over the square of the segment's length.
+template <class Real>
+WEAVE_INLINE WEAVE_HD inline StretchCurvature<Real> stretch_curvature(const YarnConstants<Real>& yarn, Real weight, Real speed,
+                                                                      Real length, Real ratio, Real give, bool convex) {
+    const bool fed = yarn.supply == Supply::tension;
+    const StretchLaw<Real> law = StretchLaw<Real>::at(fed ? 0 : speed / yarn.rest_mm - 1, give);
+    Real pull = fed ? yarn.tension_N + yarn.evenness_N * (speed / length - (ratio + 1) / 2) : yarn.stretch_N * law.slope;
+    if (convex) pull = std::max(pull, Real(0));
+    const Real side = weight * pull / speed;
+    if (fed) return {side, -side};
+    return {side, yarn.stretch_N * law.bend * weight / yarn.rest_mm - side};
+}
+
+/// What evenness links, over EA·S: the speeds at Gauss points g and h.
+template <class Real>
+WEAVE_INLINE WEAVE_HD inline Real evenness_link(const Gauss<Real>& gauss, const Speeds<Real>& speeds, Real length, std::size_t g,
+                                                std::size_t h) {
+    const Real weight = gauss.weight[g], both = weight * gauss.weight[h], own = g == h ? weight : 0;
+    return own / length - both * (speeds.speed[g] + speeds.speed[h]) / (length * length) +
+           both * speeds.square / (length * length * length);
+}
+
+/// By all four slots. What stretch_curvature() says stands here once more: called from here it rounds otherwise, and results of the
+/// processor keep their bits.
 [[gnu::always_inline]] inline void add_stretch_curvature(const YarnConstants<double>& yarn, const Gauss<double>& gauss,
                                                          const Speeds<double>& speeds, double give, bool convex,
                                                          GaussBlocks& sum) {
     const bool fed = yarn.supply == Supply::tension;
-    const double length = guarded(speeds.length, yarn), square = speeds.square, ratio = square / (length * length);
+    const double length = guarded(speeds.length, yarn), ratio = speeds.square / (length * length);
     Vec<double> units[gauss_points];
     for (std::size_t g = 0; g < gauss_points; ++g) units[g] = speeds.tangent[g] / guarded(speeds.speed[g], yarn);
     for (std::size_t g = 0; g < gauss_points; ++g) {
@@ -136,9 +170,7 @@ struct GaussBlocks {
         Vec<double> others[4];
         for (Vec<double>& other : others) other.setZero();
         for (std::size_t h = 0; h < gauss_points; ++h) {
-            const double both = weight * gauss.weight[h], own = g == h ? weight : 0;
-            const double even = own / length - both * (speeds.speed[g] + speeds.speed[h]) / (length * length) +
-                                both * square / (length * length * length);
+            const double even = evenness_link(gauss, speeds, length, g, h);
             for (int d = 0; d < 4; ++d) others[d] += yarn.evenness_N * even * gauss.basis[h].slope[d] * units[h];
         }
         for (int d = 0; d < 4; ++d) {
@@ -148,45 +180,61 @@ struct GaussBlocks {
     }
 }
 
+/// Second derivatives of bending at one Gauss point, by the slope y' (t) and the bend y'' (c).
+template <class Real>
+struct BendingCurvature {
+    NineOf<Real> tt, tc, cc;
+};
+
 /// With T = y', C = y'', N = T × C: e = c |N|² |T|⁻⁵. Convex: twice c times JᵀJ of N |T|^(-5/2). Both come to the same
 /// products with other factors, for C × N = |C|² T - (T·C) C and N × T = |T|² C - (T·C) T.
+template <class Real>
+WEAVE_INLINE WEAVE_HD inline BendingCurvature<Real> bending_curvature(const YarnConstants<Real>& yarn, Real weight, Real speed,
+                                                                      const Vec<Real>& t, const Vec<Real>& c, bool convex) {
+    const Real v2 = speed * speed;
+    const Real two = weight * yarn.bending / (v2 * v2 * speed);  // 2c
+    const Real n2 = t.cross(c).squaredNorm(), c2 = c.squaredNorm(), t2 = t.squaredNorm(), along = t.dot(c);
+    const Vec<Real> by_t = c2 * t - along * c, by_c = t2 * c - along * t;
+    const Real mixed = (convex ? Real(2.5) : Real(5)) * two / v2,
+               own = (convex ? Real(6.25) : Real(17.5)) * two * n2 / (v2 * v2), less = convex ? 0 : Real(2.5) * two * n2 / v2;
+    BendingCurvature<Real> all{NineOf<Real>::along(two * c2 - less, -two, c),
+                               NineOf<Real>::outer(t, (convex ? two : 2 * two) * c - mixed * by_c),
+                               NineOf<Real>::along(two * t2, -two, t)};
+    all.tt += NineOf<Real>::outer(by_t, -mixed * t);
+    all.tt += NineOf<Real>::outer(t, own * t - mixed * by_t);
+    for (int k = 0; k < 9; k += 4) all.tc.at[k] -= two * along;
+    if (!convex) all.tc += NineOf<Real>::outer(c, -two * t);
+    return all;
+}
+
 [[gnu::always_inline]] inline void add_bending_curvature(const YarnConstants<double>& yarn, const Gauss<double>& gauss,
                                                          const double* slots, const Speeds<double>& speeds, bool convex,
                                                          GaussBlocks& sum) {
     for (std::size_t g = 0; g < gauss_points; ++g) {
         const Basis<double>& basis = gauss.basis[g];
-        const Vec<double> t = speeds.tangent[g], c = combine(basis.bend, slots);
-        const double speed = guarded(speeds.speed[g], yarn), v2 = speed * speed;
-        const double two = gauss.weight[g] * yarn.bending / (v2 * v2 * speed);  // 2c
-        const double n2 = t.cross(c).squaredNorm(), c2 = c.squaredNorm(), t2 = t.squaredNorm(), along = t.dot(c);
-        const Vec<double> by_t = c2 * t - along * c, by_c = t2 * c - along * t;
-        const double mixed = (convex ? 2.5 : 5) * two / v2, own = (convex ? 6.25 : 17.5) * two * n2 / (v2 * v2),
-                     less = convex ? 0 : 2.5 * two * n2 / v2;
-        const Nine cc = Nine::along(two * t2, -two, t);
-        Nine tt = Nine::along(two * c2 - less, -two, c), tc = Nine::outer(t, (convex ? two : 2 * two) * c - mixed * by_c);
-        tt += Nine::outer(by_t, -mixed * t);
-        tt += Nine::outer(t, own * t - mixed * by_t);
-        for (int k = 0; k < 9; k += 4) tc.at[k] -= two * along;
-        if (!convex) tc += Nine::outer(c, -two * t);
-        sum.slope[g].add(basis.slope, tt), sum.slope[g].add(basis.bend, tc);
-        sum.bend[g].add(basis.slope, tc.transposed()), sum.bend[g].add(basis.bend, cc);
+        const BendingCurvature<double> at = bending_curvature(yarn, gauss.weight[g], guarded(speeds.speed[g], yarn),
+                                                              speeds.tangent[g], combine(basis.bend, slots), convex);
+        sum.slope[g].add(basis.slope, at.tt), sum.slope[g].add(basis.bend, at.tc);
+        sum.bend[g].add(basis.slope, at.tc.transposed()), sum.bend[g].add(basis.bend, at.cc);
     }
 }
 
 /// What the second derivatives of one pair of samples are made of; u = y_a - y_b.
+template <class Real>
 struct PairCurvature {
-    double value = 0;            ///< f
-    double pull = 0;             ///< ∂f/∂u = pull · u
-    double side = 0, along = 0;  ///< ∂²f/∂u∂u = side · I + along · u uᵀ
+    Real value = 0;            ///< f
+    Real pull = 0;             ///< ∂f/∂u = pull · u
+    Real side = 0, along = 0;  ///< ∂²f/∂u∂u = side · I + along · u uᵀ
 };
 
 /// `limit` is D², `square` |u|². Convex: only along the line that joins the samples; of those that coincide, everywhere.
-[[gnu::always_inline]] inline PairCurvature pair_curvature(double square, double limit, double floor, bool convex) {
-    const double inverse = 1 / limit, s = square * inverse;
-    const ContactLaw<double> law = ContactLaw<double>::at(s, floor);
-    PairCurvature pair{law.value, 2 * law.slope * inverse, 0, 0};
+template <class Real>
+WEAVE_INLINE WEAVE_HD inline PairCurvature<Real> pair_curvature(Real square, Real limit, Real floor, bool convex) {
+    const Real inverse = 1 / limit, s = square * inverse;
+    const ContactLaw<Real> law = ContactLaw<Real>::at(s, floor);
+    PairCurvature<Real> pair{law.value, 2 * law.slope * inverse, 0, 0};
     if (convex) {
-        const double along = 2 * inverse * std::max(law.slope + 2 * s * law.bend, -law.slope);
+        const Real along = 2 * inverse * std::max(law.slope + 2 * s * law.bend, -law.slope);
         if (square > 0) {
             pair.along = along / square;
         } else {

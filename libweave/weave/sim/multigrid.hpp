@@ -1,36 +1,15 @@
 #pragma once
 
 #include <weave/sim/block_matrix.hpp>
-#include <weave/sim/fabric.hpp>
+#include <weave/sim/hierarchy.hpp>
 
 #include <Eigen/Dense>
 
-#include <array>
 #include <cstddef>
 #include <cstdint>
 #include <vector>
 
 namespace weave::sim {
-
-/// Rows of a matrix that follow one another along a yarn; a closed yarn goes on from its last row to its
-/// first.
-struct YarnRows {
-    std::uint32_t first = 0, rows = 0;
-    bool is_closed = false;
-};
-
-/// The rows of each yarn, one for each of its control points that moves.
-template <class Real>
-std::vector<YarnRows> rows_of_yarns(const Fabric<Real>& fabric);
-
-/// Where rows lie, seen from above, and the periods of the cloth: 0 where it does not repeat.
-struct RowPlaces {
-    std::vector<std::array<double, 2>> at;
-    std::array<double, 2> period{};
-};
-
-template <class Real>
-RowPlaces places_of(const Fabric<Real>& fabric);
 
 /// A preconditioner that sees long waves: the sum of what single points do and of what ever longer pieces of
 /// yarn do, moving as one, up to whole yarns and bundles of them (Bramble, Pasciak, Xu 1990). A piece hands
@@ -51,41 +30,26 @@ class Multigrid : public Preconditioner {
     [[nodiscard]] std::size_t levels() const { return m_levels.size(); }
 
   private:
-    /// Pieces that a row belongs to, and how much to each: two along a yarn, four nodes of a grid.
-    struct Shares {
-        std::array<std::uint32_t, 4> of{};
-        std::array<double, 4> weight{1, 0, 0, 0};
-    };
-    /// Rows, the pivots of their matrix, and the levels that they hand on to. All but the first are pieces formed of the
-    /// rows of a finer level.
+    /// The numbers of a level of the hierarchy.
     struct Level {
-        std::size_t rows = 0;
-        std::vector<Shares> shares;                        ///< per row of the finer level: its pieces here
-        std::vector<std::uint32_t> first_member, members;  ///< per piece: its rows in the finer level
-        std::vector<double> member_weight;                 ///< of each, how much of it belongs to the piece
-        std::vector<std::size_t> coarser;                  ///< indices of levels; none: solved as a whole
-        std::vector<double> inverse;                       ///< of each pivot, 9 a row
-        BlockMatrix matrix;                                ///< not on the first level, whose matrix is given
+        std::vector<double> inverse;  ///< of each pivot, 9 a row
+        BlockMatrix matrix;           ///< not on the first level, whose matrix is given
         Eigen::LLT<Eigen::MatrixXd> whole;
         std::vector<double> residual, step;
     };
 
-    void add_pieces_of_yarns(std::size_t finer, std::vector<YarnRows>& yarns);
-    bool add_grid(std::size_t finer, double spacing, RowPlaces& places);
-    void add_grids(std::size_t finer, RowPlaces places);
-    void add_level(std::size_t finer, std::vector<Shares> shares, std::size_t pieces);
-    [[nodiscard]] static RowPlaces places_of_pieces(const Level& pieces, const RowPlaces& places);
-    void invert_pivots(const BlockMatrix& matrix, Level& level) const;
-    void coarsen(const BlockMatrix& fine, const Level& level, BlockMatrix& coarse) const;
+    void invert_pivots(const BlockMatrix& matrix, std::vector<double>& inverse) const;
+    void coarsen(const BlockMatrix& fine, const PieceLevel& level, BlockMatrix& coarse) const;
     void factor(std::size_t number, const BlockMatrix& matrix);
     static void factor_whole(const BlockMatrix& matrix, Level& level);
-    void restrict_to(Level& level, const std::vector<double>& fine) const;
-    void add_pieces(const Level& level, std::vector<double>& fine) const;
+    void restrict_to(std::size_t number, const std::vector<double>& fine);
+    void add_pieces(std::size_t number, std::vector<double>& fine) const;
     void solve(std::size_t number, const std::vector<double>& residual, std::vector<double>& step);
     template <class Body>
     void each_row(std::size_t rows, const Body& body) const;
 
     const Executor& m_executor;
+    Hierarchy m_hierarchy;
     std::vector<Level> m_levels;
 };
 

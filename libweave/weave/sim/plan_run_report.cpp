@@ -1,4 +1,3 @@
-#include <weave/sim/newton.hpp>
 #include <weave/sim/order.hpp>
 #include <weave/sim/plan_run.hpp>
 #include <weave/sim/result.hpp>

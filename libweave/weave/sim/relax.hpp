@@ -2,6 +2,7 @@
 
 #include <weave/sim/energy.hpp>
 #include <weave/sim/hessian.hpp>
+#include <weave/sim/newton.hpp>
 
 #include <cstddef>
 #include <functional>
@@ -47,8 +48,15 @@ struct RelaxResult {
     std::vector<Progress> history;
 };
 
-/// The force that residuals are measured by: the greatest of warp tension, median contact force of the
-/// segments that touch, EI/L² and 1e-6·EA, in N; 0 for an empty scene.
+/// The greatest of warp tension, EI/L² and 1e-6·EA, in N; 0 for an empty scene.
+double force_of_yarns(const SimScene& scene);
+
+/// Greatest strain of yarns of fixed length, each taken as a whole.
+template <class Real>
+double greatest_strain(const Fabric<Real>& fabric, const std::vector<Real>& state);
+
+/// The force that residuals are measured by: that of the yarns, or the median contact force of the points that are touched where
+/// that is greater.
 template <class Real>
 double reference_force(Energy<Real>& energy, const std::vector<Real>& state);
 
@@ -60,5 +68,12 @@ double greatest_force(const Executor& executor, const std::vector<Real>& gradien
 /// trust region near it or where the others stall (newton.hpp). No step lets yarns pass through one another.
 template <class Real>
 RelaxResult relax(Energy<Real>& energy, std::vector<Real>& state, const RelaxOptions& options);
+
+/// Whether a state of rest is a saddle, as a search of 80 conjugate gradient steps with the exact second derivatives finds
+/// it. The curvature at a state is not that of the rest it is near: a saddle is claimed only where the energy falls to both
+/// sides, on the mean (to which the gradient gives nothing) by more than against a hundredth of `force`, N, which is what
+/// counts as none.
+template <class Real>
+Bend bend_at(Energy<Real>& energy, const std::vector<Real>& state, double force);
 
 }  // namespace weave::sim

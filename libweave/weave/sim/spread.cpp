@@ -58,6 +58,8 @@ bool spread_points(Energy<Real>& energy, std::vector<Real>& state) {
         for (std::size_t k = 3 * slot; k < 3 * slot + 3; ++k) change[k] = even[k] - state[k];
     }
     fabric.follow_change(change);
+    std::vector<Real> unused;
+    energy.evaluate(state, unused);  // for its samples and lists
     energy.shorten(state, change);
     const auto share = static_cast<Real>(energy.safe_share(state, change, 1));
     for (std::size_t i = 0; i < state.size(); ++i) state[i] += share * change[i];

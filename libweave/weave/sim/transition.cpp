@@ -163,7 +163,7 @@ std::vector<std::pair<std::uint32_t, SlotBlocks>> Transition<Real>::curvature(co
             for (const Laid& b : laid[1 - side]) {
                 const Vec<double> apart = a.place - b.place;
                 if (apart.squaredNorm() >= reach * reach) continue;
-                const PairCurvature pair =
+                const PairCurvature<double> pair =
                     pair_curvature(apart.squaredNorm(), reach * reach, double(fabric.floor), true);
                 sum += 2 * m_pair.contact * a.weight * b.weight *
                        (pair.side * Mat<double>::Identity() + pair.along * apart * apart.transpose());
