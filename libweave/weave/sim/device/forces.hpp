@@ -2,6 +2,7 @@
 
 #include <weave/sim/device/crew.hpp>
 #include <weave/sim/device/lists.hpp>
+#include <weave/sim/device/rows.hpp>
 
 #include <cstddef>
 #include <cstdint>
@@ -115,14 +116,6 @@ struct GatherPull {
         }
         for (std::size_t k = 0; k < 3; ++k) gradient[3 * row + k] = sum[int(k)];
     }
-};
-
-/// A number of an array as a term of a sum.
-template <class T>
-struct Number {
-    View<const T> of;
-
-    WEAVE_HD double operator()(std::size_t index) const { return static_cast<double>(of[index]); }
 };
 
 template <class Real>

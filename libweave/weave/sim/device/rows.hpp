@@ -11,6 +11,14 @@
 
 namespace weave::sim {
 
+/// A number of an array as a term of a sum.
+template <class T>
+struct Number {
+    View<const T> of;
+
+    WEAVE_HD double operator()(std::size_t index) const { return static_cast<double>(of[index]); }
+};
+
 template <class Real>
 struct Dot {
     View<const Real> a, b;

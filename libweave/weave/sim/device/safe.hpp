@@ -3,6 +3,7 @@
 #include <weave/sim/approach.hpp>
 #include <weave/sim/device/crew.hpp>
 #include <weave/sim/device/lists.hpp>
+#include <weave/sim/device/rows.hpp>
 
 #include <cmath>
 #include <cstddef>
@@ -153,7 +154,7 @@ struct SafeSteps {
         for (int round = 0; round < most_rounds; ++round) {
             crew.each(cloth.samples, MoveSamples<Real>{cloth, change, moved});
             crew.each(cloth.segments, SafeShareOfSegment<Real>{{cloth, lists, state, moved, 1}, share});
-            if (crew.least(cloth.segments, Share{share}, 1) >= enough) return;
+            if (crew.least(cloth.segments, Number<double>{share}, 1) >= enough) return;
             // What is still not safe does not move at all: else one place would hold up the whole cloth.
             crew.each(cloth.rows, ShortenRow<Real>{cloth, share, enough, round >= rounds, change});
         }
@@ -161,12 +162,6 @@ struct SafeSteps {
         const double whole = safe_share(crew, lists, state, change, 1);
         if (whole < enough) crew.each(3 * std::size_t(cloth.rows), Scale<Real>{static_cast<Real>(whole), change});
     }
-
-  private:
-    struct Share {
-        View<const double> of;
-        WEAVE_HD double operator()(std::size_t segment) const { return of[segment]; }
-    };
 };
 
 }  // namespace weave::sim

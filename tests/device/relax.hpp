@@ -1,0 +1,257 @@
+#pragma once
+
+// Whole relaxations, against the processor's own solver.
+
+#include "support/relaxers.hpp"
+
+#include <weave/sim/deviation.hpp>
+#include <weave/sim/device/relax_stages.hpp>
+
+#include <sim/scenes.hpp>
+
+#include <algorithm>
+#include <cmath>
+#include <vector>
+
+namespace device_tests {
+
+using namespace weave::sim;
+using namespace weave::sim::testing;
+
+struct Rest {
+    RelaxResult result;
+    std::vector<double> state;
+};
+
+/// A scene and its relaxations, all from the same start.
+struct Relaxed {
+    Bench<double> bench;
+
+    explicit Relaxed(const SimScene& scene) : bench(scene) {}
+
+    Rest here(const RelaxOptions& options) {
+        Rest rest{{}, bench.state};
+        rest.result = relax(bench.energy, rest.state, options);
+        return rest;
+    }
+    template <class Real, class Relaxer>
+    Rest there(Relaxer& relaxer, const RelaxOptions& options) {
+        Rest rest{{}, bench.state};
+        rest.result = relax_on<Real>(relaxer.machine, bench.energy, rest.state, options);
+        return rest;
+    }
+
+    [[nodiscard]] std::vector<Spline> splines(const std::vector<double>& state) const {
+        std::vector<Spline> splines;
+        const auto control = bench.fabric.control(state);
+        for (std::size_t y = 0; y < control.size(); ++y) {
+            const SimYarn& yarn = bench.fabric.scene().yarns[y];
+            splines.push_back({control[y], yarn.is_periodic, yarn.shift});
+        }
+        return splines;
+    }
+    /// How far two states lie apart, in radii of the thinnest yarn. Cloth without held points may have drifted.
+    [[nodiscard]] double apart(const Rest& a, const Rest& b) const {
+        const bool held = std::ranges::any_of(bench.fabric.scene().yarns, [](const SimYarn& yarn) { return !yarn.frozen.empty(); });
+        return deviation_of(splines(a.state), splines(b.state), !held).max_mm / (bench.fabric.least_reach() / 2);
+    }
+};
+
+/// A weave whose repeats lie a little differently, so that it begins at no saddle.
+inline SimScene shaken_weave(std::size_t count) {
+    Random random(5);
+    SimScene scene = plain_weave({.count = count});
+    for (SimYarn& yarn : scene.yarns) shake(random, yarn, 0.01);
+    return scene;
+}
+
+inline SimScene held_weave() {
+    SimScene scene = shaken_weave(4);
+    for (SimYarn& yarn : scene.yarns) {
+        yarn.frozen.assign(yarn.control.size(), 0);
+        yarn.frozen.front() = 1;
+    }
+    scene.yarns.front().frozen.assign(scene.yarns.front().control.size(), 1);
+    return scene;
+}
+
+/// Pushed by a field, and heavy.
+inline SimScene pushed_weave() {
+    SimScene scene = held_weave();
+    scene.fields.push_back({.centre_mm = {1, 1, -0.3}, .radius_mm = 0.7, .strength_N_per_mm = 0.5});
+    scene.gravity_mm_ms2 = 9.81e-3;
+    for (SimYarn& yarn : scene.yarns) yarn.gram_per_mm = 1e-3;
+    return scene;
+}
+
+inline SimScene thick_and_thin() {
+    SimScene scene = shaken_weave(4);
+    for (std::size_t y = 0; y < scene.yarns.size(); y += 3) scene.yarns[y].radius_mm *= 0.4;
+    return scene;
+}
+
+inline RelaxOptions to(double residual) {
+    RelaxOptions options;
+    options.residual = residual;
+    return options;
+}
+
+}  // namespace device_tests
+
+using device_tests::Relaxed;
+using device_tests::Rest;
+using device_tests::to;
+
+TEMPLATE_TEST_CASE("relaxation: in double it comes to rest where the processor does", "[device]", WEAVE_RELAXERS) {
+    using namespace device_tests;
+    for (const auto& scene : {shaken_weave(2), shaken_weave(4), held_weave(), pushed_weave(), thick_and_thin()}) {
+        TestType relaxer;
+        Relaxed cloth(scene);
+        const Rest right = cloth.here(to(1e-8)), found = cloth.there<double>(relaxer, to(1e-8));
+        CHECK(found.result.ending == right.result.ending);
+        CHECK(found.result.residual <= 1e-8);
+        CHECK(cloth.apart(found, right) < 1e-4);
+        CHECK(found.result.energy == Approx(right.result.energy).epsilon(1e-7));
+        CHECK(found.result.reference_N == Approx(right.result.reference_N).epsilon(1e-5));
+        CHECK(found.result.curves_down == right.result.curves_down);
+    }
+}
+
+TEMPLATE_TEST_CASE("relaxation: in float it comes to standard's rest, and from there to the processor's", "[device]", WEAVE_RELAXERS) {
+    using namespace device_tests;
+    for (const auto& scene : {shaken_weave(4), held_weave(), pushed_weave(), thick_and_thin()}) {
+        TestType relaxer;
+        Relaxed cloth(scene);
+        const Rest right = cloth.here(to(1e-8));
+        Rest found = cloth.there<float>(relaxer, to(1e-3));
+        CHECK(found.result.ending == Ending::converged);
+        CHECK(found.result.residual <= 1e-3);
+        // What it says of its residual holds in double too.
+        cloth.bench.energy.evaluate(found.state, cloth.bench.gradient);
+        CHECK(greatest_force(cloth.bench.executor, cloth.bench.gradient) / reference_force(cloth.bench.energy, found.state) < 1.05e-3);
+        found.result = relax(cloth.bench.energy, found.state, to(1e-8));
+        CHECK(cloth.apart(found, right) < 1e-4);
+        CHECK(found.result.reference_N == Approx(right.result.reference_N).epsilon(1e-3));
+    }
+}
+
+TEMPLATE_TEST_CASE("relaxation: float as far as it leads, then double", "[device]", WEAVE_RELAXERS) {
+    using namespace device_tests;
+    TestType relaxer;
+    Relaxed cloth(shaken_weave(4));
+    const Rest right = cloth.here(to(1e-8));
+    Rest found{{}, cloth.bench.state};
+    std::size_t watched = 0;
+    double last_seconds = 0;
+    RelaxOptions options = to(1e-8);
+    options.watch = [&](const Progress& progress) {
+        ++watched;
+        CHECK(progress.seconds >= last_seconds);
+        last_seconds = progress.seconds;
+        return true;
+    };
+    found.result = relax_in_stages(relaxer.machine, cloth.bench.energy, found.state, options);
+    CHECK(found.result.ending == Ending::converged);
+    CHECK(found.result.residual <= 1e-8);
+    CHECK(cloth.apart(found, right) < 1e-4);
+    CHECK(watched > 1);
+    bool rises = true;
+    for (std::size_t r = 1; r < found.result.history.size(); ++r)
+        rises = rises && found.result.history[r].iteration >= found.result.history[r - 1].iteration;
+    CHECK(rises);
+    CHECK(found.result.history.back().iteration == found.result.iterations);
+}
+
+TEMPLATE_TEST_CASE("relaxation: the same bits every time", "[device]", WEAVE_RELAXERS) {
+    using namespace device_tests;
+    TestType relaxer;
+    Relaxed cloth(shaken_weave(4));
+    const Rest first = cloth.there<float>(relaxer, to(1e-3)), second = cloth.there<float>(relaxer, to(1e-3));
+    CHECK(first.state == second.state);
+    CHECK(first.result.evaluations == second.result.evaluations);
+}
+
+TEMPLATE_TEST_CASE("relaxation: it ends when steps or time are used up, or who watches says so", "[device]", WEAVE_RELAXERS) {
+    using namespace device_tests;
+    TestType relaxer;
+    Relaxed cloth(shaken_weave(4));
+    RelaxOptions options = to(1e-9);
+    options.most_iterations = 5;
+    const Rest few = cloth.there<float>(relaxer, options);
+    CHECK(few.result.ending == Ending::iterations);
+    CHECK(few.result.iterations == 5);
+    CHECK(few.result.history.size() == 6);
+    options = to(1e-9);
+    options.most_seconds = 0;
+    CHECK(cloth.there<float>(relaxer, options).result.ending == Ending::time);
+    options = to(1e-9);
+    std::size_t looks = 0;
+    options.watch = [&](const Progress&) { return ++looks < 3; };
+    const Rest stopped = cloth.there<float>(relaxer, options);
+    CHECK(stopped.result.ending == Ending::stopped);
+    CHECK(looks == 3);
+    // What is told of the state it ended with is true of it.
+    std::vector<double> state = stopped.state;
+    const double energy = cloth.bench.energy.evaluate(state, cloth.bench.gradient);
+    CHECK(energy == Approx(stopped.result.energy).epsilon(1e-5));
+}
+
+TEMPLATE_TEST_CASE("relaxation: who watches sees the state that is told of", "[device]", WEAVE_RELAXERS) {
+    using namespace device_tests;
+    TestType relaxer;
+    Relaxed cloth(shaken_weave(4));
+    std::vector<double> state = cloth.bench.state;
+    RelaxOptions options = to(1e-6);
+    std::size_t looks = 0;
+    Bench<double> other(shaken_weave(4));
+    options.watch = [&](const Progress& progress) {
+        CHECK(other.energy.evaluate(state, other.gradient) == Approx(progress.energy).epsilon(1e-5));
+        ++looks;
+        return looks < 4;
+    };
+    relax_on<float>(relaxer.machine, cloth.bench.energy, state, options);
+    CHECK(looks == 4);
+}
+
+TEMPLATE_TEST_CASE("relaxation: a rest that is a saddle is left", "[device]", WEAVE_RELAXERS) {
+    using namespace device_tests;
+    Relaxed rod(pressed_rod());
+    TestType relaxer;
+    RelaxOptions options = to(1e-6);
+    const Rest right = rod.here(options), left = rod.there<double>(relaxer, options);
+    CHECK(left.result.energy == Approx(right.result.energy).epsilon(1e-4));
+    options.leaves_saddles = false;
+    const Rest straight = rod.there<double>(relaxer, options);
+    CHECK(left.result.energy < 0.9 * straight.result.energy);
+}
+
+TEMPLATE_TEST_CASE("relaxation: room is made where lists are longer than was foreseen", "[device]", WEAVE_RELAXERS) {
+    using namespace device_tests;
+    // So small a repeat that a sample has many images, and meets many samples.
+    SimScene scene = plain_weave({.count = 2, .points_a_crossing = 2, .pitch_mm = 0.24});
+    scene.sample_spacing = 0.1;
+    TestType relaxer;
+    Relaxed cloth(scene);
+    const std::size_t at_first = CrewArrays<float>(relaxer.machine.memory(), cloth.bench.fabric, cloth.bench.state).bytes();
+    std::vector<double> state = cloth.bench.state;
+    const RelaxOptions options = to(1e-3);
+    RelaxingOn<float, std::remove_reference_t<decltype(relaxer.machine)>> relaxing(relaxer.machine, cloth.bench.energy, state, options);
+    CHECK(relaxing.run().ending == Ending::converged);
+    CHECK(relaxing.bytes() > at_first);
+}
+
+TEMPLATE_TEST_CASE("relaxation: nothing, one yarn, and yarns that are all held", "[device]", WEAVE_RELAXERS) {
+    using namespace device_tests;
+    TestType relaxer;
+    CHECK(Relaxed(SimScene{}).there<float>(relaxer, to(1e-3)).result.ending == Ending::converged);
+    SimScene one;
+    one.yarns.push_back(laid(usual_yarn(), Vec3(0, 0, 0), Vec3(1, 0, 0), 6));
+    one.yarns.back().is_fed = false;
+    CHECK(Relaxed(one).there<float>(relaxer, to(1e-3)).result.ending == Ending::converged);
+    SimScene held = plain_weave({});
+    for (SimYarn& yarn : held.yarns) yarn.frozen.assign(yarn.control.size(), 1);
+    Relaxed cloth(held);
+    const Rest rest = cloth.there<float>(relaxer, to(1e-3));
+    CHECK(rest.result.ending == Ending::converged);
+    CHECK(rest.state == cloth.bench.state);
+}

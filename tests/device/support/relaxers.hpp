@@ -1,0 +1,47 @@
+#pragma once
+
+// The machines that relaxations are tested on: by one body, in SUBJECT.hpp, as with machines.hpp.
+
+#include <catch2/catch.hpp>
+
+#if defined(__CUDACC__)
+#include <weave/sim/device/cuda_machines.cuh>
+
+namespace device_tests {
+
+struct RelaxesInOneKernel {
+    weave::sim::DeviceQueue queue;
+    weave::sim::CudaGangMachine machine{queue};
+};
+struct RelaxesByLaunches {
+    weave::sim::DeviceQueue queue;
+    weave::sim::CudaLaunchesMachine machine{queue};
+};
+
+}  // namespace device_tests
+
+#define WEAVE_RELAXERS device_tests::RelaxesInOneKernel, device_tests::RelaxesByLaunches
+#else
+#include <weave/sim/device/host_machines.hpp>
+
+namespace device_tests {
+
+struct RelaxesByOneThread {
+    weave::sim::OneThreadMachine machine;
+};
+struct RelaxesByTwoCores {
+    weave::sim::Executor executor{2};
+    weave::sim::CoresMachine machine{executor};
+};
+struct RelaxesByGang {
+    weave::sim::EmulatedMachine machine{2, 3};
+};
+
+}  // namespace device_tests
+
+#if defined(WEAVE_WATCHES_THREADS)
+#define WEAVE_RELAXERS device_tests::RelaxesByGang
+#else
+#define WEAVE_RELAXERS device_tests::RelaxesByOneThread, device_tests::RelaxesByTwoCores, device_tests::RelaxesByGang
+#endif
+#endif
