@@ -178,6 +178,11 @@ Status run_simulation(CommandOutcome& outcome, const SimulateWish& wish) {
     if (!understood) return std::move(understood).error().in(wish.file);
     SimulateTask& task = *understood;
     WEAVE_TRY(sim::Plan plan, plan_of(task.design, block, task.request, wish.file));
+    if (!server) {
+        const Result<sim::BackendChoice> choice = sim::choose_backend(task.options.backend, plan.scene);
+        if (!choice) return Error{choice.error().code, choice.error().message, "--backend " + wish.backend};
+        plan.lines.push_back({"backend", choice->device.empty() ? "cpu" : "cuda: " + choice->device, choice->reason});
+    }
     if (wish.explain) {
         outcome.answer({{"plan", sim::lines_json(plan)}, {"yarns", plan.scene.yarns.size()}}, in_words(plan));
         return {};
@@ -215,7 +220,8 @@ void add_simulate(CLI::App& app, CommandOutcome& outcome) {
         ->check(positive_number())
         ->type_name("N");
     command->add_option("--set", wish->set, "a number of the scene for this run, such as warp.strain=1.02 or friction=0.2")->type_name("NAME=N");
-    command->add_option("--backend", wish->backend, "what computes: auto (if nothing is said: the best there is), cpu or cuda; a server has cpu")->type_name("WORD");
+    command->add_option("--backend", wish->backend, "what computes: auto (if nothing is said: a CUDA device where there is one that can, else the processor), cpu or cuda (weave devices "
+                                                    "lists them); a server has its own")->type_name("WORD");
     command->add_option("--boundary", wish->boundaries, "the rim for this run: x= or y= with periodic, frozen, free or relaxing:FORCE")
         ->type_name("RIM")
         ->allow_extra_args(false);
@@ -251,7 +257,7 @@ void add_simulate(CLI::App& app, CommandOutcome& outcome) {
                     "once without them.\nWith --on the file is written once, at the end; Ctrl-C cancels the job and writes its yarns as they lay. weave jobs "
                     "lists what is on the server.\n" + command->get_footer());
     on_run(command, outcome, [=, &outcome] {
-        wish->no_plan_option = given_of(command, {"--out", "--solver", "--residual", "--backend", "--flip", "--save-design", "--resume", "--start-from", "--starts",
+        wish->no_plan_option = given_of(command, {"--out", "--solver", "--residual", "--flip", "--save-design", "--resume", "--start-from", "--starts",
                                                   "--symmetry", "--seed", "--steps", "--seconds", "--threads", "--on"});
         wish->no_server_option = given_of(command, {"--resume", "--starts", "--symmetry", "--seed", "--threads"});
         return run_simulation(outcome, *wish);

@@ -12,13 +12,15 @@ namespace weave::program {
 
 namespace {
 
-/// The CPU is all that this program has, and a server (simd) too.
-Status check_backend(const std::string& backend, bool on_server) {
-    if (backend == "cpu" || backend == "auto") return {};
-    if (backend == "cuda" && on_server)
-        return usage_error("cannot be had from a server (--on), which computes on the CPU: cpu or auto", "--backend cuda");
-    if (backend == "cuda") return system_fault("this program was built without CUDA: use the backend cpu", "--backend cuda");
-    return usage_error("backend is auto, cpu or cuda", "--backend " + backend);
+/// Which one there is of those that may be asked for turns out with the plan. A server takes the one that it was set up for.
+Status check_backend(const SimulateWish& wish) {
+    const Result<sim::Backend> backend = sim::parse_backend(wish.backend);
+    if (!backend) return usage_error(backend.error().message, "--backend " + wish.backend);
+    if (*backend != sim::Backend::automatic && !wish.server.host.empty())
+        return usage_error("cannot be had from a server (--on), which computes on what it was set up for: auto", "--backend " + wish.backend);
+    if (*backend == sim::Backend::cuda && wish.solver == "paper")
+        return usage_error("has the solver relax alone: paper is computed on the processor", "--backend cuda");
+    return {};
 }
 
 /// What is read or written besides is not written over. Two files may change in place: yarns that are gone on from, and
@@ -42,7 +44,7 @@ Error usage_error(std::string message, std::string where) {
 Status check_wish(const SimulateWish& wish) {
     if (!wish.server.host.empty() && !wish.no_server_option.empty())
         return usage_error("cannot be had from a server (--on): it computes alone, on what it has", wish.no_server_option);
-    WEAVE_CHECK_OK(check_backend(wish.backend, !wish.server.host.empty()));
+    WEAVE_CHECK_OK(check_backend(wish));
     WEAVE_CHECK_OK(check_files(wish));
     if (!wish.explain && wish.out.empty()) return usage_error("say where the yarns go: -o OUT.yarns", "");
     if (wish.explain && !wish.no_plan_option.empty())
@@ -82,6 +84,7 @@ Result<SimulateTask> understand(Cloth cloth, const SimulateWish& wish) {
     }
     task.request.points_per_key = wish.points;
     task.request.reduce = !wish.whole;
+    WEAVE_TRY(task.options.backend, sim::parse_backend(wish.backend));
     task.options.threads = wish.threads;
     task.options.residual = wish.residual;
     task.options.most_iterations = wish.steps.value_or(sim::usual_iterations(task.options.solver));

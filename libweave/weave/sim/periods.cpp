@@ -29,8 +29,9 @@ Along along_axis(const SimScene& scene, std::size_t axis) {
 /// The search for the periods.
 class Search {
   public:
-    Search(SimScene& scene, const RimForces& forces, const RelaxOptions& options, double tolerance, const Executor& executor)
-        : m_scene(scene), m_forces(forces), m_options(options), m_tolerance(tolerance), m_executor(executor) {
+    Search(SimScene& scene, const RimForces& forces, const RelaxOptions& options, double tolerance, const Executor& executor,
+           const RelaxOnce& once)
+        : m_scene(scene), m_forces(forces), m_options(options), m_tolerance(tolerance), m_executor(executor), m_once(once) {
         for (std::size_t k = 0; k < 2; ++k) {
             m_along[k] = along_axis(scene, k);
             // Crimp gives way far sooner than the yarns stretch.
@@ -66,7 +67,7 @@ class Search {
                 return m_options.watch(progress);
             };
         }
-        m_result.friction = relax_with_friction(energy, state, options);
+        m_result.friction = relax_with_friction(energy, state, options, m_once);
         m_result.last = m_result.friction.last;
         m_result.force_N = energy.period_gradient(state);
         m_iterations += m_result.last.iterations;
@@ -108,6 +109,7 @@ class Search {
     const RelaxOptions& m_options;
     double m_tolerance;
     const Executor& m_executor;
+    const RelaxOnce& m_once;
     std::array<Along, 2> m_along;
     std::array<double, 2> m_stiffness{}, m_before{}, m_missing{};
     std::size_t m_iterations = 0;
@@ -132,11 +134,11 @@ SimScene with_periods(SimScene scene, const std::array<double, 2>& period_mm) {
 }
 
 PeriodsResult relax_periods(SimScene& scene, const RimForces& forces, const RelaxOptions& options, double tolerance,
-                            const Executor& executor) {
+                            const Executor& executor, const RelaxOnce& once) {
     SlipStart start{{}, scene.period_mm};
     for (const SimYarn& yarn : scene.yarns) start.control.push_back(yarn.control);
     if (scene.friction > 0 && !scene.slip_from) scene.slip_from = std::move(start);
-    PeriodsResult result = Search(scene, forces, options, tolerance, executor).run();
+    PeriodsResult result = Search(scene, forces, options, tolerance, executor, once).run();
     scene.slip_from.reset();
     return result;
 }

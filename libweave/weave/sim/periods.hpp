@@ -31,8 +31,8 @@ SimScene with_periods(SimScene scene, const std::array<double, 2>& period_mm);
 /// Relaxes yarns and free periods together: yarns at rest in one period after another, each by the secant of the force
 /// on the rim. `scene` holds the start, from which slip counts in every period unless it says from
 /// where else, and then the result. Balanced: the force differs by at most `tolerance` times the
-/// reference force of each yarn that crosses the rim.
+/// reference force of each yarn that crosses the rim. `once` relaxes at one period.
 PeriodsResult relax_periods(SimScene& scene, const RimForces& forces, const RelaxOptions& options, double tolerance,
-                            const Executor& executor);
+                            const Executor& executor, const RelaxOnce& once = relax<double>);
 
 }  // namespace weave::sim

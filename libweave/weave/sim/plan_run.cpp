@@ -45,7 +45,7 @@ std::vector<std::vector<Vec3>> controls_of(const SimScene& scene) {
 
 PlanRun::PlanRun(Design design, Plan plan, const RunGoal& goal, std::size_t threads)
     : m_design(std::move(design)), m_plan(std::move(plan)), m_goal(goal), m_executor(std::make_unique<Executor>(threads)),
-      m_parameters(m_plan), m_scene(m_plan.scene) {
+      m_relaxer(goal.backend), m_parameters(m_plan), m_scene(m_plan.scene) {
     m_last.ending = Ending::stopped;
 }
 
@@ -115,9 +115,7 @@ void PlanRun::relax_points(std::size_t most_steps, bool passing, const Watch& wa
     options.leaves_saddles = !passing;
     const std::size_t rounds = m_relaxed.iterations > 0 ? m_friction.rounds : 0;
     m_in_leg = true;
-    m_friction = relax_with_friction(*m_energy, m_state, options, [&](auto& energy, auto& state, const auto& of_round) {
-        return m_goal.solver == Solver::relax ? sim::relax(energy, state, of_round) : relax_in_time(energy, state, of_round);
-    });
+    m_friction = relax_with_friction(*m_energy, m_state, options, once());
     m_in_leg = false;
     m_friction.rounds += rounds;
     RelaxResult leg = m_friction.last;
@@ -139,9 +137,21 @@ void PlanRun::relax_points(std::size_t most_steps, bool passing, const Watch& wa
     }
 }
 
+/// One relaxation by whatever solver and machine was asked for; periods that relax know only `relax`.
+RelaxOnce PlanRun::once() {
+    return [this](Energy<double>& energy, std::vector<double>& state, const RelaxOptions& options) {
+        const bool periods = m_plan.rim_force_N[0].has_value() || m_plan.rim_force_N[1].has_value();
+        if (m_goal.solver == Solver::paper && !periods) return relax_in_time(energy, state, options);
+        RelaxResult result = m_relaxer.relax(energy, state, options);
+        const BackendChoice& choice = m_relaxer.choice();
+        say("backend", choice.device.empty() ? "cpu" : "cuda: " + choice.device, choice.reason);
+        return result;
+    };
+}
+
 void PlanRun::relax_with_periods(const Watch& watch) {
     m_fabric.reset();
-    m_periods = relax_periods(m_scene, m_plan.rim_force_N, relax_options(watch), rim_tolerance, *m_executor);
+    m_periods = relax_periods(m_scene, m_plan.rim_force_N, relax_options(watch), rim_tolerance, *m_executor, once());
     m_friction = m_periods->friction;
     count(m_periods->last);
     make_solver();
@@ -285,10 +295,11 @@ Status PlanRun::ask(System system, const LiveParameters& wanted) {
     return {};
 }
 
-/// Puts right what the plan says of a term.
+/// Puts right what the plan says of a term, or adds it.
 void PlanRun::say(const std::string& term, std::string choice, std::string reason) {
     const auto line = std::ranges::find(m_plan.lines, term, &PlanLine::term);
     if (line != m_plan.lines.end()) *line = {term, std::move(choice), std::move(reason)};
+    else m_plan.lines.push_back({term, std::move(choice), std::move(reason)});
 }
 
 void PlanRun::hold(const Plan& held) {

@@ -3,6 +3,7 @@
 #include <weave/block/flip.hpp>
 #include <weave/core/json.hpp>
 #include <weave/design/design.hpp>
+#include <weave/sim/backend.hpp>
 #include <weave/sim/friction_rounds.hpp>
 #include <weave/sim/live_parameters.hpp>
 #include <weave/sim/order_watch.hpp>
@@ -42,6 +43,7 @@ struct RunGoal {
     std::optional<double> residual;       ///< instead of the plan's
     std::size_t most_iterations = 20000;  ///< of the whole run
     double most_seconds = 1e30;           ///< the same
+    Backend backend = Backend::automatic;  ///< what computes with the solver `relax`; flips and `paper` are computed on the processor
 };
 
 /// What a run has used up.
@@ -144,6 +146,7 @@ class PlanRun {
 
     void begin_relaxation();
     void relax_points(std::size_t most_steps, bool passing, const Watch& watch);
+    [[nodiscard]] RelaxOnce once();
     void relax_with_periods(const Watch& watch);
     [[nodiscard]] RelaxOptions relax_options(const Watch& watch) const;
     [[nodiscard]] RelaxOptions looking_on(const Watch& watch);
@@ -163,6 +166,7 @@ class PlanRun {
     Plan m_plan;
     RunGoal m_goal;
     std::unique_ptr<Executor> m_executor;
+    Relaxer m_relaxer;
     LedParameters m_parameters;
     SimScene m_scene;  ///< as it lay between the last two legs
     std::unique_ptr<Fabric<double>> m_fabric;

@@ -88,7 +88,7 @@ Json PlanRun::report(const Plan& plan, const Fabric<double>& fabric) const {
                 {"scene_sha256", ""},
                 {"coverage", coverage_of(plan)},
                 {"solver", std::string(sim::name_of(m_goal.solver))},
-                {"backend", "cpu"},
+                {"backend", std::string(sim::name_of(m_relaxer.choice().backend))},
                 {"fidelity", std::string(sim::name_of(plan.fidelity))},
                 {"points_per_key", plan.points_per_key},
                 {"converged", m_last.ending == Ending::converged && balanced && m_parameters.have_arrived()},

@@ -9,7 +9,7 @@ namespace weave::sim {
 namespace {
 
 RunGoal goal_of(const SimulationOptions& options) {
-    return {options.solver, options.residual, options.most_iterations, options.most_seconds};
+    return {options.solver, options.residual, options.most_iterations, options.most_seconds, options.backend};
 }
 
 /// The coarser yarns as the end of a run: whether or not they are at rest, what was asked for is not.

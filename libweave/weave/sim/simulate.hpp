@@ -14,6 +14,7 @@ namespace weave::sim {
 
 struct SimulationOptions {
     Solver solver = Solver::relax;
+    Backend backend = Backend::automatic;  ///< what computes
     std::size_t threads = 0;            ///< 0: one a core
     std::optional<double> residual;     ///< instead of the fidelity's
     std::size_t most_iterations = 20000;  ///< of both levels and all flips together

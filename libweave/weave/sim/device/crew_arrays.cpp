@@ -68,6 +68,11 @@ bool device_can_relax(const SimScene& scene) {
     return scene.friction == 0 && !scene.transition;
 }
 
+std::size_t device_bytes(const Fabric<double>& fabric) {
+    constexpr std::size_t a_sample = 400, a_segment = 1'500, a_point = 3'000;
+    return a_sample * fabric.samples() + a_segment * fabric.segments() + a_point * fabric.points();
+}
+
 template class CrewArrays<float>;
 template class CrewArrays<double>;
 

@@ -44,16 +44,19 @@ struct CudaThread {
 using CudaGang = Gang<CudaThread>;
 using CudaBlockGang = Gang<BlockOf<CudaThread>>;
 
+// Every kernel's launch bounds say that one block on a multiprocessor is enough. Without that nvcc 13.0 wants as many as the
+// threads of a multiprocessor make, and spills registers for it (256 threads: 32 registers and spills where 40 were enough).
+
 /// kernel(gang) by all blocks together.
 template <int threads, class Kernel>
-__global__ void __launch_bounds__(threads) gang_kernel(const __grid_constant__ Kernel kernel, View<double> parts) {
+__global__ void __launch_bounds__(threads, 1) gang_kernel(const __grid_constant__ Kernel kernel, View<double> parts) {
     CudaGang gang({}, parts);
     kernel(gang);
 }
 
 /// kernel(gang, block) by each block for itself.
 template <int threads, class Kernel>
-__global__ void __launch_bounds__(threads) block_gangs_kernel(const __grid_constant__ Kernel kernel, View<double> parts) {
+__global__ void __launch_bounds__(threads, 1) block_gangs_kernel(const __grid_constant__ Kernel kernel, View<double> parts) {
     constexpr std::size_t own = parts_of_gang(1);
     CudaBlockGang gang({}, parts.slice(own * blockIdx.x, own));
     kernel(gang, std::size_t{blockIdx.x});

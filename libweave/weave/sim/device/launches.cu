@@ -11,12 +11,12 @@ namespace weave::sim {
 namespace {
 
 template <class Join>
-__global__ void __launch_bounds__(most_parts) join_kernel(View<const double> parts, std::size_t count, double start, Join join, double* out) {
+__global__ void __launch_bounds__(most_parts, 1) join_kernel(View<const double> parts, std::size_t count, double start, Join join, double* out) {
     const double joined = join_block<most_parts>(threadIdx.x < count ? parts[threadIdx.x] : start, join);
     if (threadIdx.x == 0) *out = joined;
 }
 
-__global__ void __launch_bounds__(most_parts) join_sums_kernel(View<const double> parts, std::size_t count, View<double> out) {
+__global__ void __launch_bounds__(most_parts, 1) join_sums_kernel(View<const double> parts, std::size_t count, View<double> out) {
     const double sum = join_block<most_parts>(threadIdx.x < count ? parts[blockIdx.x * count + threadIdx.x] : 0, JoinBySum{});
     if (threadIdx.x == 0) out[blockIdx.x] = sum;
 }

@@ -40,14 +40,14 @@ __device__ double join_block(double mine, const Join& join) {
 }
 
 template <class Body>
-__global__ void __launch_bounds__(each_threads) each_kernel(const __grid_constant__ Body body, std::size_t count) {
+__global__ void __launch_bounds__(each_threads, 1) each_kernel(const __grid_constant__ Body body, std::size_t count) {
     const std::size_t i = std::size_t{blockIdx.x} * each_threads + threadIdx.x;
     if (i < count) body(i);
 }
 
 /// parts[block] = what the block's share of the terms joins to.
 template <class Term, class Join>
-__global__ void __launch_bounds__(part_threads)
+__global__ void __launch_bounds__(part_threads, 1)
     part_kernel(const __grid_constant__ Term term, std::size_t count, double start, Join join, View<double> parts) {
     double mine = start;
     for (std::size_t i = std::size_t{blockIdx.x} * part_threads + threadIdx.x; i < count; i += std::size_t{gridDim.x} * part_threads)
@@ -58,7 +58,7 @@ __global__ void __launch_bounds__(part_threads)
 
 /// The same of several sums at once: sum k in the blocks of row k.
 template <class Term>
-__global__ void __launch_bounds__(part_threads) sums_kernel(const __grid_constant__ Term term, std::size_t count, View<double> parts) {
+__global__ void __launch_bounds__(part_threads, 1) sums_kernel(const __grid_constant__ Term term, std::size_t count, View<double> parts) {
     const std::size_t k = blockIdx.y;
     double mine = 0;
     for (std::size_t i = std::size_t{blockIdx.x} * part_threads + threadIdx.x; i < count; i += std::size_t{gridDim.x} * part_threads)
@@ -73,7 +73,7 @@ __global__ void alone_kernel(const __grid_constant__ Body body) {
 }
 
 template <class Task>
-__global__ void __launch_bounds__(alone_threads) one_block_kernel(const __grid_constant__ Task task, View<double> parts) {
+__global__ void __launch_bounds__(alone_threads, 1) one_block_kernel(const __grid_constant__ Task task, View<double> parts) {
     CudaBlockGang gang({}, parts);
     task(gang);
 }
