@@ -81,6 +81,8 @@ class Pairs {
     /// The k-th pair from the oldest on.
     WEAVE_HD static std::uint32_t place(std::uint32_t oldest, std::size_t k) { return (oldest + std::uint32_t(k)) % places_for_pairs; }
 
+  public: // nvcc launches no private type
+
     /// Of a new pair: change·bend, change·gradient, each older change · its bend, and its change · each older bend.
     struct Products {
         PairsRoom<Real> room;
@@ -181,6 +183,7 @@ class Pairs {
         }
     };
 
+  private:
     PairsRoom<Real> m_room;
     std::uint32_t m_count, m_newest;
 };

@@ -162,7 +162,6 @@ struct SafeSteps {
         if (whole < enough) crew.each(3 * std::size_t(cloth.rows), Scale<Real>{static_cast<Real>(whole), change});
     }
 
-  private:
     struct Share {
         View<const double> of;
         WEAVE_HD double operator()(std::size_t segment) const { return of[segment]; }
