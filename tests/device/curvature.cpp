@@ -1,4 +1,4 @@
-#include "lists.hpp"
+#include "lists_here.hpp"
 
 #include <weave/sim/device/curvature_arrays.hpp>
 

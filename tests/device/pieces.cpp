@@ -1,4 +1,4 @@
-#include "lists.hpp"
+#include "lists_here.hpp"
 
 #include <weave/sim/device/piece_arrays.hpp>
 #include <weave/sim/device/pieces_apply.hpp>
