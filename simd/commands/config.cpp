@@ -1,6 +1,7 @@
 #include <simd/commands/config.hpp>
 
 #include <weave/core/text.hpp>
+#include <weave/sim/backend.hpp>
 
 #include <algorithm>
 #include <simd/daemon/room.hpp>
@@ -28,6 +29,14 @@ std::size_t count_of(JsonReader& reader, const char* key, std::int64_t low, std:
     return static_cast<std::size_t>(reader.integer(key, low, high, static_cast<std::int64_t>(usual)));
 }
 
+/// A device that is asked for must be there.
+Status check_backend(const std::string& name) {
+    const Result<sim::Backend> backend = sim::parse_backend(name);
+    if (!backend) return bad_input(std::string(backend.error().message), "backend");
+    const auto choice = sim::choose_backend(*backend, sim::SimScene());
+    return choice ? Status() : Status(Error{choice.error().code, choice.error().message, "backend"});
+}
+
 }  // namespace
 
 Result<ServeConfig> parse_config(std::string_view text, const std::filesystem::path& folder) {
@@ -38,6 +47,7 @@ Result<ServeConfig> parse_config(std::string_view text, const std::filesystem::p
     read_service(reader, folder, config);
     config.unix_socket = path_member(reader, "unix_socket", folder);
     config.threads = count_of(reader, "threads", 0, 1024, 0);
+    config.backend = reader.text("backend", config.backend, 16);
     config.memory_bytes = static_cast<std::uint64_t>(reader.integer("memory_mib", 0, most_mib, 0)) * mib;
     config.sessions = count_of(reader, "sessions", 1, 10000, config.sessions);
     config.sessions_per_person = count_of(reader, "sessions_per_person", 1, 1000, config.sessions_per_person);
@@ -56,6 +66,7 @@ Result<ServeConfig> parse_config(std::string_view text, const std::filesystem::p
 
 Status check_config(const ServeConfig& config) {
     WEAVE_CHECK_OK(check_service(config));
+    WEAVE_CHECK_OK(check_backend(config.backend));
     if (config.memory_bytes > 0 && config.memory_bytes < expected_bytes(1))
         return bad_input("is less than the smallest cloth needs: at least " + std::to_string(expected_bytes(1) / mib + 1), "memory_mib");
     if (!config.site.empty() && config.access_keys.empty()) return bad_input("counts for tokens of its keys: give access_keys too", "site");

@@ -20,6 +20,7 @@ struct ServeConfig : ServiceConfig {
     }
     std::filesystem::path unix_socket;   ///< `unix_socket`; none: `simd.sock` in the folder
     std::size_t threads = 0;             ///< `threads` that compute; 0: one a core
+    std::string backend = "auto";        ///< `backend` that computes: auto, cpu or cuda
     std::uint64_t memory_bytes = 0;      ///< `memory_mib` for all sessions and jobs together; 0: four fifths of the machine's
     std::size_t sessions = 64;           ///< `sessions` in all
     std::size_t sessions_per_person = 16;  ///< `sessions_per_person`

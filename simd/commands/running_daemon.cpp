@@ -71,6 +71,7 @@ DaemonSettings settings_of(const DaemonFolder& folder, const ServeConfig& config
     settings.folder = folder.path;
     settings.crew.program = program;
     settings.crew.turns.threads = threads_of(config);
+    settings.crew.backend = config.backend;
     settings.crew.memory_bytes = memory_of(config);
     settings.crew.stall = std::chrono::seconds(config.stall_seconds);
     settings.most_sessions = config.sessions;

@@ -63,6 +63,7 @@ void add_serve_command(CLI::App& app, CommandOutcome& outcome) {
     options->words.add_service(config);
     options->words.add("--socket", "unix_socket", config.unix_socket, "the Unix socket for this machine (simd.sock in the folder)");
     options->words.add("--threads", "threads", config.threads, "threads that compute; 0: one a core");
+    options->words.add("--backend", "backend", config.backend, "what computes: auto (a CUDA device where there is one that can), cpu or cuda");
     on_run(command, outcome, [options, &outcome] { return serve(*options, outcome); });
 }
 

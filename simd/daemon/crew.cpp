@@ -70,6 +70,7 @@ void Crew::start_some(Clock::time_point now) {
 
 void Crew::start(Id id, Member& member) {
     WorkOrder order = member.task->order();
+    order.backend = m_rules.backend;
     order.planning_bytes = m_rules.planning_bytes;
     m_turns.add(id, member.person, member.is_job);  // before its thread may hear of a turn
     auto process = WorkerProcess::start(m_rules.program, to_json(order),
@@ -161,9 +162,10 @@ bool Crew::admit(Id id, std::size_t points, Json also) {
     if (found == m_members.end() || !m_room.take(id, expected_bytes(points))) return false;
     found->second.is_admitted = true;
     // Estimates err. What takes far more than its own must not take that of others.
-    constexpr std::uint64_t twice = 2, spare = 256U << 20U;
+    // A device's driver takes memory of the process too, and fails without it; then the processor goes on.
+    constexpr std::uint64_t twice = 2, spare = 256U << 20U, for_driver = 1024U << 20U;
     also["do"] = "admitted";
-    also["bytes"] = twice * expected_bytes(points) + spare;
+    also["bytes"] = twice * expected_bytes(points) + spare + (m_rules.backend == "cpu" ? 0 : for_driver);
     post(id, also);
     return true;
 }

@@ -27,6 +27,7 @@ class Crew {
     struct Rules {
         std::filesystem::path program;      ///< this one
         Turns::Rules turns;
+        std::string backend = "auto";       ///< what they compute on, by sim::parse_backend
         std::uint64_t memory_bytes = 0;     ///< for all workers together
         std::uint64_t planning_bytes = std::uint64_t{2} << 30;  ///< for one that still plans
         std::size_t planning_at_once = 2;

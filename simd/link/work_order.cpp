@@ -69,6 +69,7 @@ Json to_json(const WorkOrder& order) {
             {"number", order.number},
             {"work", wire::write_message(wire::Submit{no_request, order.document, order.simulation, order.flips})},
             {"folder", order.folder},
+            {"backend", order.backend},
             {"planning_bytes", order.planning_bytes},
             {"takes_up", order.takes_up},
             {"changes", std::move(changes)},
@@ -88,6 +89,7 @@ Result<WorkOrder> work_order_from(const Json& json) {
     order.simulation = std::move(work.simulation);
     order.flips = std::move(work.flips);
     order.folder = json.at("folder");
+    order.backend = json.at("backend");
     order.planning_bytes = json.at("planning_bytes");
     order.takes_up = json.at("takes_up");
     for (const Json& change : json.at("changes")) {

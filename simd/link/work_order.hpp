@@ -28,6 +28,7 @@ struct WorkOrder {
     wire::Simulation simulation;
     std::vector<Flip> flips;          ///< of a job
     std::string folder;               ///< where its checkpoint lies, and where results go
+    std::string backend = "auto";     ///< what computes, by sim::parse_backend
     std::uint64_t planning_bytes = 0; ///< memory that it may take until it is admitted; 0: any
     bool takes_up = false;            ///< goes on from the checkpoint in the folder, if there is one
     std::vector<JournaledChange> changes;  ///< of a session, all that its journal has

@@ -32,6 +32,7 @@ sim::RunRequest run_request(const WorkOrder& order) {
     request.plan = order.simulation.plan;
     request.goal.solver = order.simulation.solver;
     request.goal.residual = order.simulation.residual;
+    if (const auto backend = sim::parse_backend(order.backend)) request.goal.backend = *backend;
     // A session goes on as long as somebody wants it to.
     const std::size_t usual = order.is_job ? sim::usual_iterations(order.simulation.solver) : wire::most_number;
     request.goal.most_iterations = order.simulation.most_steps.value_or(usual);

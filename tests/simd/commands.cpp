@@ -114,8 +114,9 @@ std::size_t widest_line(const std::string& text) {
 }  // namespace
 
 TEST_CASE("a configuration is read, and what it leaves out stays as it is") {
-    const auto config = parse_config(R"({"address":"0.0.0.0","port":9000,"hosts":["box"],"threads":3,"memory_mib":100,"expire_seconds":60,"workers":2})");
+    const auto config = parse_config(R"({"address":"0.0.0.0","port":9000,"hosts":["box"],"threads":3,"memory_mib":100,"expire_seconds":60,"workers":2,"backend":"cpu"})");
     REQUIRE(config);
+    CHECK(config->backend == "cpu");
     CHECK(config->address == "0.0.0.0");
     CHECK(config->port == 9000);
     CHECK(config->hosts == std::vector<std::string>{"box"});
@@ -124,6 +125,7 @@ TEST_CASE("a configuration is read, and what it leaves out stays as it is") {
     const auto plain = parse_config("{}");
     REQUIRE(plain);
     CHECK(plain->port == 8444);
+    CHECK(plain->backend == "auto");
     CHECK(threads_of(*plain) >= 1);
     CHECK(memory_of(*plain) > std::uint64_t{64} << 20);
 }
@@ -135,8 +137,8 @@ TEST_CASE("a configuration that is wrong is refused at its place, by the program
         {"", ""}, {"[]", ""}, {"{", ""}, {R"({"prot":1})", "prot"}, {R"({"port":1,"port":2})", ""}, {R"({"hosts":"x"})", "hosts"}, {R"({"hosts":["x",1]})", "hosts[1]"},
         {R"({"access_keys":[1]})", "access_keys[0]"}, {R"({"site":"m","access_keys":["xx"]})", "access_keys[0]"}, {R"({"site":"m","access_keys":[")" + key + R"("]})", "access_keys[0]"},
         {R"({"certificate":"x.pem"})", "key"}, {R"({"key":"x.key"})", "certificate"}, {R"({"plain":true,"certificate":"x","key":"y"})", "plain"},
-        {R"({"plain":true,"address":"0.0.0.0"})", "address"}, {R"({"site":"mill"})", "site"}, {R"({"memory_mib":40})", "memory_mib"}};
-    for (const char* member : {"address", "certificate", "key", "unix_socket", "site", "evidence_key"}) {
+        {R"({"plain":true,"address":"0.0.0.0"})", "address"}, {R"({"site":"mill"})", "site"}, {R"({"memory_mib":40})", "memory_mib"}, {R"({"backend":"abacus"})", "backend"}};
+    for (const char* member : {"address", "certificate", "key", "unix_socket", "site", "evidence_key", "backend"}) {
         wrong.emplace_back("{\"" + std::string(member) + "\":1}", member);
         wrong.emplace_back("{\"" + std::string(member) + "\":\"" + std::string(5000, 'x') + "\"}", member);
     }
