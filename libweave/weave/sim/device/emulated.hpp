@@ -5,26 +5,51 @@
 
 #include <weave/sim/device/crew.hpp>
 
-#include <barrier>
+#include <condition_variable>
 #include <cstddef>
 #include <memory>
+#include <mutex>
 #include <thread>
 #include <vector>
 
 namespace weave::sim {
 
+/// Lets threads wait for one another. They sleep meanwhile: there are more of them than cores, and std::barrier's spin would keep
+/// from their core just those that are waited for.
+class SleepingBarrier {
+  public:
+    explicit SleepingBarrier(std::size_t threads) : m_threads(threads) {}
+
+    void arrive_and_wait() {
+        std::unique_lock lock(m_lock);
+        const std::size_t round = m_round;
+        if (++m_arrived == m_threads) {
+            m_arrived = 0;
+            ++m_round;
+            m_next.notify_all();
+            return;
+        }
+        m_next.wait(lock, [&] { return m_round != round; });
+    }
+
+  private:
+    std::size_t m_threads, m_arrived = 0, m_round = 0;
+    std::mutex m_lock;
+    std::condition_variable m_next;
+};
+
 /// What the threads of an emulated device share.
 struct EmulatedDevice {
     EmulatedDevice(std::size_t blocks, std::size_t threads_a_block)
-        : threads(threads_a_block), all(static_cast<std::ptrdiff_t>(blocks * threads)), parts(parts_of_gang(blocks)),
+        : threads(threads_a_block), all(blocks * threads), parts(parts_of_gang(blocks)),
           shared(blocks, std::vector<double>(threads)) {
         for (std::size_t b = 0; b < blocks; ++b)
-            of_block.push_back(std::make_unique<std::barrier<>>(static_cast<std::ptrdiff_t>(threads)));
+            of_block.push_back(std::make_unique<SleepingBarrier>(threads));
     }
 
     std::size_t threads;
-    std::barrier<> all;
-    std::vector<std::unique_ptr<std::barrier<>>> of_block;
+    SleepingBarrier all;
+    std::vector<std::unique_ptr<SleepingBarrier>> of_block;
     std::vector<double> parts;
     std::vector<std::vector<double>> shared;
 };

@@ -1,0 +1,103 @@
+#pragma once
+
+// Samples on a device against the processor, from the same start near the same rest: cloth has many rests, and from its planned start
+// one rounding decides between them (docs/simulation).
+
+#include "relax.hpp"
+
+#include <weave/design/evaluate.hpp>
+#include <weave/samples/samples.hpp>
+#include <weave/sim/order.hpp>
+#include <weave/sim/plan.hpp>
+
+#include <string>
+#include <vector>
+
+namespace device_tests {
+
+struct Agreement {
+    bool was_at_rest = false;  ///< the processor, within its time
+    double apart = 0;          ///< radii, after both went on to 1e-8
+    double rough_apart = 0;    ///< before: float at standard's goal against the rest
+    double force = 0, energy = 0;  ///< relative difference of the reference force; of the energy, below 0 where the device's is lower
+    bool keeps_order = false;
+    Ending ending = Ending::stuck;
+};
+
+inline std::vector<Spline> in_plan(const Plan& plan, const std::vector<Spline>& of_scene) {
+    std::vector<Spline> all(plan.curves.yarns.size());
+    for (std::size_t y = 0; y < of_scene.size(); ++y) all[plan.curve_of[y]] = of_scene[y];
+    return all;
+}
+
+template <class Relaxer>
+Agreement agreement_on(Relaxer& relaxer, const std::string& name, double most_seconds) {
+    const weave::Design design = weave::find_sample(name)->make();
+    const auto evaluation = weave::evaluate(design);
+    const auto plan = make_plan(design, *evaluation->block, {});
+    REQUIRE(plan);
+    Relaxed cloth(plan->scene);
+    RelaxOptions exact = to(1e-8), standard = to(1e-3);
+    exact.most_seconds = standard.most_seconds = most_seconds;
+    exact.most_iterations = standard.most_iterations = 20000;
+    Agreement found;
+    const Rest rest = cloth.here(exact);
+    found.was_at_rest = rest.result.ending == Ending::converged;
+    if (!found.was_at_rest) return found;
+    // A hundredth of a radius away.
+    Random random(3);
+    Bench<double>& bench = cloth.bench;
+    bench.state = rest.state;
+    for (std::size_t slot = 0; slot < bench.fabric.slots(); ++slot) {
+        for (std::size_t k = 0; k < 3 && bench.fabric.moves()[slot] != 0; ++k)
+            bench.state[3 * slot + k] += uniform(random, -0.01, 0.01) * bench.fabric.least_reach() / 2;
+    }
+    bench.fabric.follow(bench.state);
+    Rest there = cloth.template there<float>(relaxer, standard);
+    found.rough_apart = cloth.apart(there, rest);
+    there.result = relax_in_stages(relaxer.machine, bench.energy, there.state, exact);
+    const Rest right = cloth.here(exact);
+    found.apart = std::min(cloth.apart(there, right), cloth.apart(there, rest));
+    found.force = std::abs(there.result.reference_N / right.result.reference_N - 1);
+    found.energy = there.result.energy / right.result.energy - 1;
+    found.ending = there.result.ending;
+    found.keeps_order = crossing_order(plan->curves, in_plan(*plan, cloth.splines(there.state))).lost.empty();
+    return found;
+}
+
+/// At the processor's rest; or at one that is lower, where the push led beyond a brink.
+template <class Relaxer>
+void check_agreement(const std::vector<std::string>& names, double most_seconds) {
+    std::size_t at_rest = 0, at_another = 0;
+    for (const std::string& name : names) {
+        INFO(name);
+        Relaxer relaxer;
+        const Agreement found = agreement_on(relaxer, name, most_seconds);
+        if (!found.was_at_rest) {
+            WARN(name << ": the processor did not come to rest within " << most_seconds << " s");
+            continue;
+        }
+        WARN(name << ": " << found.apart << " radii apart (" << found.rough_apart << " at 1e-3), force " << found.force << ", energy " << found.energy);
+        ++at_rest;
+        CHECK(found.ending == Ending::converged);
+        CHECK(found.keeps_order);
+        if (found.apart < 1e-4) CHECK(found.force < 1e-3);
+        else ++at_another;
+        CHECK((found.apart < 1e-4 || found.energy < -1e-7));
+    }
+    CHECK(at_rest > 0);
+    CHECK(at_another <= at_rest / 4);
+}
+
+}  // namespace device_tests
+
+TEMPLATE_TEST_CASE("agreement: small samples lie where the processor lays them", "[device]", WEAVE_RELAXERS) {
+    device_tests::check_agreement<TestType>({"plain", "twill-2-2", "satin-5", "basket", "layer-to-layer"}, 60);
+}
+
+TEMPLATE_TEST_CASE("agreement: every sample of up to 100,000 points that the processor brings to rest", "[.][long][agreement]", WEAVE_RELAXERS) {
+    device_tests::check_agreement<TestType>({"plain", "twill-2-2", "satin-5", "sateen-8", "rib", "basket", "herringbone", "satin-e", "twill-g",
+                                             "layer-to-layer", "angle-interlock-a", "angle-interlock-b", "orthogonal", "stitched-layers",
+                                             "hexagon-tubes", "tl013-wrong", "tl013-corrected", "i-beam", "pocket", "three-colour-stencil", "shoe-baby"},
+                                            120);
+}
