@@ -17,6 +17,8 @@ namespace device_tests {
 
 using namespace weave::sim;
 using namespace weave::sim::testing;
+using weave::Spline;
+using weave::Vec3;
 
 struct Rest {
     RelaxResult result;
