@@ -1,68 +1,83 @@
 #pragma once
 
-// A scene on the processor and in the arrays of the device's solver, so that both can be asked the same.
+// A scene on the processor and in the arrays of the device's solver, in the memory of a machine of support/machines.hpp, so that
+// both can be asked the same.
+
+#include "support/told.hpp"
 
 #include <weave/sim/device/cloth_arrays.hpp>
-#include <weave/sim/device/cores.hpp>
-#include <weave/sim/device/emulated.hpp>
 #include <weave/sim/device/forces.hpp>
 #include <weave/sim/device/lists_arrays.hpp>
 #include <weave/sim/device/safe.hpp>
 
 #include <sim/scenes.hpp>
 
-#include <atomic>
 #include <cstddef>
 #include <string>
 #include <vector>
 
 namespace weave::sim::testing {
 
-/// work(crew) by a crew of each kind that needs no device; `told(name)` after each. All threads of a gang call `work`.
-template <class Work, class Told>
-void by_every_crew(const Work& work, const Told& told) {
-    run_alone(work);
-    told(std::string("one thread"));
-    emulate(2, 3, work);
-    told(std::string("two blocks of three threads"));
-    const Executor executor(2);
-    Cores cores(executor);
-    work(cores);
-    told(std::string("two cores"));
-}
+/// What a crew that made lists goes on with, and whether there was room for all of them.
+struct ListsTold {
+    ListsState state;
+    bool done;
+};
 
 template <class Real>
+struct UpdateLists {
+    ClothView<Real> cloth;
+    ListsRoom<Real> room;
+    ListsState before;
+    View<const double> at;
+    View<ListsTold> told;
+
+    template <class Crew>
+    WEAVE_HD void operator()(Crew& crew) const {
+        Lists<Real> lists(cloth, room, before);
+        const bool done = lists.update(crew, at);
+        crew.alone(device_tests::TellIt<ListsTold>{told, {lists.state(), done}});
+    }
+};
+
+/// A scene on the processor and in the memory of a machine.
+template <class Real, class Machine>
 struct DeviceBench {
+    Machine& machine;
     Bench<double> host;
-    HostMemory memory;
     ClothArrays<Real> arrays;
     ClothView<Real> cloth;
     ListsArrays<Real> lists;
     ListsState lists_state;
+    Array<ListsTold> told;
     Array<double> state;
     Array<ContactSum<Real>> contact;
     Array<double> energy, share;
     Array<Real> by_segment, gradient, change;
     Array<Moved<Real>> moved;
 
-    explicit DeviceBench(const SimScene& scene)
-        : host(scene), arrays(memory, host.fabric, host.state), cloth(arrays.view()), lists(memory, cloth), state(memory, host.state),
-          contact(memory, cloth.samples), energy(memory, cloth.segments), share(memory, cloth.segments),
-          by_segment(memory, 12 * std::size_t(cloth.segments)), gradient(memory, 3 * std::size_t(cloth.rows)),
-          change(memory, 3 * std::size_t(cloth.rows)), moved(memory, cloth.samples) {}
+    DeviceBench(Machine& on, const SimScene& scene)
+        : machine(on), host(scene), arrays(on.memory, host.fabric, host.state), cloth(arrays.view()), lists(on.memory, cloth),
+          told(on.memory, 1), state(on.memory, host.state), contact(on.memory, cloth.samples), energy(on.memory, cloth.segments),
+          share(on.memory, cloth.segments), by_segment(on.memory, 12 * std::size_t(cloth.segments)),
+          gradient(on.memory, 3 * std::size_t(cloth.rows)), change(on.memory, 3 * std::size_t(cloth.rows)),
+          moved(on.memory, cloth.samples) {}
 
     [[nodiscard]] ForcesRoom<Real> forces() const { return {contact.view(), energy.view(), by_segment.view()}; }
     [[nodiscard]] SafeSteps<Real> safe() const { return {cloth, moved.view(), share.view()}; }
     [[nodiscard]] View<const double> at() const { return state.view(); }
 
-    /// Lists made by one thread, with room made where it lacks.
-    Lists<Real> listed() {
+    /// Lists made once by the machine, from what was before, with so much room.
+    ListsTold update(const ListsRoom<Real>& room, const ListsState& before) {
+        machine.run(UpdateLists<Real>{cloth, room, before, at(), told.view()});
+        return told.get().front();
+    }
+    /// Lists made by the machine, with room made where it lacks.
+    ListsView<Real> listed() {
         for (;;) {
-            bool done = false;
-            Lists<Real> made(cloth, lists.room(), lists_state);
-            run_alone([&](auto& crew) { done = made.update(crew, at()); });
-            lists_state = made.state();
-            if (done) return made;
+            const ListsTold made = update(lists.room(), lists_state);
+            lists_state = made.state;
+            if (made.done) return Lists<Real>(cloth, lists.room(), lists_state).view();
             lists.grow(lists_state);
         }
     }

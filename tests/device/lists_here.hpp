@@ -3,14 +3,11 @@
 #include <sim/scenes.hpp>
 
 #include <weave/sim/device/cloth_arrays.hpp>
-#include <weave/sim/device/cores.hpp>
-#include <weave/sim/device/emulated.hpp>
 #include <weave/sim/device/lists_view.hpp>
 #include <weave/sim/device/memory.hpp>
 
-#include <algorithm>
-#include <array>
-#include <atomic>
+#include <cstddef>
+#include <cstdint>
 #include <vector>
 
 namespace weave::sim::testing {
@@ -51,26 +48,5 @@ class HostLists {
     Array<std::uint32_t> m_first, m_neighbour;
     std::uint32_t m_own = 0;
 };
-
-/// The crews that the processor has.
-enum class CrewKind { alone, emulated, cores };
-constexpr std::array every_crew{CrewKind::alone, CrewKind::emulated, CrewKind::cores};
-
-/// task(crew) by a crew; whether all of it returned true.
-template <class Task>
-bool by_crew(CrewKind kind, const Task& task) {
-    std::atomic<bool> all{true};
-    const auto run = [&](auto& crew) {
-        if (!task(crew)) all = false;
-    };
-    if (kind == CrewKind::alone) run_alone(run);
-    else if (kind == CrewKind::emulated) emulate(2, 3, run);
-    else {
-        const Executor executor(2);
-        Cores cores(executor);
-        run(cores);
-    }
-    return all;
-}
 
 }  // namespace weave::sim::testing

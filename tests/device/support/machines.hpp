@@ -15,8 +15,19 @@
 
 #include <catch2/catch.hpp>
 
+#include "host_machines.hpp"
 #if defined(__CUDACC__)
 #include "device_machines.cuh"
-#else
-#include "host_machines.hpp"
 #endif
+
+namespace device_tests {
+
+/// Whether all of WEAVE_MACHINES come to the same bits as one thread of the processor, where only bodies count. A device does not:
+/// nvcc makes one rounding of a product and a sum.
+#if defined(__CUDACC__)
+inline constexpr bool round_as_one_thread = false;
+#else
+inline constexpr bool round_as_one_thread = true;
+#endif
+
+}  // namespace device_tests

@@ -5,7 +5,7 @@
 #include <catch2/catch.hpp>
 
 #if defined(__CUDACC__)
-#include <weave/sim/device/cuda_machines.cuh>
+#include <weave/sim/device/relax_cuda.cuh>
 
 namespace device_tests {
 

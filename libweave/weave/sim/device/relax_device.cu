@@ -1,8 +1,13 @@
-#include <weave/sim/device/cuda_machines.cuh>
+#include <weave/sim/device/relax_cuda.cuh>
 #include <weave/sim/device/relax_device.hpp>
 #include <weave/sim/device/relax_stages.hpp>
 
 namespace weave::sim {
+
+template class RelaxingOn<float, CudaGangMachine>;
+template class RelaxingOn<double, CudaGangMachine>;
+template class RelaxingOn<float, CudaLaunchesMachine>;
+template class RelaxingOn<double, CudaLaunchesMachine>;
 
 namespace {
 

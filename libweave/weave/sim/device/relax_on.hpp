@@ -29,16 +29,7 @@ class RelaxingOn {
         m_leg.strain = greatest_strain(energy.fabric(), state);
     }
 
-    RelaxResult run() {
-        while (m_leg.phase != Phase::over) {
-            const double began = seconds();
-            m_machine.run(RunLeg<Real>{m_arrays.room(), m_history.view(), m_steps}, m_leg);
-            if (m_leg.lacks_room) m_arrays.grow(m_leg.cloth);
-            if (m_leg.records > 0 && m_leg.phase != Phase::over) look(began);
-        }
-        m_state = m_arrays.state();
-        return result();
-    }
+    RelaxResult run();
 
     [[nodiscard]] std::size_t bytes() const { return m_arrays.bytes(); }
 
@@ -100,6 +91,19 @@ class RelaxingOn {
     RelaxResult m_result;
     std::chrono::steady_clock::time_point m_start = std::chrono::steady_clock::now();
 };
+
+// Apart from its class, so that whoever knows it to be compiled elsewhere (relax_cuda.cuh) does not compile its kernels again.
+template <class Real, class Machine>
+RelaxResult RelaxingOn<Real, Machine>::run() {
+    while (m_leg.phase != Phase::over) {
+        const double began = seconds();
+        m_machine.run(RunLeg<Real>{m_arrays.room(), m_history.view(), m_steps}, m_leg);
+        if (m_leg.lacks_room) m_arrays.grow(m_leg.cloth);
+        if (m_leg.records > 0 && m_leg.phase != Phase::over) look(began);
+    }
+    m_state = m_arrays.state();
+    return result();
+}
 
 /// relax() (relax.hpp) by the crew of a machine, with forces in `Real`. Of the scene device_can_relax() (relax_device.hpp) must hold. Throws std::bad_alloc where the
 /// machine's memory does not suffice; the state is then what it was, or one on the way.

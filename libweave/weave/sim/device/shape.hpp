@@ -30,10 +30,9 @@ struct CurvatureNeeds {
     std::uint64_t slot_blocks = 0;  ///< 4 × 4 blocks of segments, of as many as are worked on at once
 };
 
-/// Where in a sample's list those begin that are, or are images of, own samples from `least` on.
+/// Where in a sample's list, from `begin` on, those begin that are, or are images of, own samples from `least` on.
 template <class Real>
-WEAVE_HD inline std::uint32_t first_neighbour_from(const ListsView<Real>& lists, std::uint32_t sample, std::uint32_t least) {
-    std::uint32_t begin = lists.first[sample], end = lists.first[sample + 1];
+WEAVE_HD inline std::uint32_t first_neighbour_from(const ListsView<Real>& lists, std::uint32_t begin, std::uint32_t end, std::uint32_t least) {
     while (begin < end) {
         const std::uint32_t middle = begin + (end - begin) / 2;
         if (lists.own_of(lists.neighbour[middle]) < least) begin = middle + 1;
@@ -41,6 +40,35 @@ WEAVE_HD inline std::uint32_t first_neighbour_from(const ListsView<Real>& lists,
     }
     return begin;
 }
+template <class Real>
+WEAVE_HD inline std::uint32_t first_neighbour_from(const ListsView<Real>& lists, std::uint32_t sample, std::uint32_t least) {
+    return first_neighbour_from(lists, lists.first[sample], lists.first[sample + 1], least);
+}
+
+/// Some of the segments near to one, rising. So many at once that the lists of its samples, of which a thin yarn has hundreds in a
+/// segment, are gone through once or a few times, and not anew for each near segment.
+struct SomeNear {
+    static constexpr std::uint32_t most = 32;
+    std::uint32_t count = 0;
+    std::uint32_t segment[most];
+
+    [[nodiscard]] WEAVE_HD bool is_full() const { return count == most; }
+    [[nodiscard]] WEAVE_HD std::uint32_t last() const { return segment[count - 1]; }
+
+    /// Puts a segment where it belongs; of too many the last ones are left out.
+    WEAVE_HD void insert(std::uint32_t of) {
+        std::uint32_t at = 0, end = count;
+        while (at < end) {
+            const std::uint32_t middle = at + (end - at) / 2;
+            if (segment[middle] < of) at = middle + 1;
+            else end = middle;
+        }
+        if (at == most || (at < count && segment[at] == of)) return;
+        if (!is_full()) ++count;
+        for (std::uint32_t k = count - 1; k > at; --k) segment[k] = segment[k - 1];
+        segment[at] = of;
+    }
+};
 
 /// The segments near to one of them, from the lists of its samples.
 template <class Real>
@@ -48,19 +76,33 @@ struct NearOfSegment {
     ClothView<Real> cloth;
     ListsView<Real> lists;
 
-    /// The first near segment that is no less than `from`; `cloth.segments` if there is none. Neighbours of a sample rise.
-    WEAVE_HD std::uint32_t next(std::uint32_t segment, std::uint32_t from) const {
-        std::uint32_t best = cloth.segments;
-        if (from >= cloth.segments) return best;
+    /// emit(near segment) for each, rising.
+    template <class Emit>
+    WEAVE_HD void visit(std::uint32_t segment, Emit& emit) const {
+        SomeNear some;
+        for (std::uint32_t from = 0; from < cloth.segments; from = some.last() + 1) {
+            find(segment, from, some);
+            for (std::uint32_t k = 0; k < some.count; ++k) emit(some.segment[k]);
+            if (!some.is_full()) return;
+        }
+    }
+
+  private:
+    /// The first near segments that are no less than `from`. Neighbours of a sample rise.
+    WEAVE_HD void find(std::uint32_t segment, std::uint32_t from, SomeNear& some) const {
+        some.count = 0;
         const SegmentPlace place = cloth.segment[segment];
         const std::uint32_t least = cloth.segment[from].sample, samples = cloth.yarn[place.yarn].samples;
-        for (std::uint32_t a = place.sample; a < place.sample + samples && best != from; ++a) {
-            const std::uint32_t end = lists.first[a + 1], at = first_neighbour_from(lists, a, least);
-            if (at == end) continue;
-            const std::uint32_t found = cloth.segment_of_sample[lists.own_of(lists.neighbour[at])];
-            if (found < best) best = found;
+        for (std::uint32_t a = place.sample; a < place.sample + samples; ++a) {
+            const std::uint32_t end = lists.first[a + 1];
+            for (std::uint32_t at = first_neighbour_from(lists, a, least); at < end;) {
+                const std::uint32_t found = cloth.segment_of_sample[lists.own_of(lists.neighbour[at])];
+                if (some.is_full() && found > some.last()) break;
+                some.insert(found);
+                const SegmentPlace of = cloth.segment[found];
+                at = first_neighbour_from(lists, at + 1, end, of.sample + cloth.yarn[of.yarn].samples);
+            }
         }
-        return best;
     }
 };
 
@@ -69,18 +111,23 @@ struct CountNear {
     NearOfSegment<Real> of;
     NearView near;
 
-    WEAVE_HD void operator()(std::size_t index) const {
-        const auto segment = static_cast<std::uint32_t>(index);
-        std::uint32_t count = 0, pairs = 0;
-        if (segment < of.cloth.segments) {
-            const std::uint32_t yarn = of.cloth.segment[segment].yarn;
-            for (std::uint32_t o = of.next(segment, 0); o < of.cloth.segments; o = of.next(segment, o + 1)) {
-                ++count;
-                if (of.cloth.segment[o].yarn <= yarn) ++pairs;
-            }
+    struct Count {
+        View<const SegmentPlace> segment;
+        std::uint32_t yarn, count = 0, pairs = 0;
+        WEAVE_HD void operator()(std::uint32_t other) {
+            ++count;
+            if (segment[other].yarn <= yarn) ++pairs;
         }
-        near.first[segment] = count;
-        near.first_pair[segment] = pairs;
+    };
+
+    WEAVE_HD void operator()(std::size_t segment) const {
+        Count count{of.cloth.segment, 0, 0, 0};
+        if (segment < of.cloth.segments) {
+            count.yarn = of.cloth.segment[segment].yarn;
+            of.visit(static_cast<std::uint32_t>(segment), count);
+        }
+        near.first[segment] = count.count;
+        near.first_pair[segment] = count.pairs;
     }
 };
 
@@ -89,10 +136,16 @@ struct FillNear {
     NearOfSegment<Real> of;
     NearView near;
 
+    struct Fill {
+        View<std::uint32_t> near;
+        std::uint32_t at;
+        WEAVE_HD void operator()(std::uint32_t other) { near[at++] = other; }
+    };
+
     WEAVE_HD void operator()(std::size_t index) const {
         const auto segment = static_cast<std::uint32_t>(index);
-        std::uint32_t at = near.first[segment];
-        for (std::uint32_t o = of.next(segment, 0); o < of.cloth.segments; o = of.next(segment, o + 1)) near.segment[at++] = o;
+        Fill fill{near.segment, near.first[segment]};
+        of.visit(segment, fill);
         for (std::uint32_t p = near.first_pair[segment]; p < near.first_pair[segment + 1]; ++p) near.owner[p] = segment;
     }
 };
