@@ -2,103 +2,7 @@
 
 // Whole relaxations, against the processor's own solver.
 
-#include "support/relaxers.hpp"
-
-#include <weave/sim/deviation.hpp>
-#include <weave/sim/device/relax_stages.hpp>
-
-#include <sim/scenes.hpp>
-
-#include <algorithm>
-#include <cmath>
-#include <vector>
-
-namespace device_tests {
-
-using namespace weave::sim;
-using namespace weave::sim::testing;
-using weave::Spline;
-using weave::Vec3;
-
-struct Rest {
-    RelaxResult result;
-    std::vector<double> state;
-};
-
-/// A scene and its relaxations, all from the same start.
-struct Relaxed {
-    Bench<double> bench;
-
-    explicit Relaxed(const SimScene& scene) : bench(scene) {}
-
-    Rest here(const RelaxOptions& options) {
-        Rest rest{{}, bench.state};
-        rest.result = relax(bench.energy, rest.state, options);
-        return rest;
-    }
-    template <class Real, class Relaxer>
-    Rest there(Relaxer& relaxer, const RelaxOptions& options) {
-        Rest rest{{}, bench.state};
-        rest.result = relax_on<Real>(relaxer.machine, bench.energy, rest.state, options);
-        return rest;
-    }
-
-    [[nodiscard]] std::vector<Spline> splines(const std::vector<double>& state) const {
-        std::vector<Spline> splines;
-        const auto control = bench.fabric.control(state);
-        for (std::size_t y = 0; y < control.size(); ++y) {
-            const SimYarn& yarn = bench.fabric.scene().yarns[y];
-            splines.push_back({control[y], yarn.is_periodic, yarn.shift});
-        }
-        return splines;
-    }
-    /// How far two states lie apart, in radii of the thinnest yarn. Cloth without held points may have drifted.
-    [[nodiscard]] double apart(const Rest& a, const Rest& b) const {
-        const bool held = std::ranges::any_of(bench.fabric.scene().yarns, [](const SimYarn& yarn) { return !yarn.frozen.empty(); });
-        return deviation_of(splines(a.state), splines(b.state), !held).max_mm / (bench.fabric.least_reach() / 2);
-    }
-};
-
-/// A weave whose repeats lie a little differently, so that it begins at no saddle.
-inline SimScene shaken_weave(std::size_t count) {
-    Random random(5);
-    SimScene scene = plain_weave({.count = count});
-    for (SimYarn& yarn : scene.yarns) shake(random, yarn, 0.01);
-    return scene;
-}
-
-inline SimScene held_weave() {
-    SimScene scene = shaken_weave(4);
-    for (SimYarn& yarn : scene.yarns) {
-        yarn.frozen.assign(yarn.control.size(), 0);
-        yarn.frozen.front() = 1;
-    }
-    scene.yarns.front().frozen.assign(scene.yarns.front().control.size(), 1);
-    return scene;
-}
-
-/// Pushed by a field, and heavy.
-inline SimScene pushed_weave() {
-    SimScene scene = held_weave();
-    scene.fields.push_back({.centre_mm = {1, 1, -0.3}, .radius_mm = 0.7, .strength_N_per_mm = 0.5});
-    scene.gravity_mm_ms2 = 9.81e-3;
-    for (SimYarn& yarn : scene.yarns) yarn.gram_per_mm = 1e-3;
-    return scene;
-}
-
-inline SimScene thick_and_thin() {
-    SimScene scene = shaken_weave(4);
-    for (std::size_t y = 0; y < scene.yarns.size(); y += 3) scene.yarns[y].radius_mm *= 0.4;
-    return scene;
-}
-
-inline RelaxOptions to(double residual) {
-    RelaxOptions options;
-    options.residual = residual;
-    return options;
-}
-
-}  // namespace device_tests
+#include "support/relaxed.hpp"
 
 using device_tests::Relaxed;
 using device_tests::Rest;
@@ -106,7 +10,7 @@ using device_tests::to;
 
 TEMPLATE_TEST_CASE("relaxation: in double it comes to rest where the processor does", "[device]", WEAVE_RELAXERS) {
     using namespace device_tests;
-    for (const auto& scene : {shaken_weave(2), shaken_weave(4), held_weave(), pushed_weave(), thick_and_thin()}) {
+    for (const auto& scene : {shaken_weave(TestType::weave), held_weave(TestType::weave), pushed_weave(TestType::weave), thick_and_thin(TestType::weave)}) {
         TestType relaxer;
         Relaxed cloth(scene);
         const Rest right = cloth.here(to(1e-8)), found = cloth.there<double>(relaxer, to(1e-8));
@@ -121,7 +25,7 @@ TEMPLATE_TEST_CASE("relaxation: in double it comes to rest where the processor d
 
 TEMPLATE_TEST_CASE("relaxation: in float it comes to standard's rest, and from there to the processor's", "[device]", WEAVE_RELAXERS) {
     using namespace device_tests;
-    for (const auto& scene : {shaken_weave(4), held_weave(), pushed_weave(), thick_and_thin()}) {
+    for (const auto& scene : {shaken_weave(TestType::weave), held_weave(TestType::weave), pushed_weave(TestType::weave), thick_and_thin(TestType::weave)}) {
         TestType relaxer;
         Relaxed cloth(scene);
         const Rest right = cloth.here(to(1e-8));
@@ -140,7 +44,7 @@ TEMPLATE_TEST_CASE("relaxation: in float it comes to standard's rest, and from t
 TEMPLATE_TEST_CASE("relaxation: float as far as it leads, then double", "[device]", WEAVE_RELAXERS) {
     using namespace device_tests;
     TestType relaxer;
-    Relaxed cloth(shaken_weave(4));
+    Relaxed cloth(shaken_weave(TestType::weave));
     const Rest right = cloth.here(to(1e-8));
     Rest found{{}, cloth.bench.state};
     std::size_t watched = 0;
@@ -167,7 +71,7 @@ TEMPLATE_TEST_CASE("relaxation: float as far as it leads, then double", "[device
 TEMPLATE_TEST_CASE("relaxation: the same bits every time", "[device]", WEAVE_RELAXERS) {
     using namespace device_tests;
     TestType relaxer;
-    Relaxed cloth(shaken_weave(4));
+    Relaxed cloth(shaken_weave(TestType::weave));
     const Rest first = cloth.there<float>(relaxer, to(1e-3)), second = cloth.there<float>(relaxer, to(1e-3));
     CHECK(first.state == second.state);
     CHECK(first.result.evaluations == second.result.evaluations);
@@ -176,7 +80,7 @@ TEMPLATE_TEST_CASE("relaxation: the same bits every time", "[device]", WEAVE_REL
 TEMPLATE_TEST_CASE("relaxation: it ends when steps or time are used up, or who watches says so", "[device]", WEAVE_RELAXERS) {
     using namespace device_tests;
     TestType relaxer;
-    Relaxed cloth(shaken_weave(4));
+    Relaxed cloth(shaken_weave(TestType::weave));
     RelaxOptions options = to(1e-9);
     options.most_iterations = 5;
     const Rest few = cloth.there<float>(relaxer, options);
@@ -201,11 +105,11 @@ TEMPLATE_TEST_CASE("relaxation: it ends when steps or time are used up, or who w
 TEMPLATE_TEST_CASE("relaxation: who watches sees the state that is told of", "[device]", WEAVE_RELAXERS) {
     using namespace device_tests;
     TestType relaxer;
-    Relaxed cloth(shaken_weave(4));
+    Relaxed cloth(shaken_weave(TestType::weave));
     std::vector<double> state = cloth.bench.state;
     RelaxOptions options = to(1e-6);
     std::size_t looks = 0;
-    Bench<double> other(shaken_weave(4));
+    Bench<double> other(shaken_weave(TestType::weave));
     options.watch = [&](const Progress& progress) {
         CHECK(other.energy.evaluate(state, other.gradient) == Approx(progress.energy).epsilon(1e-5));
         ++looks;

@@ -1,6 +1,7 @@
 #pragma once
 
-// The machines that relaxations are tested on: by one body, in SUBJECT.hpp, as with machines.hpp.
+// The machines that relaxations are tested on: by one body, in SUBJECT.hpp, as with machines.hpp. `weave`: yarns each way of the cloth that
+// they are tried with; the gang's threads wait for one another some hundred times in a step, so its cloth is small.
 
 #include <catch2/catch.hpp>
 
@@ -10,10 +11,12 @@
 namespace device_tests {
 
 struct RelaxesInOneKernel {
+    static constexpr std::size_t weave = 4;
     weave::sim::DeviceQueue queue;
     weave::sim::CudaGangMachine machine{queue};
 };
 struct RelaxesByLaunches {
+    static constexpr std::size_t weave = 4;
     weave::sim::DeviceQueue queue;
     weave::sim::CudaLaunchesMachine machine{queue};
 };
@@ -27,13 +30,16 @@ struct RelaxesByLaunches {
 namespace device_tests {
 
 struct RelaxesByOneThread {
+    static constexpr std::size_t weave = 4;
     weave::sim::OneThreadMachine machine;
 };
 struct RelaxesByTwoCores {
+    static constexpr std::size_t weave = 4;
     weave::sim::Executor executor{2};
     weave::sim::CoresMachine machine{executor};
 };
 struct RelaxesByGang {
+    static constexpr std::size_t weave = 2;
     weave::sim::EmulatedMachine machine{2, 3};
 };
 
