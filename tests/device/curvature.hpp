@@ -289,8 +289,8 @@ TEMPLATE_TEST_CASE("curvature: where arrays are too small it tells by how much, 
 TEMPLATE_TEST_CASE("curvature: yarns that just touch resist in float too, where the contact law itself is lost in rounding", "[device]", WEAVE_MACHINES) {
     SimScene scene;
     for (const bool across : {false, true}) {
-        const double z = across ? 0.24 * (1 - 1e-5) : 0, half = 0.72;
-        const weave::Vec3 along = across ? weave::Vec3(0, half, 0) : weave::Vec3(half, 0, 0), middle(0, 0, z);
+        const double z = across ? 0.24 * (1 - 1e-5) : 0, halfway = 0.72;
+        const weave::Vec3 along = across ? weave::Vec3(0, halfway, 0) : weave::Vec3(halfway, 0, 0), middle(0, 0, z);
         SimYarn yarn = usual_yarn();
         yarn.is_fed = false;
         // Samples of both lie right above one another in the middle: that pair alone touches.
