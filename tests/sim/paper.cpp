@@ -197,7 +197,8 @@ TEST_CASE("a step of 0.9 of the stability limit comes to rest, 1.1 of it does no
         Bench bench(rough_weave(random));
         const double start = bench.evaluate();
         const RelaxResult result =
-            relax_in_time(bench.energy, bench.state, {.residual = 1e-6, .most_iterations = 4000, .watch = {}},
+            // Eight such starts took 3,306 to 4,803 steps of 0.9.
+            relax_in_time(bench.energy, bench.state, {.residual = 1e-6, .most_iterations = 6000, .watch = {}},
                           {.step = step, .damping = 0.01});
         INFO("step " << step << ": residual " << result.residual);
         CHECK(std::isfinite(result.energy));
