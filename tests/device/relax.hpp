@@ -10,7 +10,8 @@ using device_tests::to;
 
 TEMPLATE_TEST_CASE("relaxation: in double it comes to rest where the processor does", "[device]", WEAVE_RELAXERS) {
     using namespace device_tests;
-    for (const auto& scene : {shaken_weave(TestType::weave), held_weave(TestType::weave), pushed_weave(TestType::weave), thick_and_thin(TestType::weave)}) {
+    for (const auto& [name, scene] : several(TestType::weave)) {
+        INFO(name);
         TestType relaxer;
         Relaxed cloth(scene);
         const Rest right = cloth.here(to(1e-8)), found = cloth.there<double>(relaxer, to(1e-8));
@@ -25,7 +26,8 @@ TEMPLATE_TEST_CASE("relaxation: in double it comes to rest where the processor d
 
 TEMPLATE_TEST_CASE("relaxation: in float it comes to standard's rest, and from there to the processor's", "[device]", WEAVE_RELAXERS) {
     using namespace device_tests;
-    for (const auto& scene : {shaken_weave(TestType::weave), held_weave(TestType::weave), pushed_weave(TestType::weave), thick_and_thin(TestType::weave)}) {
+    for (const auto& [name, scene] : several(TestType::weave)) {
+        INFO(name);
         TestType relaxer;
         Relaxed cloth(scene);
         const Rest right = cloth.here(to(1e-8));

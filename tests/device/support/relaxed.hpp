@@ -11,6 +11,7 @@
 
 #include <algorithm>
 #include <cmath>
+#include <utility>
 #include <vector>
 
 namespace device_tests {
@@ -86,10 +87,16 @@ inline SimScene pushed_weave(std::size_t count) {
     return scene;
 }
 
+/// Held at one end of each yarn: where they are not, such yarns slide to one of many rests.
 inline SimScene thick_and_thin(std::size_t count) {
-    SimScene scene = shaken_weave(count);
-    for (std::size_t y = 0; y < scene.yarns.size(); y += 3) scene.yarns[y].radius_mm *= 0.4;
+    SimScene scene = held_weave(count);
+    for (std::size_t y = 0; y < scene.yarns.size(); y += 3) scene.yarns[y].radius_mm *= 0.75;
     return scene;
+}
+
+/// Cloth of few yarns of all kinds that a device must relax, by name; each has one rest near its start.
+inline std::vector<std::pair<const char*, SimScene>> several(std::size_t count) {
+    return {{"free", shaken_weave(count)}, {"held", held_weave(count)}, {"pushed", pushed_weave(count)}, {"thick and thin", thick_and_thin(count)}};
 }
 
 inline RelaxOptions to(double residual) {

@@ -52,10 +52,11 @@ class RelaxingOn {
             const double share = static_cast<double>(r + 1) / static_cast<double>(records.size());
             m_result.history.push_back({records[r].iteration, records[r].residual, records[r].energy, began + share * (now - began), {}});
         }
-        if (m_leg.phase != Phase::finish && now > m_options.most_seconds) m_leg.end(Ending::time);
+        const bool goes_on = m_leg.phase != Phase::over && m_leg.phase != Phase::finish;
+        if (goes_on && now > m_options.most_seconds) m_leg.end(Ending::time);
         if (m_options.watch) {
             m_state = m_arrays.state();
-            if (!m_options.watch(m_result.history.back())) m_leg.end(Ending::stopped);
+            if (!m_options.watch(m_result.history.back()) && goes_on) m_leg.end(Ending::stopped);
         }
         choose_steps(now - began);
     }
@@ -99,7 +100,7 @@ RelaxResult RelaxingOn<Real, Machine>::run() {
         const double began = seconds();
         m_machine.run(RunLeg<Real>{m_arrays.room(), m_history.view(), m_steps}, m_leg);
         if (m_leg.lacks_room) m_arrays.grow(m_leg.cloth);
-        if (m_leg.records > 0 && m_leg.phase != Phase::over) look(began);
+        if (m_leg.records > 0) look(began);
     }
     m_state = m_arrays.state();
     return result();
