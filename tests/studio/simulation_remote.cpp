@@ -39,7 +39,7 @@ class Server {
         m_program->exit_code();
     }
     /// It stands still, and keeps its connections, as one does that is overloaded.
-    void suspend() { m_program->end(SIGSTOP); }
+    void suspend() { m_program->suspend(); }
     [[nodiscard]] ServerWish wish() const {
         return {.host = "unix:" + (folder() / "simd.sock").string(), .token_file = {}, .fingerprint = {}};
     }

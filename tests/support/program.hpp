@@ -56,6 +56,12 @@ class Program {
         return text;
     }
     void end(int signal) const { ::kill(m_process, signal); }
+    /// Stands still when this returns: a signal alone may leave it the time for an answer.
+    void suspend() const {
+        int status = 0;
+        ::kill(m_process, SIGSTOP);
+        ::waitpid(m_process, &status, WUNTRACED);
+    }
     [[nodiscard]] pid_t process() const { return m_process; }
     /// Waits for its end.
     int exit_code() {

@@ -50,7 +50,7 @@ class Mill {
     }
 
     /// The server stands still, and takes connections all the same, as one does that is overloaded.
-    void suspend() const { m_server->end(SIGSTOP); }
+    void suspend() const { m_server->suspend(); }
     void resume() const { m_server->end(SIGCONT); }
 
     [[nodiscard]] std::string origin() const { return "https://localhost:" + m_port; }
