@@ -140,11 +140,13 @@ TEMPLATE_TEST_CASE("relaxation: room is made where lists are longer than was for
     scene.sample_spacing = 0.1;
     TestType relaxer;
     Relaxed cloth(scene);
-    const std::size_t at_first = CrewArrays<float>(relaxer.machine.memory(), cloth.bench.fabric, cloth.bench.state).bytes();
     std::vector<double> state = cloth.bench.state;
     const RelaxOptions options = to(1e-3);
-    RelaxingOn<float, std::remove_reference_t<decltype(relaxer.machine)>> relaxing(relaxer.machine, cloth.bench.energy, state, options);
-    CHECK(relaxing.run().ending == Ending::converged);
+    using Machine = std::remove_reference_t<decltype(relaxer.machine)>;
+    RelaxingCloth<float, typename Machine::Crew> relaxing(relaxer.machine.memory(), cloth.bench.energy, state, options);
+    const std::size_t at_first = relaxing.bytes();
+    lead<float>(relaxer.machine, relaxing);
+    CHECK(relaxing.result().ending == Ending::converged);
     CHECK(relaxing.bytes() > at_first);
 }
 
@@ -162,4 +164,49 @@ TEMPLATE_TEST_CASE("relaxation: nothing, one yarn, and yarns that are all held",
     const Rest rest = cloth.there<float>(relaxer, to(1e-3));
     CHECK(rest.result.ending == Ending::converged);
     CHECK(rest.state == cloth.bench.state);
+}
+
+TEMPLATE_TEST_CASE("relaxation: cloths next to one another come to rest as each alone would", "[device]", WEAVE_BATCH_RELAXERS) {
+    using namespace device_tests;
+    TestType relaxer;
+    std::vector<std::unique_ptr<Relaxed>> cloths;
+    std::vector<Rest> found;
+    std::vector<ClothToRelax> all;
+    for (const auto& [name, scene] : several(TestType::weave)) cloths.push_back(std::make_unique<Relaxed>(scene));
+    cloths.push_back(std::make_unique<Relaxed>(SimScene{}));
+    for (const auto& cloth : cloths) found.push_back({{}, cloth->bench.state});
+    const double goals[]{1e-8, 1e-3, 1e-8, 1e-6, 1e-8};  // one of them is reached in float
+    for (std::size_t k = 0; k < cloths.size(); ++k) all.push_back({&cloths[k]->bench.energy, &found[k].state, to(goals[k])});
+    const std::vector<RelaxResult> results = relax_each_in_stages(relaxer.machine, std::span<const ClothToRelax>(all));
+    REQUIRE(results.size() == cloths.size());
+    for (std::size_t k = 0; k < cloths.size(); ++k) {
+        INFO("cloth " << k);
+        found[k].result = results[k];
+        CHECK(results[k].ending == Ending::converged);
+        CHECK(results[k].residual <= goals[k]);
+        CHECK((results[k].history.empty() || results[k].history.back().iteration == results[k].iterations));
+        if (goals[k] > 1e-4) found[k].result = relax(cloths[k]->bench.energy, found[k].state, to(1e-8));
+        CHECK(cloths[k]->apart(found[k], cloths[k]->here(to(1e-8))) < 1e-4);
+    }
+}
+
+TEMPLATE_TEST_CASE("relaxation: of cloths next to one another each ends for itself", "[device]", WEAVE_BATCH_RELAXERS) {
+    using namespace device_tests;
+    TestType relaxer;
+    Relaxed stopped(shaken_weave(TestType::weave)), short_of_steps(shaken_weave(TestType::weave)), whole(held_weave(TestType::weave));
+    std::vector<double> states[]{stopped.bench.state, short_of_steps.bench.state, whole.bench.state};
+    std::size_t looks = 0;
+    RelaxOptions watched = to(1e-9), few = to(1e-9);
+    watched.watch = [&](const Progress&) { return ++looks < 2; };
+    few.most_iterations = 3;
+    const std::vector<ClothToRelax> all{
+        {&stopped.bench.energy, &states[0], watched}, {&short_of_steps.bench.energy, &states[1], few}, {&whole.bench.energy, &states[2], to(1e-3)}};
+    const std::vector<RelaxResult> results = relax_each_on<float>(relaxer.machine, std::span<const ClothToRelax>(all));
+    REQUIRE(results.size() == 3);
+    CHECK(results[0].ending == Ending::stopped);
+    CHECK(looks == 2);
+    CHECK(results[1].ending == Ending::iterations);
+    CHECK(results[1].iterations == 3);
+    CHECK(results[2].ending == Ending::converged);
+    CHECK(relax_each_on<float>(relaxer.machine, std::span<const ClothToRelax>{}).empty());
 }

@@ -87,6 +87,19 @@ TEST_CASE("noise gives way where yarns all but meet, and frozen points stay") {
     }
 }
 
+TEST_CASE("relaxing again begins at the starts with noise also where the first run had begun in fewer points") {
+    const Planned of = planned("satin-5");
+    SimulationOptions options = on_one_core();
+    options.backend = Backend::cpu;
+    const Yarns yarns = simulate(of.design, of.plan, options);
+    const Json right = relaxed_again(of.design, of.plan, options, yarns, 2);
+    options.coarser = &of.plan;
+    const Json found = relaxed_again(of.design, of.plan, options, yarns, 2);
+    CHECK(found == right);
+    CHECK(found.at("each")[1] != found.at("each")[2]);
+    CHECK(found.at("at_once") == false);
+}
+
 TEST_CASE("relaxing again from other starts tells how far the results lie apart") {
     const Planned of = planned("satin-5");
     SimulationOptions options = on_one_core();

@@ -2,6 +2,7 @@
 
 #include <weave/sim/device/relax_device.hpp>
 
+#include <algorithm>
 #include <new>
 #include <utility>
 
@@ -27,12 +28,16 @@ const Device& roomiest(const Devices& found) {
     return *best;
 }
 
+bool has_room(const Device& device, std::size_t bytes) {
+    return static_cast<double>(bytes) <= share_of_memory * static_cast<double>(device.free_bytes);
+}
+
 /// Why a device cannot relax a cloth; empty where it can.
 std::string why_not(const Device& device, const Fabric<double>& fabric) {
     if (fabric.scene().friction > 0) return "friction is computed on the processor";
     if (!device_can_relax(fabric.scene())) return "a crossing is led to its other side on the processor";
     const std::size_t wanted = device_bytes(fabric);
-    if (static_cast<double>(wanted) <= share_of_memory * static_cast<double>(device.free_bytes)) return "";
+    if (has_room(device, wanted)) return "";
     return "it would take " + megabytes(wanted) + " of the device's memory, of which " + megabytes(device.free_bytes) + " are free";
 }
 
@@ -42,6 +47,26 @@ BackendChoice choice_for(Backend wanted, const Devices& found, const Fabric<doub
     device = roomiest(found);
     if (std::string why = why_not(device, fabric); !why.empty()) return {Backend::cpu, "", std::move(why)};
     return {Backend::cuda, device.name, wanted == Backend::cuda ? "asked for" : "there is a device"};
+}
+
+/// How many of the cloths, from the first on, a device is expected to hold at once.
+std::size_t how_many_fit(const Device& device, std::span<const ClothToRelax> cloths) {
+    std::size_t bytes = 0, fit = 0;
+    while (fit < cloths.size()) {
+        bytes += device_bytes(cloths[fit].energy->fabric());
+        if (!has_room(device, bytes)) break;
+        ++fit;
+    }
+    return fit;
+}
+
+void relax_in_groups(const Device& device, std::span<const ClothToRelax> cloths) {
+    const std::unique_ptr<DeviceRelaxer> relaxer = DeviceRelaxer::on(device);
+    while (!cloths.empty()) {
+        const std::size_t fit = std::max<std::size_t>(1, how_many_fit(device, cloths)); // each of them fits alone
+        relaxer->relax_each(cloths.first(fit));
+        cloths = cloths.subspan(fit);
+    }
 }
 
 }  // namespace
@@ -63,6 +88,26 @@ Result<BackendChoice> choose_backend(Backend wanted, const SimScene& scene) {
     BackendChoice choice = choice_for(wanted, devices(), Fabric<double>(scene), device);
     if (wanted == Backend::cuda && choice.backend != Backend::cuda) return Error{ErrorCode::system, std::move(choice.reason), {}};
     return choice;
+}
+
+bool relax_at_once(Backend wanted, std::span<const ClothToRelax> cloths) {
+    if (wanted == Backend::cpu || cloths.empty()) return false;
+    const Devices found = devices();
+    if (!found.why_none.empty()) return false;
+    const Device& device = roomiest(found);
+    std::vector<std::vector<double>> before;
+    for (const ClothToRelax& cloth : cloths) {
+        if (!why_not(device, cloth.energy->fabric()).empty()) return false;
+        before.push_back(*cloth.state);
+    }
+    try {
+        relax_in_groups(device, cloths);
+        return true;
+    } catch (const std::bad_alloc&) {  // less was free than was told, or more was needed than was foreseen
+    } catch (const DeviceError&) {
+    }
+    for (std::size_t k = 0; k < cloths.size(); ++k) *cloths[k].state = std::move(before[k]);
+    return false;
 }
 
 Relaxer::Relaxer(Backend wanted) : m_wanted(wanted), m_settled(wanted == Backend::cpu ? "asked for" : "") {}

@@ -6,6 +6,7 @@
 #include <cstddef>
 #include <cstdint>
 #include <memory>
+#include <span>
 #include <string>
 #include <string_view>
 #include <vector>
@@ -35,6 +36,10 @@ struct BackendChoice {
 /// Chooses for a scene: a device must be there, model all that the scene holds, and have the memory that it is expected to take.
 /// Error: where a device was asked for and cannot be had.
 Result<BackendChoice> choose_backend(Backend wanted, const SimScene& scene);
+
+/// Relaxes cloths next to one another on a device, as many at once as its memory is expected to hold. False, with states as they were,
+/// where the processor is wanted or no device can: it has no gain from that, and relax() does as well.
+bool relax_at_once(Backend wanted, std::span<const ClothToRelax> cloths);
 
 /// Relaxes wherever was chosen, one cloth after the other. What a device fails at in the middle goes on, on the processor.
 class Relaxer {

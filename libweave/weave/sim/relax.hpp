@@ -32,6 +32,13 @@ struct RelaxOptions {
     std::function<bool(const Progress&)> watch;
 };
 
+/// One of many cloths that are relaxed next to one another.
+struct ClothToRelax {
+    Energy<double>* energy;
+    std::vector<double>* state;
+    RelaxOptions options;
+};
+
 enum class Ending : std::uint8_t { converged, stopped, iterations, time, stuck };
 
 /// `converged` and so on, as reports write it.

@@ -1,6 +1,7 @@
 #include <weave/sim/starts.hpp>
 
 #include <weave/core/text.hpp>
+#include <weave/sim/backend.hpp>
 #include <weave/sim/deviation.hpp>
 #include <weave/sim/energy.hpp>
 #include <weave/sim/inspect.hpp>
@@ -9,6 +10,7 @@
 
 #include <algorithm>
 #include <cmath>
+#include <memory>
 #include <random>
 
 namespace weave::sim {
@@ -81,6 +83,40 @@ Json spread_of(const std::vector<Json>& runs, const char* name) {
     return spread;
 }
 
+/// Starts of one plan, each with a fabric of its own.
+struct StartedCloth {
+    SimScene scene;
+    std::unique_ptr<Fabric<double>> fabric;
+    std::unique_ptr<Energy<double>> energy;
+    std::vector<double> state;
+
+    StartedCloth(const Plan& plan, const StartState& start, const Executor& executor)
+        : scene(scene_at(plan, start)), fabric(std::make_unique<Fabric<double>>(scene)),
+          energy(std::make_unique<Energy<double>>(*fabric, executor)), state(fabric->state()) {}
+};
+
+/// Lets all starts come to rest at once where a device can do so: whoever goes on from them finds them there. Says whether it did.
+bool come_to_rest_at_once(const Plan& plan, const SimulationOptions& options, std::vector<StartState>& starts) {
+    const bool periods = plan.rim_force_N[0].has_value() || plan.rim_force_N[1].has_value();
+    if (options.solver != Solver::relax || periods) return false;
+    const Executor executor(options.threads);
+    std::vector<StartedCloth> all;
+    std::vector<ClothToRelax> cloths;
+    all.reserve(starts.size());
+    for (const StartState& start : starts) {
+        StartedCloth& cloth = all.emplace_back(plan, start, executor);
+        RelaxOptions wanted;
+        wanted.residual = options.residual.value_or(plan.goal);
+        wanted.most_iterations = options.most_iterations;
+        wanted.most_seconds = options.most_seconds;
+        wanted.watch = options.watch;
+        cloths.push_back({cloth.energy.get(), &cloth.state, std::move(wanted)});
+    }
+    if (!relax_at_once(options.backend, cloths)) return false;
+    for (std::size_t k = 0; k < starts.size(); ++k) starts[k].control = all[k].fabric->control(all[k].state);
+    return true;
+}
+
 std::size_t how_many_are_not(const std::vector<Json>& runs, const char* name) {
     return static_cast<std::size_t>(
         std::ranges::count_if(runs, [&](const Json& run) { return !run.at(name).get<bool>(); }));
@@ -115,10 +151,14 @@ Json relaxed_again(const Design& design, const Plan& plan, const SimulationOptio
     std::vector<Json> all{figures_of(first)};
     Json furthest{{"max_mm", 0.0}, {"max_radii", 0.0}, {"rms_mm", 0.0}};
     std::size_t elsewhere = 0;
-    for (std::size_t k = 0; k < runs; ++k) {
-        SimulationOptions again = options;
-        again.flips.clear();
-        again.start = perturbed_start(plan, options.start, seed + k, options.threads);
+    std::vector<StartState> starts;
+    for (std::size_t k = 0; k < runs; ++k) starts.push_back(perturbed_start(plan, options.start, seed + k, options.threads));
+    const bool at_once = come_to_rest_at_once(plan, options, starts);
+    SimulationOptions again = options;
+    again.flips.clear();
+    again.coarser = nullptr;  // whose yarns would take the place of the start
+    for (StartState& start : starts) {
+        again.start = std::move(start);
         const Yarns yarns = simulate(design, plan, again);
         if (yarns.report.at("ending") == "stopped") break;
         const Deviation deviation = deviation_of(splines_of(yarns), own, may_drift);
@@ -135,6 +175,7 @@ Json relaxed_again(const Design& design, const Plan& plan, const SimulationOptio
               {"asked", runs},
               {"noise_radii", start_noise_radii},
               {"seed", seed},
+              {"at_once", at_once},
               {"elsewhere", elsewhere},
               {"not_at_rest", how_many_are_not(all, "converged")},
               {"order_lost", how_many_are_not(all, "order_kept")},

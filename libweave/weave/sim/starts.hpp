@@ -22,8 +22,8 @@ inline constexpr double same_rest_radii = 0.1;
 StartState perturbed_start(const Plan& plan, const std::optional<StartState>& start, std::uint64_t seed,
                            std::size_t threads);
 
-/// Relaxes `runs` times more, each from a perturbed start (seeds from `seed` on), without flips, and compares
-/// with `first`, the yarns of the same plan and options. The JSON is what the report holds as `starts`
+/// Relaxes `runs` times more, each from a perturbed start (seeds from `seed` on), without flips and coarser points, all at once where a
+/// device can (backend.hpp), and compares with `first`, the yarns of the same plan and options. The JSON is what the report holds as `starts`
 /// (YARNS.md): spread of crimp and thickness over all runs and the first, and how far the run furthest away
 /// lies from the first. A watch that stops a run ends it all; runs that were stopped are left out, and `asked`
 /// tells how many there should have been.

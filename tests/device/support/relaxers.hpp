@@ -1,7 +1,7 @@
 #pragma once
 
 // The machines that relaxations are tested on: by one body, in SUBJECT.hpp, as with machines.hpp. `weave`: yarns each way of the cloth that
-// they are tried with; the gang's threads wait for one another some hundred times in a step, so its cloth is small.
+// they are tried with (WEAVE_BATCH_RELAXERS: those that take many cloths at once); the gang's threads wait for one another some hundred times in a step, so its cloth is small.
 
 #include <catch2/catch.hpp>
 
@@ -24,6 +24,7 @@ struct RelaxesByLaunches {
 }  // namespace device_tests
 
 #define WEAVE_RELAXERS device_tests::RelaxesInOneKernel, device_tests::RelaxesByLaunches
+#define WEAVE_BATCH_RELAXERS device_tests::RelaxesInOneKernel
 #else
 #include <weave/sim/device/host_machines.hpp>
 
@@ -47,7 +48,9 @@ struct RelaxesByGang {
 
 #if defined(WEAVE_WATCHES_THREADS)
 #define WEAVE_RELAXERS device_tests::RelaxesByGang
+#define WEAVE_BATCH_RELAXERS device_tests::RelaxesByGang
 #else
+#define WEAVE_BATCH_RELAXERS device_tests::RelaxesByOneThread, device_tests::RelaxesByGang
 #define WEAVE_RELAXERS device_tests::RelaxesByOneThread, device_tests::RelaxesByTwoCores, device_tests::RelaxesByGang
 #endif
 #endif

@@ -5,6 +5,7 @@
 #include <weave/sim/device/launches.cuh>
 
 #include <cstddef>
+#include <vector>
 
 namespace weave::sim {
 
@@ -28,20 +29,40 @@ struct WithNumbers {
     }
 };
 
-/// All that fits on the device as one gang, that stays there for a whole leg: for cells too small to keep a device busy between two
-/// launches.
+/// Many such, each with numbers of its own.
+template <class Kernel, class Numbers>
+struct EachWithNumbers {
+    View<const Kernel> kernels;
+    View<Numbers> kept;
+
+    template <class Crew>
+    WEAVE_HD void operator()(Crew& crew, std::size_t k) const {
+        WithNumbers<Kernel, Numbers>{kernels[k], kept.slice(k, 1)}(crew);
+    }
+};
+
+/// A gang that stays on the device for a whole leg: for cells too small to keep a device busy between two launches. It has as many
+/// blocks as its work asks for, up to all that fit there: the fewer, the sooner they have waited for one another.
 class CudaGangMachine {
   public:
     using Crew = CudaGang;
+    using BlockCrew = CudaBlockGang;
 
     explicit CudaGangMachine(DeviceQueue& queue) : m_memory(queue), m_runner(queue) {}
 
     Memory& memory() { return m_memory; }
     template <class Kernel, class Numbers>
-    void run(const Kernel& kernel, Numbers& numbers) {
+    void run(const Kernel& kernel, Numbers& numbers, std::size_t items = 0) {
         Array<Numbers> kept(m_memory, std::vector<Numbers>{numbers});
-        m_runner.run(WithNumbers<Kernel, Numbers>{kernel, kept.view()});
+        m_runner.run(WithNumbers<Kernel, Numbers>{kernel, kept.view()}, (items + gang_threads - 1) / gang_threads);
         numbers = kept.get().front();
+    }
+    template <class Kernel, class Numbers>
+    void run_each(const std::vector<Kernel>& kernels, std::vector<Numbers>& numbers) {
+        const Array<Kernel> all(m_memory, kernels);
+        Array<Numbers> kept(m_memory, numbers);
+        m_runner.run_each(EachWithNumbers<Kernel, Numbers>{all.view(), kept.view()}, kernels.size());
+        numbers = kept.get();
     }
 
   private:
@@ -58,7 +79,7 @@ class CudaLaunchesMachine {
 
     Memory& memory() { return m_memory; }
     template <class Kernel, class Numbers>
-    void run(const Kernel& kernel, Numbers& numbers) {
+    void run(const Kernel& kernel, Numbers& numbers, std::size_t = 0) {
         kernel(m_crew, numbers);
     }
 

@@ -68,20 +68,34 @@ struct EmulatedThread {
     [[nodiscard]] double* shared() const { return device->shared[m_block].data(); }
 };
 
-/// kernel(gang) by every thread of so many blocks.
-template <class Kernel>
-void emulate(std::size_t blocks, std::size_t threads_a_block, const Kernel& kernel) {
+/// work(thread) by every thread of so many blocks.
+template <class Work>
+void by_emulated_threads(std::size_t blocks, std::size_t threads_a_block, const Work& work) {
     EmulatedDevice device(blocks, threads_a_block);
     std::vector<std::thread> all;
     for (std::size_t b = 0; b < blocks; ++b) {
-        for (std::size_t t = 0; t < threads_a_block; ++t) {
-            all.emplace_back([&device, &kernel, b, t] {
-                Gang<EmulatedThread> gang({&device, b, t}, {device.parts.data(), device.parts.size()});
-                kernel(gang);
-            });
-        }
+        for (std::size_t t = 0; t < threads_a_block; ++t) all.emplace_back([&device, &work, b, t] { work(EmulatedThread{&device, b, t}); });
     }
     for (std::thread& thread : all) thread.join();
+}
+
+/// kernel(gang) by all blocks together.
+template <class Kernel>
+void emulate(std::size_t blocks, std::size_t threads_a_block, const Kernel& kernel) {
+    by_emulated_threads(blocks, threads_a_block, [&](const EmulatedThread& thread) {
+        Gang<EmulatedThread> gang(thread, {thread.device->parts.data(), thread.device->parts.size()});
+        kernel(gang);
+    });
+}
+
+/// kernel(gang, k) for every k below `gangs`, each by a block for itself.
+template <class Kernel>
+void emulate_each(std::size_t gangs, std::size_t threads_a_block, const Kernel& kernel) {
+    std::vector<double> parts(gangs * parts_of_gang(1));
+    by_emulated_threads(gangs, threads_a_block, [&](const EmulatedThread& thread) {
+        Gang<BlockOf<EmulatedThread>> gang({thread}, {parts.data() + thread.block() * parts_of_gang(1), parts_of_gang(1)});
+        kernel(gang, thread.block());
+    });
 }
 
 /// kernel(gang) by the calling thread alone.

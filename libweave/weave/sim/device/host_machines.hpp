@@ -7,6 +7,7 @@
 #include <weave/sim/device/memory.hpp>
 
 #include <cstddef>
+#include <vector>
 
 namespace weave::sim {
 
@@ -14,11 +15,16 @@ namespace weave::sim {
 class OneThreadMachine {
   public:
     using Crew = Gang<OneThread>;
+    using BlockCrew = Crew;
 
     Memory& memory() { return m_memory; }
     template <class Kernel, class Numbers>
-    void run(const Kernel& kernel, Numbers& numbers) {
+    void run(const Kernel& kernel, Numbers& numbers, std::size_t = 0) {
         run_alone([&](Crew& crew) { kernel(crew, numbers); });
+    }
+    template <class Kernel, class Numbers>
+    void run_each(const std::vector<Kernel>& kernels, std::vector<Numbers>& numbers) {
+        for (std::size_t k = 0; k < kernels.size(); ++k) run(kernels[k], numbers[k]);
     }
 
   private:
@@ -29,21 +35,30 @@ class OneThreadMachine {
 class EmulatedMachine {
   public:
     using Crew = Gang<EmulatedThread>;
+    using BlockCrew = Gang<BlockOf<EmulatedThread>>;
 
     EmulatedMachine(std::size_t blocks, std::size_t threads_a_block) : m_blocks(blocks), m_threads(threads_a_block) {}
 
     Memory& memory() { return m_memory; }
     template <class Kernel, class Numbers>
-    void run(const Kernel& kernel, Numbers& numbers) {
+    void run(const Kernel& kernel, Numbers& numbers, std::size_t = 0) {
         const Numbers before = numbers;
-        emulate(m_blocks, m_threads, [&](Crew& crew) {
-            Numbers own = before;
-            kernel(crew, own);
-            crew.alone([&] { numbers = own; });
-        });
+        emulate(m_blocks, m_threads, [&](Crew& crew) { run_with_own(crew, kernel, before, numbers); });
+    }
+    template <class Kernel, class Numbers>
+    void run_each(const std::vector<Kernel>& kernels, std::vector<Numbers>& numbers) {
+        const std::vector<Numbers> before = numbers;
+        emulate_each(kernels.size(), m_threads, [&](BlockCrew& crew, std::size_t k) { run_with_own(crew, kernels[k], before[k], numbers[k]); });
     }
 
   private:
+    template <class AnyCrew, class Kernel, class Numbers>
+    static void run_with_own(AnyCrew& crew, const Kernel& kernel, const Numbers& before, Numbers& numbers) {
+        Numbers own = before;
+        kernel(crew, own);
+        crew.alone([&] { numbers = own; });
+    }
+
     std::size_t m_blocks, m_threads;
     HostMemory m_memory;
 };
@@ -57,7 +72,7 @@ class CoresMachine {
 
     Memory& memory() { return m_memory; }
     template <class Kernel, class Numbers>
-    void run(const Kernel& kernel, Numbers& numbers) {
+    void run(const Kernel& kernel, Numbers& numbers, std::size_t = 0) {
         kernel(m_crew, numbers);
     }
 

@@ -4,10 +4,10 @@
 
 namespace weave::sim {
 
-template class RelaxingOn<float, CudaGangMachine>;
-template class RelaxingOn<double, CudaGangMachine>;
-template class RelaxingOn<float, CudaLaunchesMachine>;
-template class RelaxingOn<double, CudaLaunchesMachine>;
+template void lead<float, CudaGangMachine>(CudaGangMachine&, RelaxingCloth<float, CudaGang>&);
+template void lead<double, CudaGangMachine>(CudaGangMachine&, RelaxingCloth<double, CudaGang>&);
+template void lead<float, CudaLaunchesMachine>(CudaLaunchesMachine&, RelaxingCloth<float, Launches>&);
+template void lead<double, CudaLaunchesMachine>(CudaLaunchesMachine&, RelaxingCloth<double, Launches>&);
 
 namespace {
 
@@ -22,6 +22,7 @@ class OnCuda : public DeviceRelaxer {
         if (energy.fabric().points() < points_for_launches) return relax_in_stages(m_gang, energy, state, options);
         return relax_in_stages(m_launches, energy, state, options);
     }
+    std::vector<RelaxResult> relax_each(std::span<const ClothToRelax> cloths) override { return relax_each_in_stages(m_gang, cloths); }
 
   private:
     DeviceQueue m_queue;

@@ -7,11 +7,12 @@
 
 #include <cstddef>
 #include <memory>
+#include <span>
 #include <vector>
 
 namespace weave::sim {
 
-/// Relaxes cloths on one device, one after the other, in memory that it asks for with each.
+/// Relaxes cloths on one device, in memory that it asks for with each.
 class DeviceRelaxer {
   public:
     /// Throws DeviceError where the device cannot be had.
@@ -22,12 +23,16 @@ class DeviceRelaxer {
     /// goal is the same. Whoever watches is told a few times within each sixtieth of a second, not after each step. Throws DeviceError or
     /// std::bad_alloc; the state is then one on the way.
     virtual RelaxResult relax(Energy<double>& energy, std::vector<double>& state, const RelaxOptions& options) = 0;
+
+    /// The same for cloths next to one another, each by a share of the device: for small ones. One that somebody stops stops alone.
+    virtual std::vector<RelaxResult> relax_each(std::span<const ClothToRelax> cloths) = 0;
 };
 
 /// Whether a device models all that a scene holds: not friction, nor a crossing on its way to the other side.
 bool device_can_relax(const SimScene& scene);
 
-/// Bytes of its memory that a device is expected to take for a cloth; lists of what touches may ask for more.
+/// Bytes of its memory that a device is expected to take for a cloth, with double forces. Lists of what touches grow with what they
+/// meet: this is what relaxations of the samples took, and some more (tests/device/foreseen.cpp).
 std::size_t device_bytes(const Fabric<double>& fabric);
 
 }  // namespace weave::sim
