@@ -1,4 +1,3 @@
-#include "/tmp/tl.hpp"
 // How long a person waits, and what the studio takes. Run by hand: test_studio "[.edit-bench]" (docs/benchmarks.md).
 
 #include <weave/block/flip.hpp>

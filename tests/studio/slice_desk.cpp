@@ -1,5 +1,6 @@
 // Slices in the main window, and where it is narrow or dark.
 
+#include "screen_file.hpp"
 #include "slice_case.hpp"
 
 #include <studio/document/document.hpp>
@@ -206,7 +207,7 @@ TEST_CASE("slice: screens, narrow and dark", "[.screens]") {
             Window open("shoe-adult");
             const auto keep = [&](const QString& name) {
                 QTest::qWait(1500);
-                open.window.grab().save(QString("/tmp/sl/%1-%2.png").arg(kind, name));
+                open.window.grab().save(screen_file(QString("%1-%2.png").arg(kind, name)));
             };
             open.card->show_mode(CardMode::face_floats);
             open.window.document()->focus().go_to({2000, 800});
@@ -226,7 +227,7 @@ TEST_CASE("slice: screens, narrow and dark", "[.screens]") {
         REQUIRE(QTest::qWaitForWindowExposed(&editor));
         editor.show_slice(slice_of(System::weft, {"T0 P0 T1", "P0 T0", "T0 T1 P0", "T0 (T1) P0"}));
         QTest::qWait(100);
-        editor.grab().save(QString("/tmp/sl/%1-narrow.png").arg(kind));
+        editor.grab().save(screen_file(QString("%1-narrow.png").arg(kind)));
     }
     QApplication::setPalette(usual);
 }

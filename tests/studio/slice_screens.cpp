@@ -1,3 +1,4 @@
+#include "screen_file.hpp"
 #include "slice_case.hpp"
 
 #include <weave/design/evaluate.hpp>
@@ -13,7 +14,7 @@ TEST_CASE("slice: screens", "[.screens]") {
         OpenSliceEditor open(warp_slice(*block, 0).value());
         open.key(Qt::Key_S);
         open.click(2, 1);
-        (QApplication::processEvents(), open.editor.grab()).save("/tmp/sl/edit.png");
+        (QApplication::processEvents(), open.editor.grab()).save(screen_file("edit.png"));
         open.key(Qt::Key_D);
         QTest::mousePress(&open.canvas(), Qt::LeftButton, Qt::NoModifier, open.canvas().place_of(0, 0));
         for (int k = 0; k < 5; ++k) {
@@ -22,25 +23,25 @@ TEST_CASE("slice: screens", "[.screens]") {
                              Qt::LeftButton, Qt::NoModifier);
             QApplication::sendEvent(&open.canvas(), &move);
         }
-        (QApplication::processEvents(), open.editor.grab()).save("/tmp/sl/draw.png");
+        (QApplication::processEvents(), open.editor.grab()).save(screen_file("draw.png"));
         QTest::mouseRelease(&open.canvas(), Qt::LeftButton, Qt::NoModifier, open.canvas().place_of(4, 5.2));
         open.key(Qt::Key_S);
         open.click(6, 0);
         open.key(Qt::Key_E);
         open.key(Qt::Key_N);
         open.key(Qt::Key_Left, Qt::ControlModifier);
-        (QApplication::processEvents(), open.editor.grab()).save("/tmp/sl/edited.png");
+        (QApplication::processEvents(), open.editor.grab()).save(screen_file("edited.png"));
     }
     {
         OpenSliceEditor open;
-        (QApplication::processEvents(), open.editor.grab()).save("/tmp/sl/empty.png");
+        (QApplication::processEvents(), open.editor.grab()).save(screen_file("empty.png"));
     }
     {
         OpenSliceEditor open(weft_slice(*block, 0).value());
         Design wrap;
         wrap.scene.weft_mode = WeftMode::wraparound;
         open.editor.set_design(wrap);
-        (QApplication::processEvents(), open.editor.grab()).save("/tmp/sl/wrap.png");
+        (QApplication::processEvents(), open.editor.grab()).save(screen_file("wrap.png"));
     }
     SliceEditor editor;
     editor.resize(1200, 600);
@@ -64,7 +65,7 @@ TEST_CASE("slice: screens", "[.screens]") {
             timer.restart();
             (QApplication::processEvents(), editor.grab())
                 .save(
-                    QString("/tmp/sl/read-%1-%2.png").arg(name).arg(dots == System::weft ? "warp" : "weft"));
+                    QString("read-%1-%2.png").arg(name).arg(dots == System::weft ? "warp" : "weft"));
             std::printf("%s: read %lld us, laid out %lld us, drawn and saved %lld us\n", name,
                         static_cast<long long>(read), static_cast<long long>(laid),
                         static_cast<long long>(timer.nsecsElapsed() / 1000));

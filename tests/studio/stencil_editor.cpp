@@ -1,3 +1,5 @@
+#include "screen_file.hpp"
+
 #include <studio/editors/stencil_dialogs.hpp>
 #include <studio/editors/stencil_editor.hpp>
 
@@ -364,10 +366,10 @@ TEST_CASE("stencil: screens", "[.screens]") {
     QTest::mouseMove(&open.canvas(), open.canvas().place_of({5, 5}));
     open.drag({{5, 5}});
     QApplication::processEvents();
-    open.editor.grab().save("/tmp/sl/stencil.png");
+    open.editor.grab().save(studio::test::screen_file("stencil.png"));
     open.editor.ask_size();
     QApplication::processEvents();
-    open.editor.findChild<StencilSizeDialog*>()->grab().save("/tmp/sl/stencil-size.png");
+    open.editor.findChild<StencilSizeDialog*>()->grab().save(studio::test::screen_file("stencil-size.png"));
     open.editor.findChild<StencilSizeDialog*>()->reject();
     PictureMapDialog dialog(
         {{{200, 0, 0}, 12000}, {{0, 0, 200}, 900}, {{255, 255, 255}, 3}},
@@ -375,7 +377,7 @@ TEST_CASE("stencil: screens", "[.screens]") {
         [](const auto&) { return QString(); }, &open.editor);
     dialog.show();
     QApplication::processEvents();
-    dialog.grab().save("/tmp/sl/stencil-map.png");
+    dialog.grab().save(studio::test::screen_file("stencil-map.png"));
     OpenStencil large(operation_of(3000, 3000));
     QElapsedTimer timer;
     const auto took = [&](const char* what) {
@@ -400,5 +402,5 @@ TEST_CASE("stencil: screens", "[.screens]") {
     took("whole repaint");
     large.editor.show_operation(operation_of(3000, 3000));
     took("another map");
-    large.editor.grab().save("/tmp/sl/stencil-large.png");
+    large.editor.grab().save(studio::test::screen_file("stencil-large.png"));
 }
