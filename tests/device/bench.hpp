@@ -57,7 +57,7 @@ struct DeviceBench {
     Array<Moved<Real>> moved;
 
     DeviceBench(Machine& on, const SimScene& scene)
-        : machine(on), host(scene), arrays(on.memory, host.fabric, host.state), cloth(arrays.view()), lists(on.memory, cloth),
+        : machine(on), host(scene), arrays(on.memory, host.fabric, host.state), cloth(arrays.view()), lists(on.memory, cloth, host.energy.first_weights(host.state)),
           told(on.memory, 1), state(on.memory, host.state), contact(on.memory, cloth.samples), energy(on.memory, cloth.segments),
           share(on.memory, cloth.segments), by_segment(on.memory, 12 * std::size_t(cloth.segments)),
           gradient(on.memory, 3 * std::size_t(cloth.rows)), change(on.memory, 3 * std::size_t(cloth.rows)),

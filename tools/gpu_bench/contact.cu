@@ -20,11 +20,11 @@ double least_bytes(std::size_t own, std::size_t samples, std::size_t neighbours)
 }  // namespace
 
 Figures measure_contact() {
-    const Cloth cloth(sample_scene("satin-e", sim::Fidelity::standard, 36));
+    Cloth cloth(sample_scene("satin-e", sim::Fidelity::standard, 36));
     sim::DeviceQueue queue;
     sim::CudaMemory memory(queue);
     sim::Launches launches(queue);
-    sim::CrewArrays<Real> arrays(memory, cloth.fabric, cloth.state);
+    sim::CrewArrays<Real> arrays(memory, cloth.energy, cloth.state);
     sim::CrewState made;
     for (;;) {
         const sim::CrewRoom<Real> room = arrays.room();

@@ -46,6 +46,15 @@ void Energy<Real>::lay_samples(const std::vector<Real>& state) {
 }
 
 template <class Real>
+const std::vector<Real>& Energy<Real>::first_weights(const std::vector<Real>& state) {
+    if (m_neighbours.first_weights().empty()) {
+        m_executor.each_wide(m_fabric.segments(), PlaceSamples<Real>{view(state)});
+        m_neighbours.keep_first_weights();
+    }
+    return m_neighbours.first_weights();
+}
+
+template <class Real>
 void Energy<Real>::renew_friction(const std::vector<Real>& state, double stick) {
     lay_samples(state);
     m_friction.renew(view(state), m_neighbours, m_executor, stick);

@@ -29,6 +29,8 @@ class Energy {
 
     /// The samples and their neighbours as the latest evaluation left them.
     [[nodiscard]] Neighbours<Real>& neighbours() { return m_neighbours; }
+    /// See Neighbours::first_weights(); those of this state where there were none. Who else computes the same energy needs them.
+    const std::vector<Real>& first_weights(const std::vector<Real>& state);
     [[nodiscard]] FabricView<Real> view(const std::vector<Real>& state);
     [[nodiscard]] const Transition<Real>& transition() const { return m_transition; }
     [[nodiscard]] const Friction<Real>& friction() const { return m_friction; }

@@ -165,9 +165,13 @@ void Neighbours<Real>::move_halo() {
 }
 
 template <class Real>
+void Neighbours<Real>::keep_first_weights() {
+    m_first_weight.assign(m_weight.begin(), m_weight.begin() + static_cast<std::ptrdiff_t>(m_own));
+}
+
+template <class Real>
 void Neighbours<Real>::build() {
-    if (m_builds == 0)
-        m_first_weight.assign(m_weight.begin(), m_weight.begin() + static_cast<std::ptrdiff_t>(m_own));
+    if (m_first_weight.empty()) keep_first_weights();
     const double travel = m_wide_skin - m_skin;
     if (m_builds == 0 || gone_since(m_wide_built) > travel * travel / 4) {
         build_wide();

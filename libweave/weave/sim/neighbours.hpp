@@ -48,6 +48,10 @@ class Neighbours {
     [[nodiscard]] std::uint32_t segment_of(std::uint32_t own_sample) const {
         return m_segment_of[own_sample];
     }
+    /// Weights of the own samples when the first list was made, or keep_first_weights() was called before: they decide which samples lie
+    /// on one stretch of a yarn, and do not touch. Empty until then.
+    [[nodiscard]] const std::vector<Real>& first_weights() const { return m_first_weight; }
+    void keep_first_weights();
     /// Bumped by each rebuild.
     [[nodiscard]] std::size_t builds() const { return m_builds; }
     [[nodiscard]] double skin_mm() const { return m_skin; }
@@ -84,7 +88,7 @@ class Neighbours {
     double m_skin, m_wide_skin;
     std::vector<Real> m_x, m_y, m_z, m_weight, m_radius;
     std::vector<Real> m_built, m_wide_built;  ///< places when each list was made, x y z of own samples
-    std::vector<Real> m_first_weight;         ///< of own samples when the first list was made
+    std::vector<Real> m_first_weight;
     std::vector<std::uint32_t> m_segment_of;
     std::vector<std::uint32_t> m_class_of_yarn;
     std::vector<double> m_classes;  ///< greatest radius of each class, rising

@@ -14,15 +14,15 @@ constexpr std::size_t vectors_of_rows = 9;
 }  // namespace
 
 template <class Real>
-CrewArrays<Real>::CrewArrays(Memory& memory, const Fabric<double>& fabric, const std::vector<double>& state)
-    : m_cloth(memory, fabric, state), m_lists(memory, m_cloth.view()), m_curvature(memory, m_cloth.view()),
-      m_pieces(memory, Hierarchy(rows_of_yarns(fabric), places_of(fabric))),
-      m_numbers(3 * std::size_t(m_cloth.view().rows)), m_contact(memory, fabric.samples()), m_energy(memory, fabric.segments()),
-      m_share(memory, fabric.segments()), m_state(memory, state), m_before(memory, state.size()),
+CrewArrays<Real>::CrewArrays(Memory& memory, Energy<double>& energy, const std::vector<double>& state)
+    : m_cloth(memory, energy.fabric(), state), m_lists(memory, m_cloth.view(), energy.first_weights(state)),
+      m_curvature(memory, m_cloth.view()), m_pieces(memory, Hierarchy(rows_of_yarns(energy.fabric()), places_of(energy.fabric()))),
+      m_numbers(3 * std::size_t(m_cloth.view().rows)), m_contact(memory, energy.fabric().samples()),
+      m_energy(memory, energy.fabric().segments()), m_share(memory, energy.fabric().segments()), m_state(memory, state), m_before(memory, state.size()),
       m_products(memory, places_for_pairs * places_for_pairs), m_sums(memory, most_sums), m_pair_share(memory, most_pairs),
-      m_by_segment(memory, 12 * fabric.segments()), m_vectors(memory, vectors_of_rows * m_numbers),
+      m_by_segment(memory, 12 * energy.fabric().segments()), m_vectors(memory, vectors_of_rows * m_numbers),
       m_pair_change(memory, places_for_pairs * m_numbers), m_pair_bend(memory, places_for_pairs * m_numbers),
-      m_moved(memory, fabric.samples()), m_key(memory, m_cloth.view().rows), m_reference_floor_N(force_of_yarns(fabric.scene())) {}
+      m_moved(memory, energy.fabric().samples()), m_key(memory, m_cloth.view().rows), m_reference_floor_N(force_of_yarns(energy.fabric().scene())) {}
 
 template <class Real>
 CrewRoom<Real> CrewArrays<Real>::room() const {

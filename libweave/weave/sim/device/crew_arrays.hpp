@@ -5,6 +5,7 @@
 #include <weave/sim/device/curvature_arrays.hpp>
 #include <weave/sim/device/lists_arrays.hpp>
 #include <weave/sim/device/piece_arrays.hpp>
+#include <weave/sim/energy.hpp>
 
 #include <cstddef>
 #include <vector>
@@ -16,7 +17,7 @@ template <class Real>
 class CrewArrays {
   public:
     /// Throws std::bad_alloc where the memory does not suffice.
-    CrewArrays(Memory& memory, const Fabric<double>& fabric, const std::vector<double>& state);
+    CrewArrays(Memory& memory, Energy<double>& energy, const std::vector<double>& state);
 
     [[nodiscard]] CrewRoom<Real> room() const;
     /// Makes room for what did not fit, as the state tells. Throws like the constructor.

@@ -3,6 +3,7 @@
 #include <weave/sim/device/crew.hpp>
 #include <weave/sim/device/lists_bodies.hpp>
 #include <weave/sim/device/lists_view.hpp>
+#include <weave/sim/device/rows.hpp>
 
 #include <cstddef>
 #include <cstdint>
@@ -19,7 +20,7 @@ struct ListsRoom {
     View<std::uint32_t> first, neighbour;
     View<std::uint32_t> first_candidate, candidate;  ///< per segment: samples that may come near it
     View<Sample<Real>> built, wide_built;            ///< own samples when each list was made
-    View<Real> first_weight;                         ///< of own samples when the first list was made
+    View<const Real> first_weight;                   ///< of own samples, see Energy::first_weights()
     CellsView cells;
     std::size_t images = 0, neighbours = 0, candidates = 0;  ///< so many fit
 };
@@ -78,14 +79,13 @@ class Lists {
 
     WEAVE_ANYWHERE template <class Crew>
     WEAVE_HD bool build(Crew& crew) {
-        if (m_state.builds == 0) crew.each(m_cloth.samples, KeepWeights<Real>{m_room.sample, m_room.first_weight});
         if (!m_state.wide || gone_since(crew, m_room.wide_built) > square((wide_skin_mm() - skin_mm()) / 2)) {
             if (!build_wide(crew)) return lacks_room();
         } else {
             move_halo(crew);
         }
         if (!list_neighbours(crew)) return lacks_room();
-        crew.each(m_cloth.samples, CopySamples<Real>{m_room.sample, m_room.built});
+        crew.each(m_cloth.samples, Copy<Sample<Real>>{m_room.sample, m_room.built});
         ++m_state.builds;
         m_state.made = true;
         return true;
@@ -108,7 +108,7 @@ class Lists {
         if (m_state.needs_candidates > 0) return false;
         crew.each(m_cloth.segments, find.filling());
         crew.each(m_cloth.segments, SortCandidates<Real>{view(), m_room.first_candidate, m_room.candidate});
-        crew.each(m_cloth.samples, CopySamples<Real>{m_room.sample, m_room.wide_built});
+        crew.each(m_cloth.samples, Copy<Sample<Real>>{m_room.sample, m_room.wide_built});
         m_state.wide = true;
         return true;
     }

@@ -16,9 +16,9 @@ std::size_t with_some_more(std::size_t needed) {
 }  // namespace
 
 template <class Real>
-ListsArrays<Real>::ListsArrays(Memory& memory, const ClothView<Real>& cloth)
+ListsArrays<Real>::ListsArrays(Memory& memory, const ClothView<Real>& cloth, const std::vector<double>& first_weights)
     : m_own(cloth.samples), m_sample(memory), m_built(memory, m_own), m_wide_built(memory, m_own), m_radius(memory),
-      m_first_weight(memory, m_own), m_halo(memory), m_first_image(memory, m_own + 1), m_first(memory, m_own + 1), m_neighbour(memory),
+      m_first_weight(memory, std::vector<Real>(first_weights.begin(), first_weights.end())), m_halo(memory), m_first_image(memory, m_own + 1), m_first(memory, m_own + 1), m_neighbour(memory),
       m_first_candidate(memory, cloth.segments + std::size_t{1}), m_candidate(memory),
       m_first_of_bucket(memory, std::bit_ceil(std::size_t{16} + 2 * m_own) + 1), m_cell_sample(memory), m_cell_key(memory) {
     m_room.first_image = m_first_image.view();

@@ -4,6 +4,7 @@
 #include <weave/sim/device/memory.hpp>
 
 #include <cstddef>
+#include <vector>
 
 namespace weave::sim {
 
@@ -11,7 +12,8 @@ namespace weave::sim {
 template <class Real>
 class ListsArrays {
   public:
-    ListsArrays(Memory& memory, const ClothView<Real>& cloth);
+    /// `first_weights`: see Energy::first_weights().
+    ListsArrays(Memory& memory, const ClothView<Real>& cloth, const std::vector<double>& first_weights);
 
     [[nodiscard]] const ListsRoom<Real>& room() const { return m_room; }
     /// Makes room for what did not fit, and somewhat more; the lists are then to be made anew.

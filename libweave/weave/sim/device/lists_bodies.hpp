@@ -45,21 +45,6 @@ struct GoneSince {
     }
 };
 
-template <class Real>
-struct CopySamples {
-    View<Sample<Real>> from, to;
-
-    WEAVE_HD void operator()(std::size_t index) const { to[index] = from[index]; }
-};
-
-template <class Real>
-struct KeepWeights {
-    View<Sample<Real>> sample;
-    View<Real> weight;
-
-    WEAVE_HD void operator()(std::size_t index) const { weight[index] = sample[index].weight; }
-};
-
 /// Where a sample lies along an axis, mm from the scale's origin, times `turn`.
 template <class Real>
 struct PlaceAlong {
@@ -347,7 +332,7 @@ struct ListNeighbours {
     ClothView<Real> cloth;
     ListsView<Real> lists;
     double skin_mm;
-    View<Real> first_weight;
+    View<const Real> first_weight;
     View<std::uint32_t> first_candidate, candidate;
     bool fills;
 

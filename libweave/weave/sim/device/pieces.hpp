@@ -6,6 +6,7 @@
 
 #include <weave/sim/device/crew.hpp>
 #include <weave/sim/device/matrix.hpp>
+#include <weave/sim/device/rows.hpp>
 #include <weave/sim/pivots.hpp>
 
 #include <cmath>
@@ -318,12 +319,6 @@ struct Eliminate {
     }
 };
 
-struct CopyNumber {
-    View<const double> from;
-    View<double> to;
-    WEAVE_HD void operator()(std::size_t i) const { to[i] = from[i]; }
-};
-
 /// Inverts what is solved as a whole, by one block: its threads wait for one another after each pivot.
 template <class Real>
 struct InvertWholes {
@@ -363,7 +358,7 @@ struct InvertWholes {
             from = to;
             to = turned;
         }
-        if (size % 2 != 0) crew.each(size * size, CopyNumber{from, to});
+        if (size % 2 != 0) crew.each(size * size, Copy<double>{from, to});
         return true;
     }
 };

@@ -21,7 +21,7 @@ class RelaxingCloth {
 
     /// `energy`, `state` and `options` must stay. Throws std::bad_alloc where the memory does not suffice.
     RelaxingCloth(Memory& memory, Energy<double>& energy, std::vector<double>& state, const RelaxOptions& options)
-        : m_state(state), m_options(options), m_arrays(memory, energy.fabric(), state), m_history(memory, most_steps_of_leg + 2),
+        : m_state(state), m_options(options), m_arrays(memory, energy, state), m_history(memory, most_steps_of_leg + 2),
           m_items(energy.fabric().samples()) {
         m_leg.relaxing.goal = options.residual;
         m_leg.relaxing.leaves_saddles = options.leaves_saddles;
