@@ -166,6 +166,50 @@ TEMPLATE_TEST_CASE("relaxation: nothing, one yarn, and yarns that are all held",
     CHECK(rest.state == cloth.bench.state);
 }
 
+TEMPLATE_TEST_CASE("relaxation: both stages count, and either may be the last", "[device]", WEAVE_RELAXERS) {
+    using namespace device_tests;
+    TestType relaxer;
+    Relaxed cloth(shaken_weave(TestType::weave));
+    const auto in_stages = [&](const RelaxOptions& options) {
+        Rest rest{{}, cloth.bench.state};
+        rest.result = relax_in_stages(relaxer.machine, cloth.bench.energy, rest.state, options);
+        return rest;
+    };
+    const Rest rough = in_stages(to(least_float_residual)), whole = in_stages(to(1e-8));
+    REQUIRE(whole.result.ending == Ending::converged);
+    REQUIRE(whole.result.iterations > rough.result.iterations + 1);
+    CHECK(whole.result.evaluations > rough.result.evaluations);
+    CHECK(rough.result.builds > 0);
+    CHECK(whole.result.builds > rough.result.builds);
+    CHECK(whole.result.seconds >= whole.result.history.back().seconds);
+    RelaxOptions options = to(1e-8);
+    options.most_iterations = rough.result.iterations + 1;
+    const Rest few = in_stages(options);
+    CHECK(few.result.ending == Ending::iterations);
+    CHECK(few.result.iterations == options.most_iterations);
+    options = to(1e-8);
+    options.watch = [&](const Progress& progress) { return progress.residual > least_float_residual; };
+    const Rest stopped = in_stages(options);
+    CHECK(stopped.result.ending == Ending::stopped);
+    CHECK(stopped.result.residual <= least_float_residual);
+}
+
+TEMPLATE_TEST_CASE("relaxation: points that lie on one another are spread, and yarns that are laid too long give way", "[device]", WEAVE_RELAXERS) {
+    using namespace device_tests;
+    TestType relaxer;
+    SimScene scene = held_weave(TestType::weave);
+    for (SimYarn& yarn : scene.yarns) {
+        if (yarn.control.size() > 4) yarn.control[2] = yarn.control[3];
+    }
+    scene.yarns.back().is_fed = false;
+    scene.yarns.back().rest_mm /= 1.3;
+    Relaxed cloth(scene);
+    const Rest right = cloth.here(to(1e-8)), found = cloth.there<double>(relaxer, to(1e-8));
+    CHECK(found.result.ending == right.result.ending);
+    CHECK(cloth.apart(found, right) < 1e-4);
+    CHECK(found.result.energy == Approx(right.result.energy).epsilon(1e-7));
+}
+
 TEMPLATE_TEST_CASE("relaxation: cloths next to one another come to rest as each alone would", "[device]", WEAVE_BATCH_RELAXERS) {
     using namespace device_tests;
     TestType relaxer;
@@ -185,6 +229,9 @@ TEMPLATE_TEST_CASE("relaxation: cloths next to one another come to rest as each 
         CHECK(results[k].ending == Ending::converged);
         CHECK(results[k].residual <= goals[k]);
         CHECK((results[k].history.empty() || results[k].history.back().iteration == results[k].iterations));
+        const auto sooner = [](const Progress& a, const Progress& b) { return a.seconds < b.seconds; };
+        CHECK(std::ranges::is_sorted(results[k].history, sooner));
+        CHECK((results[k].history.empty() || results[k].seconds >= results[k].history.back().seconds));
         if (found[k].state.empty()) continue;
         if (goals[k] > 1e-4) found[k].result = relax(cloths[k]->bench.energy, found[k].state, to(1e-8));
         CHECK(cloths[k]->apart(found[k], cloths[k]->here(to(1e-8))) < 1e-4);

@@ -9,7 +9,7 @@
 using namespace weave;
 using namespace weave::sim;
 
-TEST_CASE("starts: relaxed at once on a device they tell what they tell on the processor", "[device]") {
+TEST_CASE("starts: relaxed at once on a device they tell what they tell on the processor", "[device][slow]") {
     const Design design = find_sample("satin-5")->make();
     SimulationRequest request;
     request.fidelity = Fidelity::draft;

@@ -65,7 +65,7 @@ TEST_CASE("slice: screens", "[.screens]") {
             timer.restart();
             (QApplication::processEvents(), editor.grab())
                 .save(
-                    QString("read-%1-%2.png").arg(name).arg(dots == System::weft ? "warp" : "weft"));
+                    screen_file(QString("read-%1-%2.png").arg(name).arg(dots == System::weft ? "warp" : "weft")));
             std::printf("%s: read %lld us, laid out %lld us, drawn and saved %lld us\n", name,
                         static_cast<long long>(read), static_cast<long long>(laid),
                         static_cast<long long>(timer.nsecsElapsed() / 1000));

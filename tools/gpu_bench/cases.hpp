@@ -26,8 +26,8 @@ Figures measure_contact();   ///< bandwidth of the pass over contact samples
 
 // Of whatever relaxes.
 Figures measure_table1(sim::DeviceRelaxer& relaxer);  ///< the structures of the paper's Table 1 to `standard`, beside the processor
-Figures measure_batch(sim::DeviceRelaxer& relaxer);   ///< small cells next to one another, and one after the other
-Figures measure_live(sim::DeviceRelaxer& relaxer);    ///< pictures a second of a cloth of 10,000 points while it relaxes
+Figures measure_batch(sim::DeviceRelaxer& relaxer);   ///< many small cells, from starts of their own, and one of them alone
+Figures measure_live(sim::DeviceRelaxer& relaxer);    ///< pictures a second of cloths of some 10,000 points while they relax
 Figures measure_large(sim::DeviceRelaxer& relaxer);   ///< a million points to `standard`
 
 }  // namespace weave::gpu_bench

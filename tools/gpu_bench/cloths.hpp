@@ -10,9 +10,9 @@
 
 namespace weave::gpu_bench {
 
-/// The scene of a sample in the points of a fidelity, in its smallest repeat or tiled so many times each way and unreduced. Points
-/// of tiled cloth are moved by up to 0.02 of their yarn's radius, so that it begins on no saddle.
-sim::SimScene sample_scene(const std::string& name, sim::Fidelity fidelity, std::uint32_t tiles = 1);
+/// The scene of a sample in the points of a fidelity, in its smallest repeat or tiled so many times each way and unreduced. With a
+/// seed, and where it is tiled, its points are moved by up to 0.02 of their yarn's radius, so that it begins on no saddle.
+sim::SimScene sample_scene(const std::string& name, sim::Fidelity fidelity, std::uint32_t tiles = 1, std::uint32_t seed = 0);
 
 /// A scene with all that its relaxation needs, here.
 struct Cloth {

@@ -56,6 +56,9 @@ std::optional<Wish> understood(const std::vector<std::string>& words) {
         } else if (words[k] == "--on" && has_next && words[k + 1] == "cores") {
             wish.on_cores = true;
             ++k;
+        } else if (words[k] == "--on" || words[k] == "--json") {
+            std::fprintf(stderr, "gpu_bench: %s needs %s after it\n", words[k].c_str(), words[k] == "--on" ? "'cores'" : "a file");
+            return {};
         } else if (std::ranges::any_of(cases, [&](const Case& known) { return known.name == words[k]; })) {
             wish.cases.push_back(words[k]);
         } else {
@@ -64,7 +67,18 @@ std::optional<Wish> understood(const std::vector<std::string>& words) {
             return {};
         }
     }
+    for (const std::string& name : wish.cases) {
+        const Case& asked = *std::ranges::find(cases, name, &Case::name);
+        if (!wish.on_cores || asked.of_relaxer) continue;
+        std::fprintf(stderr, "gpu_bench: %s measures a device, not the cores\n", name.c_str());
+        return {};
+    }
     return wish;
+}
+
+/// What is measured so far, for whoever wants it in a file; false where that cannot be written.
+bool write(const Json& report, const std::string& file) {
+    return file.empty() || std::ofstream(file) << report.dump(1) << '\n';
 }
 
 /// Measures a case; what goes wrong stays with it.
@@ -109,10 +123,16 @@ int main(int count, char** words) {
             std::fprintf(stderr, "gpu_bench: skipped: %s\n", found.why_none.c_str());
             return 77;
         }
-        report["device"] = found.all.front().name;
+        const auto usable = std::ranges::find_if(found.all, [](const weave::sim::Device& device) { return device.trouble.empty(); });
+        report["device"] = usable->name;
         report["driver"] = weave::sim::cuda_version_words(found.driver);
         report["runtime"] = weave::sim::cuda_version_words(found.runtime);
-        relaxer = weave::sim::DeviceRelaxer::on(found.all.front());
+        try {
+            relaxer = weave::sim::DeviceRelaxer::on(*usable);
+        } catch (const weave::sim::DeviceError& error) {
+            std::fprintf(stderr, "gpu_bench: %s\n", error.what());
+            return 1;
+        }
     }
     bool failed = false;
     for (const Case& one : cases) {
@@ -120,10 +140,10 @@ int main(int count, char** words) {
         if (!is_asked) continue;
         report["cases"].push_back(measure(one, *relaxer, failed));
         print(report["cases"].back());
-    }
-    if (!wish->file.empty() && !(std::ofstream(wish->file) << report.dump(1) << '\n')) {
-        std::fprintf(stderr, "gpu_bench: %s cannot be written\n", wish->file.c_str());
-        return 5;
+        if (!write(report, wish->file)) { // after each: who is stopped has told what was measured by then
+            std::fprintf(stderr, "gpu_bench: %s cannot be written\n", wish->file.c_str());
+            return 5;
+        }
     }
     return failed ? 1 : 0;
 }

@@ -4,6 +4,7 @@
 
 #include <algorithm>
 #include <new>
+#include <stdexcept>
 #include <utility>
 
 namespace weave::sim {
@@ -28,8 +29,8 @@ const Device& roomiest(const Devices& found) {
     return *best;
 }
 
-bool has_room(const Device& device, std::size_t bytes) {
-    return static_cast<double>(bytes) <= share_of_memory * static_cast<double>(device.free_bytes);
+bool has_room(std::size_t free_bytes, std::size_t bytes) {
+    return static_cast<double>(bytes) <= share_of_memory * static_cast<double>(free_bytes);
 }
 
 /// Why a device cannot relax a cloth; empty where it can.
@@ -37,36 +38,29 @@ std::string why_not(const Device& device, const Fabric<double>& fabric) {
     if (fabric.scene().friction > 0) return "friction is computed on the processor";
     if (!device_can_relax(fabric.scene())) return "a crossing is led to its other side on the processor";
     const std::size_t wanted = device_bytes(fabric);
-    if (has_room(device, wanted)) return "";
+    if (has_room(device.free_bytes, wanted)) return "";
     return "it would take " + megabytes(wanted) + " of the device's memory, of which " + megabytes(device.free_bytes) + " are free";
 }
 
-/// What relaxes a cloth where the processor was not asked for; `device` becomes it where one does.
-BackendChoice choice_for(Backend wanted, const Devices& found, const Fabric<double>& fabric, Device& device) {
+/// What relaxes a cloth where the processor was not asked for; `device` becomes it where one does. `number`: of the device that is
+/// held already, or below 0.
+BackendChoice choice_for(Backend wanted, const Devices& found, const Fabric<double>& fabric, int number, Device& device) {
     if (!found.why_none.empty()) return {Backend::cpu, "", found.why_none};
-    device = roomiest(found);
+    const auto held = std::ranges::find(found.all, number, &Device::number);
+    device = held != found.all.end() ? *held : roomiest(found);
     if (std::string why = why_not(device, fabric); !why.empty()) return {Backend::cpu, "", std::move(why)};
     return {Backend::cuda, device.name, wanted == Backend::cuda ? "asked for" : "there is a device"};
 }
 
-/// How many of the cloths, from the first on, a device is expected to hold at once.
-std::size_t how_many_fit(const Device& device, std::span<const ClothToRelax> cloths) {
+/// How many of the cloths, from the first on, are expected to find room at once; one at least.
+std::size_t how_many_fit(std::size_t free_bytes, std::span<const ClothToRelax> cloths) {
     std::size_t bytes = 0, fit = 0;
     while (fit < cloths.size()) {
         bytes += device_bytes(cloths[fit].energy->fabric());
-        if (!has_room(device, bytes)) break;
+        if (!has_room(free_bytes, bytes)) break;
         ++fit;
     }
-    return fit;
-}
-
-void relax_in_groups(const Device& device, std::span<const ClothToRelax> cloths) {
-    const std::unique_ptr<DeviceRelaxer> relaxer = DeviceRelaxer::on(device);
-    while (!cloths.empty()) {
-        const std::size_t fit = std::max<std::size_t>(1, how_many_fit(device, cloths)); // each of them fits alone
-        relaxer->relax_each(cloths.first(fit));
-        cloths = cloths.subspan(fit);
-    }
+    return std::max<std::size_t>(1, fit);
 }
 
 }  // namespace
@@ -85,29 +79,46 @@ std::string_view name_of(Backend backend) {
 Result<BackendChoice> choose_backend(Backend wanted, const SimScene& scene) {
     if (wanted == Backend::cpu) return BackendChoice{Backend::cpu, "", "asked for"};
     Device device;
-    BackendChoice choice = choice_for(wanted, devices(), Fabric<double>(scene), device);
+    BackendChoice choice = choice_for(wanted, devices(), Fabric<double>(scene), -1, device);
     if (wanted == Backend::cuda && choice.backend != Backend::cuda) return Error{ErrorCode::system, std::move(choice.reason), {}};
     return choice;
 }
 
-bool relax_at_once(Backend wanted, std::span<const ClothToRelax> cloths) {
-    if (wanted == Backend::cpu || cloths.empty()) return false;
-    const Devices found = devices();
-    if (!found.why_none.empty()) return false;
-    const Device& device = roomiest(found);
+bool may_use_device(Backend wanted) {
+    return wanted != Backend::cpu && devices().why_none.empty();
+}
+
+std::vector<RelaxResult> relax_at_once(DeviceRelaxer& relaxer, std::size_t free_bytes, std::span<const ClothToRelax> cloths) {
     std::vector<std::vector<double>> before;
-    for (const ClothToRelax& cloth : cloths) {
-        if (!why_not(device, cloth.energy->fabric()).empty()) return false;
-        before.push_back(*cloth.state);
-    }
+    for (const ClothToRelax& cloth : cloths) before.push_back(*cloth.state);
+    std::vector<RelaxResult> results;
     try {
-        relax_in_groups(device, cloths);
-        return true;
+        for (std::span<const ClothToRelax> left = cloths; !left.empty();) {
+            const std::size_t fit = how_many_fit(free_bytes, left);
+            for (RelaxResult& result : relaxer.relax_each(left.first(fit))) results.push_back(std::move(result));
+            left = left.subspan(fit);
+        }
+        return results;
     } catch (const std::bad_alloc&) {  // less was free than was told, or more was needed than was foreseen
+    } catch (const std::length_error&) {
     } catch (const DeviceError&) {
     }
     for (std::size_t k = 0; k < cloths.size(); ++k) *cloths[k].state = std::move(before[k]);
-    return false;
+    return {};
+}
+
+std::vector<RelaxResult> relax_at_once(Backend wanted, std::span<const ClothToRelax> cloths) {
+    if (!may_use_device(wanted)) return {};
+    const Devices found = devices();
+    const Device& device = roomiest(found);
+    for (const ClothToRelax& cloth : cloths) {
+        if (!why_not(device, cloth.energy->fabric()).empty()) return {};
+    }
+    try {
+        return relax_at_once(*DeviceRelaxer::on(device), device.free_bytes, cloths);
+    } catch (const DeviceError&) {
+        return {};
+    }
 }
 
 Relaxer::Relaxer(Backend wanted) : m_wanted(wanted), m_settled(wanted == Backend::cpu ? "asked for" : "") {}
@@ -122,13 +133,16 @@ void Relaxer::choose(const Fabric<double>& fabric) {
     const Devices found = devices();
     m_settled = found.why_none;  // which does not change while the program runs
     Device device;
-    m_choice = choice_for(m_wanted, found, fabric, device);
-    if (m_choice.backend == Backend::cuda && !m_device) m_device = DeviceRelaxer::on(device);
+    m_choice = choice_for(m_wanted, found, fabric, m_number, device);
+    if (m_choice.backend != Backend::cuda || m_device) return;
+    m_device = DeviceRelaxer::on(device);
+    m_number = device.number;
 }
 
 /// All further work is the processor's.
 void Relaxer::give_up(std::string why) {
     m_device.reset();
+    m_number = -1;
     m_settled = std::move(why);
     m_choice = {Backend::cpu, "", m_settled};
 }
@@ -139,6 +153,8 @@ RelaxResult Relaxer::relax(Energy<double>& energy, std::vector<double>& state, c
         if (m_choice.backend == Backend::cuda) return m_device->relax(energy, state, options);
     } catch (const std::bad_alloc& error) {
         give_up(std::string("the device ran out of memory: ") + error.what());
+    } catch (const std::length_error& error) {
+        give_up(std::string("the device cannot hold it: ") + error.what());
     } catch (const DeviceError& error) {
         give_up(std::string("the device failed: ") + error.what());
     }

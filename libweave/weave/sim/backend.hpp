@@ -37,9 +37,15 @@ struct BackendChoice {
 /// Error: where a device was asked for and cannot be had.
 Result<BackendChoice> choose_backend(Backend wanted, const SimScene& scene);
 
-/// Relaxes cloths next to one another on a device, as many at once as its memory is expected to hold. False, with states as they were,
-/// where the processor is wanted or no device can: it has no gain from that, and relax() does as well.
-bool relax_at_once(Backend wanted, std::span<const ClothToRelax> cloths);
+/// Whether a device may relax at all: one is there, and not the processor was asked for.
+bool may_use_device(Backend wanted);
+
+/// Relaxes cloths on a device, small ones next to one another, as many at once as its memory is expected to hold. Nothing, with states as
+/// they were, where no device can or one fails: the processor has no gain from many at once.
+std::vector<RelaxResult> relax_at_once(Backend wanted, std::span<const ClothToRelax> cloths);
+
+/// The same with a device of so much free memory.
+std::vector<RelaxResult> relax_at_once(DeviceRelaxer& relaxer, std::size_t free_bytes, std::span<const ClothToRelax> cloths);
 
 /// Relaxes wherever was chosen, one cloth after the other. What a device fails at in the middle goes on, on the processor.
 class Relaxer {
@@ -63,6 +69,7 @@ class Relaxer {
     std::string m_settled;  ///< why the processor computes whatever comes; empty while a device may
     BackendChoice m_choice;
     std::unique_ptr<DeviceRelaxer> m_device;
+    int m_number = -1;  ///< of m_device
 };
 
 }  // namespace weave::sim

@@ -95,10 +95,11 @@ struct StartedCloth {
           energy(std::make_unique<Energy<double>>(*fabric, executor)), state(fabric->state()) {}
 };
 
-/// Lets all starts come to rest at once where a device can do so: whoever goes on from them finds them there. Says whether it did.
-bool come_to_rest_at_once(const Plan& plan, const SimulationOptions& options, std::vector<StartState>& starts) {
+/// Lets all starts come to rest at once where a device can do so: whoever goes on from them finds them there. What that took of each;
+/// nothing where the starts are as they were.
+std::vector<RelaxResult> come_to_rest_at_once(const Plan& plan, const SimulationOptions& options, std::vector<StartState>& starts) {
     const bool periods = plan.rim_force_N[0].has_value() || plan.rim_force_N[1].has_value();
-    if (options.solver != Solver::relax || periods) return false;
+    if (options.solver != Solver::relax || periods || !may_use_device(options.backend)) return {};
     const Executor executor(options.threads);
     std::vector<StartedCloth> all;
     std::vector<ClothToRelax> cloths;
@@ -112,9 +113,9 @@ bool come_to_rest_at_once(const Plan& plan, const SimulationOptions& options, st
         wanted.watch = options.watch;
         cloths.push_back({cloth.energy.get(), &cloth.state, std::move(wanted)});
     }
-    if (!relax_at_once(options.backend, cloths)) return false;
-    for (std::size_t k = 0; k < starts.size(); ++k) starts[k].control = all[k].fabric->control(all[k].state);
-    return true;
+    std::vector<RelaxResult> results = relax_at_once(options.backend, cloths);
+    for (std::size_t k = 0; k < results.size(); ++k) starts[k].control = all[k].fabric->control(all[k].state);
+    return results;
 }
 
 std::size_t how_many_are_not(const std::vector<Json>& runs, const char* name) {
@@ -153,12 +154,16 @@ Json relaxed_again(const Design& design, const Plan& plan, const SimulationOptio
     std::size_t elsewhere = 0;
     std::vector<StartState> starts;
     for (std::size_t k = 0; k < runs; ++k) starts.push_back(perturbed_start(plan, options.start, seed + k, options.threads));
-    const bool at_once = come_to_rest_at_once(plan, options, starts);
+    const std::vector<RelaxResult> at_once = come_to_rest_at_once(plan, options, starts);
     SimulationOptions again = options;
     again.flips.clear();
     again.coarser = nullptr;  // whose yarns would take the place of the start
-    for (StartState& start : starts) {
-        again.start = std::move(start);
+    for (std::size_t k = 0; k < starts.size(); ++k) {
+        again.start = std::move(starts[k]);
+        if (!at_once.empty()) {
+            again.most_iterations = options.most_iterations - std::min(options.most_iterations, at_once[k].iterations);
+            again.most_seconds = options.most_seconds - at_once[k].seconds;
+        }
         const Yarns yarns = simulate(design, plan, again);
         if (yarns.report.at("ending") == "stopped") break;
         const Deviation deviation = deviation_of(splines_of(yarns), own, may_drift);
@@ -175,7 +180,7 @@ Json relaxed_again(const Design& design, const Plan& plan, const SimulationOptio
               {"asked", runs},
               {"noise_radii", start_noise_radii},
               {"seed", seed},
-              {"at_once", at_once},
+              {"at_once", !at_once.empty()},
               {"elsewhere", elsewhere},
               {"not_at_rest", how_many_are_not(all, "converged")},
               {"order_lost", how_many_are_not(all, "order_kept")},

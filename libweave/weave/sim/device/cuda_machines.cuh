@@ -3,43 +3,12 @@
 // Machines (relax_on.hpp) whose crews are of a CUDA device.
 
 #include <weave/sim/device/launches.cuh>
+#include <weave/sim/device/with_numbers.hpp>
 
 #include <cstddef>
 #include <vector>
 
 namespace weave::sim {
-
-/// A kernel with numbers for its threads: each has its own, which begin alike; one of them writes its back.
-template <class Kernel, class Numbers>
-struct WithNumbers {
-    Kernel kernel;
-    View<Numbers> kept;  ///< one
-
-    struct Keep {
-        View<Numbers> kept;
-        Numbers own;
-        WEAVE_HD void operator()() const { kept[0] = own; }
-    };
-
-    template <class Crew>
-    WEAVE_HD void operator()(Crew& crew) const {
-        Numbers own = kept[0];
-        kernel(crew, own);
-        crew.alone(Keep{kept, own});
-    }
-};
-
-/// Many such, each with numbers of its own.
-template <class Kernel, class Numbers>
-struct EachWithNumbers {
-    View<const Kernel> kernels;
-    View<Numbers> kept;
-
-    template <class Crew>
-    WEAVE_HD void operator()(Crew& crew, std::size_t k) const {
-        WithNumbers<Kernel, Numbers>{kernels[k], kept.slice(k, 1)}(crew);
-    }
-};
 
 /// A gang that stays on the device for a whole leg: for cells too small to keep a device busy between two launches. It has as many
 /// blocks as its work asks for, up to all that fit there: the fewer, the sooner they have waited for one another.

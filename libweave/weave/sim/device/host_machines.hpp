@@ -5,6 +5,7 @@
 #include <weave/sim/device/cores.hpp>
 #include <weave/sim/device/emulated.hpp>
 #include <weave/sim/device/memory.hpp>
+#include <weave/sim/device/with_numbers.hpp>
 
 #include <cstddef>
 #include <vector>
@@ -42,23 +43,15 @@ class EmulatedMachine {
     Memory& memory() { return m_memory; }
     template <class Kernel, class Numbers>
     void run(const Kernel& kernel, Numbers& numbers, std::size_t = 0) {
-        const Numbers before = numbers;
-        emulate(m_blocks, m_threads, [&](Crew& crew) { run_with_own(crew, kernel, before, numbers); });
+        emulate(m_blocks, m_threads, WithNumbers<Kernel, Numbers>{kernel, {&numbers, 1}});
     }
     template <class Kernel, class Numbers>
     void run_each(const std::vector<Kernel>& kernels, std::vector<Numbers>& numbers) {
-        const std::vector<Numbers> before = numbers;
-        emulate_each(kernels.size(), m_threads, [&](BlockCrew& crew, std::size_t k) { run_with_own(crew, kernels[k], before[k], numbers[k]); });
+        const EachWithNumbers<Kernel, Numbers> each{{kernels.data(), kernels.size()}, {numbers.data(), numbers.size()}};
+        emulate_each(kernels.size(), m_threads, each);
     }
 
   private:
-    template <class AnyCrew, class Kernel, class Numbers>
-    static void run_with_own(AnyCrew& crew, const Kernel& kernel, const Numbers& before, Numbers& numbers) {
-        Numbers own = before;
-        kernel(crew, own);
-        crew.alone([&] { numbers = own; });
-    }
-
     std::size_t m_blocks, m_threads;
     HostMemory m_memory;
 };

@@ -24,7 +24,8 @@ class DeviceRelaxer {
     /// std::bad_alloc; the state is then one on the way.
     virtual RelaxResult relax(Energy<double>& energy, std::vector<double>& state, const RelaxOptions& options) = 0;
 
-    /// The same for cloths next to one another, each by a share of the device: for small ones. One that somebody stops stops alone.
+    /// The same for many cloths: small ones next to one another, each by a share of the device, else one after the other. One that
+    /// somebody stops stops alone. Whoever watches is told of all of them by turns.
     virtual std::vector<RelaxResult> relax_each(std::span<const ClothToRelax> cloths) = 0;
 };
 

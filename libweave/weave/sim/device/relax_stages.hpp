@@ -63,7 +63,7 @@ RelaxResult relax_in_stages(Machine& machine, Energy<double>& energy, std::vecto
     return joined(first, relax_on<double>(machine, energy, state, in_double(options, first)));
 }
 
-/// The same with relax_each_on().
+/// The same with relax_each_on(). Those that go on in double begin when all have ended in float.
 template <class Machine>
 std::vector<RelaxResult> relax_each_in_stages(Machine& machine, std::span<const ClothToRelax> cloths) {
     std::vector<ClothToRelax> rough(cloths.begin(), cloths.end()), fine;

@@ -13,7 +13,8 @@
 namespace weave::sim {
 
 /// A relaxation by a crew, seen from the processor: legs of some steps each, between which room is made, whoever watches is told, and time
-/// is looked at. Nothing of the cloth is copied but the state, at the end and where someone watches.
+/// is looked at. Nothing of the cloth is copied but its state: at the end, and for whoever watches after each leg, which is then as long as a
+/// picture lasts.
 template <class Real, class Crew>
 class RelaxingCloth {
   public:
@@ -42,7 +43,9 @@ class RelaxingCloth {
     void end_leg() {
         if (m_leg.lacks_room) m_arrays.grow(m_leg.cloth);
         if (m_leg.records > 0) look();
-        if (is_over()) m_state = m_arrays.state();
+        if (!is_over()) return;
+        m_state = m_arrays.state();
+        m_result.seconds = seconds();
     }
 
     /// Once it is over.
@@ -57,7 +60,6 @@ class RelaxingCloth {
         if (relaxing.is_looked_at) m_result.curves_down = relaxing.curves_down;
         m_result.evaluations = m_leg.cloth.evaluations;
         m_result.builds = m_leg.cloth.lists.builds;
-        m_result.seconds = seconds();
         return m_result;
     }
 
