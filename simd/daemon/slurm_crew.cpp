@@ -367,6 +367,8 @@ void SlurmCrew::apply(const Found& found, const std::optional<SlurmArrays::Look>
     if (entry.stopped && (Clock::now() - *entry.stopped > stop_patience || entry.gone >= looks_before_lost))
         return tell_end(found.job, {"", system_fault("what ran in Slurm did not put away its yarns"), true});
     if (!queue || entry.gone == 0) return;
+    const std::string state = entry.queued && !entry.queued->is_alive() ? entry.queued->state : std::string();
+    if (state == "CANCELLED") return tell_end(found.job, {"", Error{ErrorCode::refused, "was cancelled in Slurm", "job " + std::to_string(found.job)}, true});
     if (end) {
         if (end->is_the_nodes_fault) entry.avoided.insert(end->node);
         Error why = end->error.value_or(system_fault("it could not go on"));
@@ -374,8 +376,6 @@ void SlurmCrew::apply(const Found& found, const std::optional<SlurmArrays::Look>
         return tell_end(found.job, {"", why, false});
     }
     if (entry.gone < looks_before_lost) return;
-    const std::string state = entry.queued && !entry.queued->is_alive() ? entry.queued->state : std::string();
-    if (state == "CANCELLED") return tell_end(found.job, {"", Error{ErrorCode::refused, "was cancelled in Slurm", "job " + std::to_string(found.job)}, true});
     if (state == "OUT_OF_MEMORY") return tell_end(found.job, {"", system_fault("out of memory: it took more than Slurm gave it (slurm.memory_mib of simd's configuration)"), true});
     tell_end(found.job, {"", system_fault("it has left the queue of Slurm without a result" + (state.empty() ? "" : " (" + lower(state) + ")")), false});
 }

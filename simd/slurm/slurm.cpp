@@ -24,7 +24,8 @@ std::string last_line(std::string_view text) {
 /// What may be behind words of Slurm that do not say it.
 std::string hint(const std::string& told) {
     const auto has = [&](std::string_view word) { return told.find(word) != std::string::npos; };
-    if (has("uthentication") || has("unge") || has("ewound credential") || has("xpired credential"))
+    // slurmctld closes the connection of whom it does not believe, without a word.
+    if (has("Zero Bytes were transmitted") || has("uthentication") || has("unge"))
         return " (munged must run here with the cluster's key, and the clocks of this machine and of the cluster must be the same to some minutes)";
     if (has("nable to contact slurm controller") || has("onnection")) return " (slurmctld does not answer: jobs that run go on meanwhile)";
     return {};

@@ -9,6 +9,7 @@
 #include <csignal>
 #include <cstdio>
 #include <cstdlib>
+#include <fstream>
 #include <string>
 #include <support/temporary_folder.hpp>
 #include <vector>
@@ -73,6 +74,19 @@ class Cluster {
     [[nodiscard]] std::size_t queued(const std::string& part) const {
         std::size_t found = 0;
         for (const std::string& line : queue()) found += line.find(part) != std::string::npos ? 1 : 0;
+        return found;
+    }
+    /// The processes of `simd job` that are at work on its nodes, or elsewhere for its jobs.
+    [[nodiscard]] std::vector<pid_t> copies() const {
+        std::vector<pid_t> found;
+        const std::string arrays = (shared() / "arrays").string();
+        for (const auto& entry : std::filesystem::directory_iterator("/proc")) {
+            const std::string name = entry.path().filename().string();
+            if (name.find_first_not_of("0123456789") != std::string::npos) continue;
+            std::ifstream file(entry.path() / "cmdline");
+            const std::string words((std::istreambuf_iterator<char>(file)), {});
+            if (words.find("simd" + std::string(1, '\0') + "job" + '\0' + arrays) != std::string::npos) found.push_back(std::stoi(name));
+        }
         return found;
     }
     [[nodiscard]] std::string told() const {

@@ -173,7 +173,20 @@ TEST_CASE("while Slurm does not answer that is told, jobs that run end well, and
     CHECK(until([&] { return wire::download(box.place(), "/healthz", 1 << 20).operator bool(); }, 20s));
 }
 
-TEST_CASE("a node that is cut off loses its job to another, and what it finishes all the same is not counted twice") {
+TEST_CASE("a node that dies while its job goes on costs nothing") {
+    const std::string wanted = wanted_yarns();
+    const Cluster cluster;
+    const Box box(cluster.config());
+    wire::Follower follower = box.follower();
+    const std::uint64_t job = submit(follower, document_of(long_cloth), long_run());
+    const JobFolder folder = folder_of(cluster, job);
+    REQUIRE(has_attempt(folder, 1));
+    cluster.signal(folder.news(1)->node, SIGKILL);
+    CHECK(end_of(follower, job).phase == wire::JobPhase::done);
+    check_same_yarns(yarns_of(follower, job), wanted);
+}
+
+TEST_CASE("a node that is cut off from all others loses its job to another, and what it does when it is back is not counted") {
     const std::string wanted = wanted_yarns();
     const Cluster cluster;
     const Box box(cluster.config());
@@ -182,9 +195,22 @@ TEST_CASE("a node that is cut off loses its job to another, and what it finishes
     const JobFolder folder = folder_of(cluster, job);
     REQUIRE(has_attempt(folder, 1));
     const std::string node = folder.news(1)->node;
-    cluster.signal(node, SIGKILL);
-    CHECK(end_of(follower, job).phase == wire::JobPhase::done);
+    const std::vector<pid_t> copies = cluster.copies();
+    REQUIRE(copies.size() == 1);
+    const std::string workers = told_by("pgrep -P " + std::to_string(copies.front()));
+    REQUIRE_FALSE(workers.empty());
+    const std::vector<pid_t> cut{cluster.process(node), copies.front(), std::stoi(workers)};
+    for (const pid_t process : cut) REQUIRE(::kill(process, SIGSTOP) == 0);
+    REQUIRE(has_attempt(folder, 2));  // once Slurm has given the node up
+    CHECK(folder.news(2)->node != node);
+    const wire::JobEnded ended = end_of(follower, job);
+    CHECK(ended.phase == wire::JobPhase::done);
+    for (const pid_t process : cut) ::kill(process, SIGCONT);
+    CHECK(until([&] { return cluster.copies().empty(); }));
     check_same_yarns(yarns_of(follower, job), wanted);
+    wire::Follower another = box.follower();
+    CHECK(end_of(another, job).report == ended.report);
+    CHECK(until([&] { return std::filesystem::is_empty(cluster.shared() / "jobs"); }, 20s));
 }
 
 TEST_CASE("a disk that is full on one node is told with the node, and the job goes to another") {
@@ -194,8 +220,7 @@ TEST_CASE("a disk that is full on one node is told with the node, and the job go
     wire::Follower follower = box.follower();
     const rlimit full{8192, RLIM_INFINITY};
     REQUIRE(::prlimit(cluster.process("n1"), RLIMIT_FSIZE, &full, nullptr) == 0);
-    const std::uint64_t first = submit(follower, document_of("layer-to-layer"), at(sim::Fidelity::standard)),
-                        second = submit(follower, document_of("layer-to-layer"), at(sim::Fidelity::standard));
+    const std::uint64_t first = submit(follower, document_of(long_cloth), long_run()), second = submit(follower, document_of(long_cloth), long_run());
     for (const std::uint64_t job : {first, second}) {
         wire::Follower another = box.follower();
         CHECK(end_of(another, job).phase == wire::JobPhase::done);
@@ -211,7 +236,7 @@ TEST_CASE("a clock that is an hour ahead keeps jobs from being handed over, whic
     const std::string here = (cluster.folder() / "here").string();
     std::filesystem::create_directories(here);
     told_by("cp '" + cluster.folder().string() + "/munge.key' '" + here + "/munge.key'; WEAVE_CLOCK_AHEAD_S=3600 LD_PRELOAD=" WEAVE_JUMPING_CLOCK " munged --force --socket=" + here +
-            "/socket --key-file=" + here + "/munge.key --pid-file=" + here + "/pid --log-file=" + here + "/log --seed-file=" + here + "/seed");
+            "/socket --key-file=" + here + "/munge.key --pid-file=" + cluster.folder().string() + "/munged-ahead.pid --log-file=" + here + "/log --seed-file=" + here + "/seed");
     auto conf = read_file(cluster.folder() / "slurm.conf").value();
     const std::string socket = "socket=" + cluster.folder().string() + "/munge.socket";
     conf.replace(conf.find(socket), socket.size(), "socket=" + here + "/socket");
@@ -226,7 +251,6 @@ TEST_CASE("a clock that is an hour ahead keeps jobs from being handed over, whic
     CHECK(until([&] { return box.told().find("the clocks of this machine and of the cluster must be the same") != std::string::npos; }, 30s));
     INFO(box.told());
     CHECK(box.stop() == 0);
-    told_by("kill $(cat '" + here + "/pid')");
     box.start();  // with the clock of the cluster
     CHECK(end_of(follower, job).phase == wire::JobPhase::done);
 }
