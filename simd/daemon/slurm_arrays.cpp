@@ -38,6 +38,7 @@ Status SlurmArrays::take_up() {
         }
         if (!array.jobs.empty()) m_arrays[submission.number] = std::move(array);
     }
+    clear_away();
     return {};
 }
 
@@ -67,8 +68,17 @@ void SlurmArrays::drop(std::uint64_t job) {
     array->second.jobs.erase(at);
     if (!array->second.jobs.empty()) return;
     m_arrays.erase(array);  // what of it is in the queue is nobody's
-    std::error_code ignored;
-    std::filesystem::remove(m_rules.shared.array(number), ignored);
+    clear_away();
+}
+
+/// Files of arrays that are no more, and what their jobs told.
+void SlurmArrays::clear_away() const {
+    std::error_code code;
+    for (const auto& entry : std::filesystem::directory_iterator(m_rules.shared.arrays(), code)) {
+        const std::string name = entry.path().filename().string();
+        const auto number = parse_whole(name.substr(0, name.find_first_of("-.")));
+        if (number && *number > 0 && !m_arrays.contains(static_cast<std::uint64_t>(*number))) std::filesystem::remove(entry.path(), code);
+    }
 }
 
 std::optional<std::uint64_t> SlurmArrays::array_named(const std::string& name) const {
@@ -146,6 +156,7 @@ void SlurmArrays::submit(std::uint64_t number, Array& array) {
     m_refusal = made ? Status() : Status(made.error());
     if (made) return name(number, array, *made);
     array.refused = Clock::now();
+    array.avoided.clear();  // there may be no other node
     log(LogLevel::warning, counted(array.jobs.size(), "job") + " not taken by Slurm, tried again in " + std::to_string(until_another_try.count()) + " s: " + made.error().text());
 }
 

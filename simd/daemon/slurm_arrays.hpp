@@ -62,6 +62,7 @@ class SlurmArrays {
     [[nodiscard]] std::optional<std::uint64_t> array_named(const std::string& name) const;
     void sort_in(const QueuedJob& line, std::uint64_t array, Look& look, std::vector<std::string>& unwanted);
     void submit(std::uint64_t number, Array& array);
+    void clear_away() const;
     void let_go_on(const QueuedJob& job);
     void try_to(Status status);
     void name(std::uint64_t number, Array& array, std::uint64_t slurm_id);

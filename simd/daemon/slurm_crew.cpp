@@ -204,8 +204,9 @@ void SlurmCrew::hand_in() {
             if (entry.task != nullptr && !entry.is_in_array) groups[{entry.person, entry.avoided}].push_back(job);
         }
     }
-    Status all;
+    Status all = has_room();
     for (const auto& [group, jobs] : groups) {
+        if (!all) break;
         Status given = hand_in(group.first, group.second, jobs);
         if (!given) all = std::move(given);
     }
@@ -213,6 +214,16 @@ void SlurmCrew::hand_in() {
     note(m_disk_trouble, std::move(all));
     const std::lock_guard lock(m_lock);
     if (!is_well) m_not_before = Clock::now() + until_another_try;
+}
+
+/// A job that finds no room for its result there computes in vain.
+Status SlurmCrew::has_room() const {
+    constexpr std::uintmax_t least = 64U << 20U;
+    std::error_code code;
+    const auto space = std::filesystem::space(m_shared.path, code);
+    if (code) return system_fault("the folder that nodes share cannot be reached: " + code.message(), m_shared.path.string());
+    if (space.available < least) return system_fault("there is hardly any room left in the folder that nodes share", m_shared.path.string());
+    return {};
 }
 
 Status SlurmCrew::hand_in(const std::string& person, const std::set<std::string>& avoided, const std::vector<std::uint64_t>& jobs) {

@@ -99,6 +99,7 @@ class SlurmCrew {
     Status take_folder();
     void hand_in();
     Status hand_in(const std::string& person, const std::set<std::string>& avoided, const std::vector<std::uint64_t>& jobs);
+    [[nodiscard]] Status has_room() const;
     Status give(std::uint64_t job);
     void look();
     Status look_at_folder(Found& found);

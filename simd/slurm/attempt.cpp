@@ -54,7 +54,7 @@ Attempt::Node Attempt::node_of_environment() {
     node.name = word_of_environment("SLURMD_NODENAME");
     node.gpus = word_of_environment("SLURM_JOB_GPUS");
     node.cpus = number_of_environment("SLURM_CPUS_PER_TASK", 1);
-    node.memory_bytes = number_of_environment("SLURM_MEM_PER_NODE", 0) * mib;
+    node.memory_bytes = number_of_environment("SLURM_MEM_PER_NODE", number_of_environment("SLURM_MEM_PER_CPU", 0) * node.cpus) * mib;
     return node;
 }
 

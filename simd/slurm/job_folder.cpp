@@ -17,13 +17,13 @@ namespace weave::simd {
 
 namespace {
 
-constexpr std::uint64_t most_bytes = std::uint64_t{128} << 20;
+constexpr std::uint64_t most_order_bytes = std::uint64_t{128} << 20, most_told_bytes = std::uint64_t{2} << 20;
 const std::vector<std::string> outcome_names{"done", "again", "never"};
 constexpr std::int64_t most_number = (std::int64_t{1} << 53) - 1;
 
 /// What `make` makes of a JSON file; what it throws of members that are not as they should be is an error of the file.
 template <class Make>
-auto read_json(const std::filesystem::path& file, Make make) -> decltype(make(std::declval<const Json&>())) {
+auto read_json(const std::filesystem::path& file, std::uint64_t most_bytes, Make make) -> decltype(make(std::declval<const Json&>())) {
     WEAVE_TRY(const std::string text, read_file(file, most_bytes));
     auto json = parse_json(text);
     if (!json) return std::move(json).error().in(file.string());
@@ -68,7 +68,11 @@ Result<AttemptEnd> end_from(const Json& json) {
     end.is_the_nodes_fault = reader.boolean("is_the_nodes_fault");
     end.step = static_cast<std::uint64_t>(reader.integer("step", 0, most_number));
     const Json& error = reader.raw("error");
-    if (!error.is_null()) end.error = error_from(error);
+    if (!error.is_null()) {
+        end.error = error_from(error);
+        end.error->message = on_one_line(end.error->message);
+        end.error->where = on_one_line(end.error->where);
+    }
     end.report = reader.raw("report");
     if (!end.report.is_object()) reader.fail("must be an object", "report");
     WEAVE_CHECK_OK(reader.status());
@@ -103,7 +107,7 @@ Status JobFolder::give(const WorkOrder& order) const {
 }
 
 Result<WorkOrder> JobFolder::order() const {
-    return read_json(m_path / "order.json", [](const Json& json) { return work_order_from(json); });
+    return read_json(m_path / "order.json", most_order_bytes, [](const Json& json) { return work_order_from(json); });
 }
 
 bool JobFolder::is_gone() const {
@@ -160,7 +164,7 @@ void JobFolder::tell(std::uint64_t attempt, const AttemptNews& news) const {
 std::optional<AttemptNews> JobFolder::news(std::uint64_t attempt) const {
     const std::filesystem::path file = this->attempt(attempt) / "news.json";
     if (!is_there(file)) return {};
-    auto news = read_json(file, news_from);
+    auto news = read_json(file, most_told_bytes, news_from);
     return news ? std::optional(std::move(*news)) : std::nullopt;
 }
 
@@ -176,7 +180,7 @@ void JobFolder::refuse(std::uint64_t attempt) const {
 Result<std::optional<AttemptEnd>> JobFolder::end_of(std::uint64_t attempt) const {
     const std::filesystem::path file = this->attempt(attempt) / "end.json";
     if (!is_there(file)) return std::optional<AttemptEnd>();
-    WEAVE_TRY(AttemptEnd end, read_json(file, end_from));
+    WEAVE_TRY(AttemptEnd end, read_json(file, most_told_bytes, end_from));
     return std::optional(std::move(end));
 }
 
@@ -188,7 +192,7 @@ Status write_array(const std::filesystem::path& file, const std::vector<std::pai
 }
 
 Result<std::uint64_t> job_at(const std::filesystem::path& file, std::uint64_t place) {
-    return read_json(file, [&](const Json& json) -> Result<std::uint64_t> {
+    return read_json(file, most_told_bytes, [&](const Json& json) -> Result<std::uint64_t> {
         for (const Json& entry : json.at("jobs")) {
             if (entry.at("place") == place) return entry.at("job").get<std::uint64_t>();
         }

@@ -167,7 +167,11 @@ Status sweep(CommandOutcome& outcome, wire::Follower& server, const Cloth& cloth
         SimulateWish one = wish;
         one.set.insert(one.set.end(), run.begin(), run.end());
         auto task = understand(cloth, one);
-        if (!task) return std::move(task).error().in(wish.file);
+        if (!task) {
+            Error error = std::move(task).error();
+            if (error.where.starts_with("--set ") && std::ranges::find(wish.set, error.where.substr(6)) == wish.set.end()) error.where.replace(0, 5, "--sweep");
+            return std::move(error).in(wish.file);
+        }
         tasks.push_back(std::move(*task));
     }
     WEAVE_TRY(const sim::Plan plan, plan_of(tasks.front().design, *cloth.evaluation.block, tasks.front().request, wish.file));

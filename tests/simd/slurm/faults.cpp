@@ -229,6 +229,36 @@ TEST_CASE("a disk that is full on one node is told with the node, and the job go
     CHECK(cluster.queued("|n2|") >= 2);
 }
 
+TEST_CASE("while the folder that nodes share is full nothing is handed over, which is told; with room again jobs go on") {
+    const Cluster cluster;
+    std::filesystem::create_directories(cluster.shared());
+    struct Mounted {
+        std::string at;
+        bool is_mounted;
+        explicit Mounted(const std::string& path) : at(path), is_mounted(told_by("mount -t tmpfs -o size=80m simd '" + at + "' && echo done") == "done\n") {}
+        ~Mounted() {
+            if (is_mounted) told_by("umount -l '" + at + "'");
+        }
+        Mounted(const Mounted&) = delete;
+        Mounted& operator=(const Mounted&) = delete;
+    } const mounted(cluster.shared().string());
+    if (!mounted.is_mounted) {
+        WARN("SKIPPED: no file system can be mounted here");
+        return;
+    }
+    const Box box(cluster.config());
+    wire::Follower follower = box.follower();
+    REQUIRE(write_file(cluster.shared() / "filler", std::string(std::size_t{40} << 20, 'x')));
+    const std::uint64_t job = submit(follower, document_of("plain"), at(sim::Fidelity::draft));
+    REQUIRE(until([&] { return box.told().find("there is hardly any room left in the folder that nodes share") != std::string::npos; }));
+    const auto list = wire::answer_of<wire::JobList>(follower.ask(wire::ListJobs{wire::new_request_id()}, 10s));
+    REQUIRE((list && list->jobs.size() == 1));
+    CHECK_THAT(list->jobs[0].batch.value_or(""), Catch::Contains("being handed over; there is hardly any room left"));
+    CHECK(cluster.queue().empty());
+    std::filesystem::remove(cluster.shared() / "filler");
+    CHECK(end_of(follower, job).phase == wire::JobPhase::done);
+}
+
 TEST_CASE("a clock that is an hour ahead keeps jobs from being handed over, which is told with the cause; put right, they go on") {
     if (is_sanitized) return;  // a sanitizer's own library must be the first one
     const Cluster cluster;

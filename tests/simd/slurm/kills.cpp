@@ -6,9 +6,11 @@
 
 #include <weave/core/sha256.hpp>
 
+#include <algorithm>
 #include <fstream>
 #include <map>
 #include <random>
+#include <set>
 
 using namespace weave;
 using namespace weave::simd::testing;
@@ -116,4 +118,53 @@ TEST_CASE("12 jobs, while copies, nodes, the controller and the daemon are kille
 
 TEST_CASE("the same with 50 jobs and up to 100 kills", "[.][long]") {
     kill_under(50, 700ms, 100, 1800s);
+}
+
+namespace {
+
+/// A sweep as people ask for one, on a plain weave; until all of its jobs have ended well.
+void sweep(std::size_t runs) {
+    const Cluster cluster;
+    Json config = cluster.config();
+    config["slurm"].erase("gres");  // which would let one run on each node at a time
+    const Box box(config);
+    REQUIRE(write_file(cluster.folder() / "plain.weave", document_of("plain")));
+    std::string values;
+    for (std::size_t k = 0; k < runs; ++k) values += (k == 0 ? "" : ",") + std::to_string(1 + 0.0001 * static_cast<double>(k));
+    const auto begin = std::chrono::steady_clock::now();
+    weave::testing::Program weave("weave",
+                                  {"simulate", (cluster.folder() / "plain.weave").string(), "--fidelity", "draft", "--sweep", "warp.strain=" + values, "--on",
+                                   "unix:" + (box.folder() / "simd.sock").string()},
+                                  (cluster.folder() / "weave.told").string());
+    const std::string told = weave.rest();
+    REQUIRE(weave.exit_code() == 0);
+    CHECK(static_cast<std::size_t>(std::ranges::count(told, '\n')) == runs);
+    const double handed_over = std::chrono::duration<double>(std::chrono::steady_clock::now() - begin).count();
+    wire::Follower follower = box.follower();
+    std::set<std::uint64_t> ended;
+    while (ended.size() < runs && std::chrono::steady_clock::now() - begin < 1200s) {
+        const auto received = follower.receive(200ms);
+        REQUIRE(received);
+        const auto* message = *received ? std::get_if<wire::ServerMessage>(&**received) : nullptr;
+        const auto* end = message == nullptr ? nullptr : std::get_if<wire::JobEnded>(message);
+        if (end == nullptr) continue;
+        REQUIRE(end->phase == wire::JobPhase::done);
+        CHECK(ended.insert(end->job).second);
+    }
+    REQUIRE(ended.size() == runs);
+    std::set<std::string> arrays;
+    for (const std::string& line : cluster.queue()) arrays.insert(line.substr(0, line.find('|')));
+    CHECK(arrays.size() <= 1 + runs / 20);
+    std::printf("%zu jobs of a sweep, handed over in %.1f s in %zu arrays, done after %.1f s\n", runs, handed_over, arrays.size(),
+                std::chrono::duration<double>(std::chrono::steady_clock::now() - begin).count());
+}
+
+}  // namespace
+
+TEST_CASE("a sweep of 12 runs goes to Slurm as an array") {
+    sweep(12);
+}
+
+TEST_CASE("a sweep of 300 runs", "[.][long]") {
+    sweep(300);
 }
