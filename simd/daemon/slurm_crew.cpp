@@ -68,7 +68,7 @@ Status SlurmCrew::take_up() {
     return {};
 }
 
-/// Two daemons with one folder would take each other's jobs for their own.
+/// Two daemons with one folder would take each other's jobs for their own; and whoever can write there can forge results.
 Status SlurmCrew::take_folder() {
     WEAVE_TRY(const std::string id, m_store.cluster_id());
     for (const std::filesystem::path& folder : {m_shared.jobs(), m_shared.arrays()}) {
@@ -77,6 +77,9 @@ Status SlurmCrew::take_folder() {
         if (code) return system_fault("cannot be made: " + code.message(), folder.string());
     }
     std::error_code code;
+    constexpr std::filesystem::perms others = std::filesystem::perms::group_write | std::filesystem::perms::others_write;
+    if ((std::filesystem::status(m_shared.path, code).permissions() & others) != std::filesystem::perms::none)
+        return Error{ErrorCode::refused, "can be written by others than its owner, who could forge results", m_shared.path.string()};
     if (std::filesystem::exists(m_shared.owner(), code)) {
         WEAVE_TRY(const std::string owner, read_file(m_shared.owner(), 100));
         if (owner != id + "\n") return Error{ErrorCode::refused, "holds jobs of another simd: each needs a folder of its own", m_shared.path.string()};

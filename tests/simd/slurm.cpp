@@ -9,6 +9,7 @@
 #include <atomic>
 #include <set>
 #include <simd/commands/config.hpp>
+#include <simd/daemon/slurm_crew.hpp>
 #include <simd/slurm/job_folder.hpp>
 #include <simd/slurm/process.hpp>
 #include <simd/slurm/slurm.hpp>
@@ -213,6 +214,42 @@ TEST_CASE("the store knows of each job in which array it is and which attempt co
     REQUIRE(store->forget_job(3));
     CHECK(store->submissions().value().at(0).jobs.size() == 1);
     CHECK(opened(folder / "other.db")->cluster_id().value() != id);
+}
+
+TEST_CASE("a shared folder is one daemon's, and nobody else can write there") {
+    const Folder folder;
+    const auto store = opened(folder / "s.db"), other = opened(folder / "other.db");
+    std::mutex lock;
+    SlurmCrew::Rules rules;
+    rules.shared = folder / "shared";
+    CHECK(SlurmCrew(lock, *store, rules).take_up());
+    CHECK(SlurmCrew(lock, *store, rules).take_up());
+    const Status refused = SlurmCrew(lock, *other, rules).take_up();
+    REQUIRE_FALSE(refused);
+    CHECK((refused.error().code == ErrorCode::refused && refused.error().message == "holds jobs of another simd: each needs a folder of its own"));
+    std::filesystem::permissions(rules.shared, std::filesystem::perms::group_write, std::filesystem::perm_options::add);
+    const Status open_to_others = SlurmCrew(lock, *store, rules).take_up();
+    REQUIRE_FALSE(open_to_others);
+    CHECK_THAT(open_to_others.error().message, Catch::Contains("can be written by others"));
+    std::filesystem::permissions(rules.shared, std::filesystem::perms::group_write, std::filesystem::perm_options::remove);
+    REQUIRE(write_file(rules.shared / "file", "x"));
+    rules.shared = rules.shared / "file";
+    CHECK_FALSE(SlurmCrew(lock, *store, rules).take_up());
+}
+
+TEST_CASE("folders of jobs that nobody knows any more go away at the start, those of others stay") {
+    const Folder folder;
+    const auto store = opened(folder / "s.db");
+    const Number job = a_job(*store, "request-1");
+    std::mutex lock;
+    SlurmCrew::Rules rules;
+    rules.shared = folder / "shared";
+    const SharedFolder shared{rules.shared};
+    REQUIRE(shared.job(job).give(an_order()));
+    REQUIRE(shared.job(99).give(an_order()));
+    CHECK(SlurmCrew(lock, *store, rules).take_up());
+    CHECK_FALSE(shared.job(job).is_gone());
+    CHECK(shared.job(99).is_gone());
 }
 
 TEST_CASE("how jobs go to Slurm is configured, and what no word of a site is is refused at its place") {

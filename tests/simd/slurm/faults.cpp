@@ -235,7 +235,7 @@ TEST_CASE("while the folder that nodes share is full nothing is handed over, whi
     struct Mounted {
         std::string at;
         bool is_mounted;
-        explicit Mounted(const std::string& path) : at(path), is_mounted(told_by("mount -t tmpfs -o size=80m simd '" + at + "' && echo done") == "done\n") {}
+        explicit Mounted(const std::string& path) : at(path), is_mounted(told_by("mount -t tmpfs -o size=80m,mode=700 simd '" + at + "' && echo done") == "done\n") {}
         ~Mounted() {
             if (is_mounted) told_by("umount -l '" + at + "'");
         }
