@@ -440,7 +440,7 @@ TEST_CASE("sessions are listed, and closed for good") {
     mill.shop.refused({"sessions"}, 2, {"--on HOST"});
 }
 
-TEST_CASE("a sweep hands over a job for each combination of its numbers, and each can be fetched") {
+TEST_CASE("a sweep hands over a job for each combination of its numbers and each can be fetched") {
     Mill mill;
     const std::vector<std::string> words = mill.on({"simulate", "d.weave", "--fidelity", "draft", "--set", "weft.strain=1.01", "--sweep", "warp.strain=1.01,1.02", "--sweep", "friction=0,0.1,0.2"});
     CHECK(mill.shop.must(words).out ==

@@ -39,7 +39,7 @@ Number a_job(Store& store, const std::string& request) {
 
 }  // namespace
 
-TEST_CASE("lines of the queue are read, and those of other forms passed over") {
+TEST_CASE("lines of the queue are read and those of other forms passed over") {
     const auto jobs = parse_queue("4711|3|simd-ab-1|RUNNING|n1|None\n4711|4|simd-ab-1|PENDING||Resources|and|more\n"
                                   "4712|N/A|other|RUNNING|n2|None\n|||||\nnonsense\n-1|2|x|RUNNING|n|r\n99999999999999999999|1|x|R|n|r\n12|1|last|COMPLETED|n1|None");
     REQUIRE(jobs.size() == 3);
@@ -53,7 +53,7 @@ TEST_CASE("lines of the queue are read, and those of other forms passed over") {
     }
 }
 
-TEST_CASE("places of an array are written in ranges, and its number is read") {
+TEST_CASE("places of an array are written in ranges and its number is read") {
     CHECK(ranges_text({0}) == "0");
     CHECK(ranges_text({0, 1, 2, 5, 7, 8}) == "0-2,5,7-8");
     CHECK(parse_submitted("4711\n") == 4711U);
@@ -62,7 +62,7 @@ TEST_CASE("places of an array are written in ranges, and its number is read") {
     CHECK_FALSE(parse_submitted(""));
 }
 
-TEST_CASE("a command gets its words as they are, and no more of the environment than it needs") {
+TEST_CASE("a command gets its words as they are and no more of the environment than it needs") {
     ::setenv("SIMD_TEST_SECRET", "secret", 1);
     const auto printed = run_command({"printf", "%s", "$(id); `id` \"'"}, std::chrono::seconds(10), goes_on);
     REQUIRE(printed);
@@ -76,7 +76,7 @@ TEST_CASE("a command gets its words as they are, and no more of the environment 
     CHECK((failed->status != 0 && failed->told.find("there is no such file") != std::string::npos));
 }
 
-TEST_CASE("a command that is missing, does not end in time, or is given up is an error and leaves no process behind") {
+TEST_CASE("a command that is missing or too slow or given up is an error and leaves no process behind") {
     const auto missing = run_command({"there-is-no-such-program"}, std::chrono::seconds(10), goes_on);
     REQUIRE_FALSE(missing);
     CHECK(missing.error().text() == "there-is-no-such-program: cannot be started: No such file or directory");
@@ -92,7 +92,7 @@ TEST_CASE("a command that is missing, does not end in time, or is given up is an
     later.join();
 }
 
-TEST_CASE("attempts at a job have a number of their own each, however many begin at once") {
+TEST_CASE("attempts at a job have a number of their own each however many begin at once") {
     const weave::testing::TemporaryFolder shared;
     const JobFolder folder = SharedFolder{shared.path}.job(7);
     CHECK(folder.is_gone());
@@ -118,7 +118,7 @@ TEST_CASE("attempts at a job have a number of their own each, however many begin
     CHECK((*numbers.begin() == 1 && *numbers.rbegin() == 200 && folder.newest_attempt().value() == 200));
 }
 
-TEST_CASE("an order, its stop, news and ends come back as they were written; an order stays as it was first") {
+TEST_CASE("an order and its stop and news and ends come back as they were written") {
     const weave::testing::TemporaryFolder shared;
     const JobFolder folder = SharedFolder{shared.path}.job(7);
     REQUIRE(folder.give(an_order()));
@@ -154,7 +154,7 @@ TEST_CASE("an order, its stop, news and ends come back as they were written; an 
     CHECK_FALSE(folder.end_of(1).value());
 }
 
-TEST_CASE("files in the shared folder that nobody of us wrote are errors with their names, and no more") {
+TEST_CASE("files in the shared folder that nobody of us wrote are errors with their names and no more") {
     const weave::testing::TemporaryFolder shared;
     const JobFolder folder = SharedFolder{shared.path}.job(7);
     REQUIRE(folder.give(an_order()));
@@ -182,7 +182,7 @@ TEST_CASE("files in the shared folder that nobody of us wrote are errors with th
     CHECK_THAT(job_at(shared.path / "array.json", 1).error().message, Catch::Contains("no job at place 1"));
 }
 
-TEST_CASE("the store knows of each job in which array it is and which attempt counts, and of the others that they are stale") {
+TEST_CASE("the store knows of each job in which array it is and which attempt counts and refuses stale ones") {
     const Folder folder;
     std::string id;
     {
@@ -216,7 +216,7 @@ TEST_CASE("the store knows of each job in which array it is and which attempt co
     CHECK(opened(folder / "other.db")->cluster_id().value() != id);
 }
 
-TEST_CASE("a shared folder is one daemon's, and nobody else can write there") {
+TEST_CASE("a shared folder is one daemon's and nobody else can write there") {
     const Folder folder;
     const auto store = opened(folder / "s.db"), other = opened(folder / "other.db");
     std::mutex lock;
@@ -237,7 +237,7 @@ TEST_CASE("a shared folder is one daemon's, and nobody else can write there") {
     CHECK_FALSE(SlurmCrew(lock, *store, rules).take_up());
 }
 
-TEST_CASE("folders of jobs that nobody knows any more go away at the start, those of others stay") {
+TEST_CASE("folders of jobs that nobody knows any more go away at the start and those of others stay") {
     const Folder folder;
     const auto store = opened(folder / "s.db");
     const Number job = a_job(*store, "request-1");
@@ -252,7 +252,7 @@ TEST_CASE("folders of jobs that nobody knows any more go away at the start, thos
     CHECK(shared.job(99).is_gone());
 }
 
-TEST_CASE("how jobs go to Slurm is configured, and what no word of a site is is refused at its place") {
+TEST_CASE("how jobs go to Slurm is configured and what is no word of a site is refused at its place") {
     const auto config = parse_config(R"({"slurm":{"folder":"shared","program":"/opt/simd","partition":"gpu","account":"cloth","qos":"night","gres":"gpu:a100:1","cpus":4,)"
                                      R"("memory_mib":4096,"minutes":600,"jobs_at_once":50,"watch_seconds":2,"checkpoint_seconds":60}})",
                                      "/etc");

@@ -48,7 +48,7 @@ std::set<std::string> arrays(const Cluster& cluster) {
 
 }  // namespace
 
-TEST_CASE("jobs run in Slurm as they do on this machine, each on a GPU of its own, and leave nothing behind") {
+TEST_CASE("jobs run in Slurm as they do on this machine with a GPU of their own each and leave nothing behind") {
     std::string wanted;
     {
         const Box here;
@@ -82,7 +82,7 @@ TEST_CASE("jobs run in Slurm as they do on this machine, each on a GPU of its ow
     CHECK(std::filesystem::is_empty(box.folder() / "jobs"));
 }
 
-TEST_CASE("what a design does not allow, and what needs more memory than Slurm gives, fails with the reason and is not tried again") {
+TEST_CASE("what a design does not allow or needs more memory than Slurm gives fails with the reason and is not tried again") {
     const Cluster cluster;
     const Box box(cluster.config(Json{{"memory_mib", 100}}));
     wire::Follower follower = box.follower();
@@ -102,7 +102,7 @@ TEST_CASE("what a design does not allow, and what needs more memory than Slurm g
     CHECK(arrays(cluster).size() == 1);
 }
 
-TEST_CASE("a job that waits in Slurm is cancelled at once, one that runs keeps its yarns as they lay, and Slurm is rid of both") {
+TEST_CASE("a job that waits in Slurm is cancelled at once and one that runs keeps its yarns as they lay and Slurm is rid of both") {
     const Cluster cluster;
     const Box box(cluster.config());
     wire::Follower follower = box.follower();
@@ -129,7 +129,7 @@ TEST_CASE("a job that waits in Slurm is cancelled at once, one that runs keeps i
     CHECK_THAT(outside.error->message, Catch::Contains("was cancelled in Slurm"));
 }
 
-TEST_CASE("a daemon that is killed finds its jobs in Slurm again, hands none over twice, and gets what ended meanwhile") {
+TEST_CASE("a daemon that is killed finds its jobs in Slurm again and hands none over twice and gets what ended meanwhile") {
     const Cluster cluster;
     Box box(cluster.config());
     wire::Follower follower = box.follower();
@@ -150,7 +150,7 @@ TEST_CASE("a daemon that is killed finds its jobs in Slurm again, hands none ove
     CHECK(end_of(follower, slow).report.at("ending") == "stopped");
 }
 
-TEST_CASE("a daemon that dies while Slurm takes its jobs finds them by their name, and does not hand them over again") {
+TEST_CASE("a daemon that dies while Slurm takes its jobs finds them by their name and does not hand them over again") {
     const Cluster cluster;
     // Slurm has them, and the daemon never hears of it.
     const std::filesystem::path folder = cluster.folder() / "bin";
@@ -170,7 +170,7 @@ TEST_CASE("a daemon that dies while Slurm takes its jobs finds them by their nam
     CHECK(arrays(cluster).size() == 1);
 }
 
-TEST_CASE("names and titles reach no shell, and the site sees whose a job is") {
+TEST_CASE("names and titles reach no shell and the site sees whose a job is") {
     const Cluster cluster;
     const Box box(cluster.config());
     wire::Follower follower = box.follower();

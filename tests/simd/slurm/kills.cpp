@@ -112,11 +112,11 @@ void kill_under(std::size_t count, std::chrono::milliseconds between, std::size_
 
 }  // namespace
 
-TEST_CASE("12 jobs, while copies, nodes, the controller and the daemon are killed: each ends once, with one result") {
+TEST_CASE("12 jobs end once with one result each while copies and nodes and the controller and the daemon are killed") {
     kill_under(12, 1000ms, 10, 170s);
 }
 
-TEST_CASE("the same with 50 jobs and up to 100 kills", "[.][long]") {
+TEST_CASE("the same with 50 jobs and 100 kills", "[.][long]") {
     kill_under(50, 700ms, 100, 1800s);
 }
 
