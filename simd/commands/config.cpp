@@ -4,6 +4,7 @@
 #include <weave/sim/backend.hpp>
 
 #include <algorithm>
+#include <cctype>
 #include <simd/daemon/room.hpp>
 #include <thread>
 #include <unistd.h>
@@ -27,6 +28,37 @@ std::vector<PublicKey> keys_of(JsonReader& reader) {
 
 std::size_t count_of(JsonReader& reader, const char* key, std::int64_t low, std::int64_t high, std::size_t usual) {
     return static_cast<std::size_t>(reader.integer(key, low, high, static_cast<std::int64_t>(usual)));
+}
+
+/// A word of a site's, as sbatch takes it.
+std::string slurm_word(JsonReader& reader, const char* key) {
+    constexpr std::size_t longest = 100;
+    std::string word = reader.text(key, std::string(), longest);
+    const bool fits = std::ranges::all_of(word, [](unsigned char c) { return std::isalnum(c) != 0 || std::string_view("_-.,:=+/@").find(static_cast<char>(c)) != std::string_view::npos; });
+    if (!fits || word.starts_with('-')) reader.fail("must be a word of letters, digits and _ . , : = + / @ -", key);
+    return word;
+}
+
+std::optional<SlurmConfig> slurm_of(JsonReader& reader, const std::filesystem::path& folder) {
+    constexpr std::int64_t day = 24 * 3600, most_minutes = 366 * 24 * 60, most_mib = std::int64_t{1} << 30;
+    if (!reader.has("slurm")) return {};
+    JsonReader inner = reader.object("slurm");
+    SlurmConfig config;
+    config.folder = path_member(inner, "folder", folder);
+    if (config.folder.empty()) inner.fail("name a folder that this machine and all nodes see", "folder");
+    config.program = path_member(inner, "program", folder);
+    config.wishes.partition = slurm_word(inner, "partition");
+    config.wishes.account = slurm_word(inner, "account");
+    config.wishes.qos = slurm_word(inner, "qos");
+    config.wishes.gres = slurm_word(inner, "gres");
+    config.wishes.cpus = count_of(inner, "cpus", 1, 1024, config.wishes.cpus);
+    config.wishes.memory_mib = count_of(inner, "memory_mib", 0, most_mib, 0);
+    config.wishes.minutes = count_of(inner, "minutes", 0, most_minutes, 0);
+    config.jobs_at_once = count_of(inner, "jobs_at_once", 1, 1000, config.jobs_at_once);
+    config.watch_seconds = inner.integer("watch_seconds", 1, day, config.watch_seconds);
+    config.checkpoint_seconds = inner.integer("checkpoint_seconds", 1, day, config.checkpoint_seconds);
+    inner.no_others();
+    return config;
 }
 
 /// A device that is asked for must be there.
@@ -57,6 +89,7 @@ Result<ServeConfig> parse_config(std::string_view text, const std::filesystem::p
     config.stall_seconds = reader.integer("stall_seconds", 1, week, config.stall_seconds);
     config.site = reader.text("site", std::string(), 200);
     config.access_keys = keys_of(reader);
+    config.slurm = slurm_of(reader, folder);
     config.evidence_key = path_member(reader, "evidence_key", folder);
     reader.no_others();
     WEAVE_CHECK_OK(reader.status());

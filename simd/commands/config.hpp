@@ -6,11 +6,23 @@
 
 #include <cstdint>
 #include <filesystem>
+#include <optional>
+#include <simd/slurm/slurm.hpp>
 #include <string>
 #include <string_view>
 #include <vector>
 
 namespace weave::simd {
+
+/// `slurm`: that jobs go to Slurm, and how.
+struct SlurmConfig {
+    std::filesystem::path folder;      ///< `folder` that this machine and all nodes see under this name
+    std::filesystem::path program;     ///< `program`: simd as nodes have it; none: as it lies here
+    SlurmWishes wishes;                ///< `partition`, `account`, `qos`, `gres`, `cpus`, `memory_mib`, `minutes` of a job
+    std::size_t jobs_at_once = 1000;   ///< `jobs_at_once` that Slurm has, at most 1000
+    std::int64_t watch_seconds = 5;    ///< `watch_seconds` from one look at its queue to the next
+    std::int64_t checkpoint_seconds = 120;  ///< `checkpoint_seconds` from one checkpoint to the next, as long as legs end
+};
 
 /// How simd serves. An empty `address`: on the Unix socket alone.
 struct ServeConfig : ServiceConfig {
@@ -30,6 +42,7 @@ struct ServeConfig : ServiceConfig {
     std::int64_t stall_seconds = 300;    ///< `stall_seconds`: a worker that does not answer for so long is ended
     std::string site;                    ///< `site`: name of the loomlink whose tokens count
     std::vector<PublicKey> access_keys;  ///< `access_keys`: its public keys for tokens, in hexadecimal
+    std::optional<SlurmConfig> slurm;    ///< `slurm`; none: jobs are done on this machine
     std::filesystem::path evidence_key;  ///< `evidence_key`: file of `loomlink signer enrol`; none: nothing is signed
 };
 

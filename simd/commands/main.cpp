@@ -1,6 +1,9 @@
 // The program `simd`: the simulation daemon, and what its owner does with it.
 
+#include <weave/command/serving.hpp>
+
 #include <simd/commands/command.hpp>
+#include <simd/slurm/attempt.hpp>
 #include <simd/worker/work.hpp>
 #include <string>
 #include <string_view>
@@ -9,6 +12,10 @@
 int main(int count, char** words) {
     constexpr int link = 3;  // where the daemon that starts it has put it
     if (count == 2 && std::string_view(words[1]) == "worker") return weave::simd::work_for_daemon(link);
+    if (count == 3 && std::string_view(words[1]) == "job") {  // Slurm starts it so, on a node
+        weave::log_to_stderr();
+        return weave::simd::run_job_of_array(words[2]);
+    }
     // `simd --config F` and `simd --check-config …` mean `serve`: other programs start it so.
     std::vector<char*> all(words, words + count);
     std::string serve = "serve";

@@ -7,10 +7,12 @@
 #include <weave/net/server.hpp>
 #include <weave/wire/evidence.hpp>
 
+#include <atomic>
 #include <chrono>
 #include <optional>
 #include <simd/daemon/daemon.hpp>
 #include <simd/service/routes.hpp>
+#include <simd/slurm/process.hpp>
 #include <simd/store/store.hpp>
 #include <sys/stat.h>
 #include <unistd.h>
@@ -66,6 +68,33 @@ Result<std::function<std::optional<std::string>(const Json&)>> signing(const Ser
     });
 }
 
+/// Nodes are told of places as they are from anywhere.
+SlurmCrew::Rules slurm_rules(const SlurmConfig& config, const DaemonFolder& folder, const std::string& backend, const std::filesystem::path& program) {
+    SlurmCrew::Rules rules;
+    rules.wishes = config.wishes;
+    rules.shared = std::filesystem::absolute(config.folder).lexically_normal();
+    rules.program = std::filesystem::absolute(config.program.empty() ? program : config.program).lexically_normal();
+    rules.home = folder.path / "jobs";
+    rules.backend = backend;
+    rules.watch = std::chrono::seconds(config.watch_seconds);
+    rules.checkpoint = std::chrono::seconds(config.checkpoint_seconds);
+    rules.jobs_at_once = config.jobs_at_once;
+    return rules;
+}
+
+/// Whether jobs could be handed to Slurm from here; whether it answers just now is another matter.
+Status check_slurm(const SlurmConfig& config) {
+    const std::atomic<bool> goes_on{false};
+    for (const char* program : {"sbatch", "squeue", "scancel", "scontrol"}) {
+        constexpr std::chrono::seconds patience{10};
+        auto there = run_command({program, "--version"}, patience, goes_on);
+        if (!there) return std::move(there).error().in("slurm");
+    }
+    std::error_code code;
+    if (std::filesystem::exists(config.folder, code) && !std::filesystem::is_directory(config.folder, code)) return bad_input("is no folder: " + config.folder.string(), "slurm.folder");
+    return {};
+}
+
 DaemonSettings settings_of(const DaemonFolder& folder, const ServeConfig& config, const std::filesystem::path& program) {
     DaemonSettings settings;
     settings.folder = folder.path;
@@ -79,6 +108,7 @@ DaemonSettings settings_of(const DaemonFolder& folder, const ServeConfig& config
     settings.jobs_at_once = config.jobs_at_once;
     settings.jobs_per_person = config.jobs_per_person;
     settings.expire = std::chrono::seconds(config.expire_seconds);
+    if (config.slurm) settings.slurm = slurm_rules(*config.slurm, folder, config.backend, program);
     return settings;
 }
 
@@ -87,6 +117,7 @@ DaemonSettings settings_of(const DaemonFolder& folder, const ServeConfig& config
 Status check_places(const DaemonFolder& folder, const ServeConfig& config) {
     WEAVE_CHECK_OK(check_service_places(config));
     WEAVE_CHECK_OK(check_unix_socket(socket_of(folder, config), config.unix_socket.empty()));
+    if (config.slurm) WEAVE_CHECK_OK(check_slurm(*config.slurm));
     if (config.evidence_key.empty()) return {};
     auto signer = load_signer(config.evidence_key);
     return signer ? Status() : Status(std::move(signer).error().in("evidence_key"));

@@ -11,7 +11,7 @@
 #include <simd/daemon/room.hpp>
 #include <simd/daemon/task.hpp>
 #include <simd/daemon/turns.hpp>
-#include <simd/daemon/worker_process.hpp>
+#include <simd/link/worker_process.hpp>
 #include <string>
 #include <vector>
 

@@ -23,7 +23,12 @@ Daemon::Daemon(std::unique_ptr<Store> store, const DaemonSettings& settings)
 
 Result<std::unique_ptr<Daemon>> Daemon::start(std::unique_ptr<Store> store, const DaemonSettings& settings) {
     std::unique_ptr<Daemon> daemon(new Daemon(std::move(store), settings));
+    if (settings.slurm) {
+        daemon->m_slurm = std::make_unique<SlurmCrew>(daemon->m_lock, *daemon->m_store, *settings.slurm);
+        WEAVE_CHECK_OK(daemon->m_slurm->take_up());
+    }
     WEAVE_CHECK_OK(daemon->take_up());
+    if (daemon->m_slurm) daemon->m_slurm->work();
     daemon->m_thread = std::thread([&floor = *daemon] { floor.work(); });
     daemon->m_writer = std::thread([&floor = *daemon] { floor.write_events(); });
     return daemon;
@@ -59,7 +64,10 @@ Status Daemon::take_up() {
         m_sessions.back()->take_up();
     }
     WEAVE_TRY(const std::vector<KeptJob> jobs, m_store->jobs());
-    for (const KeptJob& kept : jobs) m_jobs.push_back(std::make_unique<Job>(around_job(), kept));
+    for (const KeptJob& kept : jobs) {
+        m_jobs.push_back(std::make_unique<Job>(around_job(), kept));
+        m_jobs.back()->take_up();
+    }
     return {};
 }
 
@@ -84,7 +92,7 @@ std::optional<double> Daemon::expected_wait_s() const {
 }
 
 Job::Surroundings Daemon::around_job() {
-    return {*m_store, m_crew, m_settings.folder / "jobs", m_settings.sign, [this](const Job& job) { job_ended(job); }};
+    return {*m_store, m_crew, m_slurm.get(), m_settings.folder / "jobs", m_settings.sign, [this](const Job& job) { job_ended(job); }};
 }
 
 // ---- Its own thread ----
@@ -187,6 +195,7 @@ void Daemon::count() {
     metrics.gauge("simd_sessions", "Sessions that have not ended").set(static_cast<double>(running));
     metrics.gauge("simd_jobs_at_work", "Jobs that have a worker").set(static_cast<double>(computing));
     metrics.gauge("simd_jobs_waiting", "Jobs in the queue").set(static_cast<double>(queue().size()));
+    if (m_slurm) metrics.gauge("simd_jobs_in_slurm", "Jobs that Slurm has").set(static_cast<double>(m_slurm->size()));
     metrics.gauge("simd_workers", "Worker processes").set(static_cast<double>(m_crew.size()));
     metrics.gauge("simd_memory_promised_bytes", "Memory that workers were promised").set(static_cast<double>(m_crew.room().taken()));
     metrics.gauge("simd_memory_bytes", "Memory for all workers together").set(static_cast<double>(m_crew.room().whole()));
@@ -213,6 +222,7 @@ std::vector<Job*> Daemon::queue() {
 
 void Daemon::begin_jobs() {
     constexpr std::chrono::minutes let_pass{10};
+    if (m_slurm) return hand_over_jobs();
     auto at_work = static_cast<std::size_t>(std::ranges::count_if(m_jobs, [](const auto& job) { return job->is_at_work() && !job->is_over(); }));
     if (at_work >= m_settings.jobs_at_once) return;
     for (Job* const job : queue()) {
@@ -222,6 +232,16 @@ void Daemon::begin_jobs() {
         }
         job->begin();
         if (++at_work >= m_settings.jobs_at_once) return;
+    }
+}
+
+/// Slurm has a queue of its own.
+void Daemon::hand_over_jobs() {
+    std::size_t room = m_slurm->room();
+    if (room == 0) return;
+    for (Job* const job : queue()) {
+        job->begin();
+        if (--room == 0) return;
     }
 }
 
@@ -366,14 +386,18 @@ Json Daemon::status(bool with_names) {
 }
 
 std::vector<net::HealthCheck> Daemon::health() {
-    return {{"store", [this] { return m_store->last_write(); }},
+    std::vector<net::HealthCheck> checks;
+    if (m_slurm) checks.push_back({"slurm", [this] { return m_slurm->trouble(); }});
+    checks.insert(checks.end(),
+           {{"store", [this] { return m_store->last_write(); }},
             {"disk", [this]() -> Status {
                  constexpr std::uintmax_t least = 64U << 20U;
                  std::error_code code;
                  const auto space = std::filesystem::space(m_settings.folder, code);
                  if (code || space.available < least) return system_fault("there is hardly any room left on the disk", m_settings.folder.string());
                  return {};
-             }}};
+             }}});
+    return checks;
 }
 
 void Daemon::stop(std::chrono::milliseconds patience) {

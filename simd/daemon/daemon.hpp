@@ -30,6 +30,7 @@ namespace weave::simd {
 struct DaemonSettings {
     std::filesystem::path folder;  ///< where sessions and jobs have their files
     Crew::Rules crew;
+    std::optional<SlurmCrew::Rules> slurm;  ///< jobs go to Slurm; none: this machine does them
     std::size_t most_sessions = 64, sessions_per_person = 16;
     std::size_t jobs_at_once = 2, jobs_per_person = 1000;
     std::chrono::seconds expire{24 * 3600};  ///< a session to which nobody is attached for so long is ended
@@ -81,6 +82,7 @@ class Daemon {
     void forget_what_is_over();
     void send_away(Clock::time_point now);
     void begin_jobs();
+    void hand_over_jobs();
     void count();
     void job_ended(const Job& job);
     /// Until a job ends or a session that was left alone does, as far as that can be foreseen.
@@ -118,6 +120,7 @@ class Daemon {
     std::mutex m_lock;
     std::unique_ptr<Store> m_store;
     Crew m_crew;
+    std::unique_ptr<SlurmCrew> m_slurm;  ///< null: none
     std::vector<std::unique_ptr<Session>> m_sessions;
     std::vector<std::unique_ptr<Job>> m_jobs;
     std::set<ClientPtr> m_clients;

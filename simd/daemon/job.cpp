@@ -31,6 +31,7 @@ Job::Job(Surroundings around, KeptJob kept) : m_around(std::move(around)), m_kep
 
 Job::~Job() {
     if (m_worker) m_around.crew.dismiss(*m_worker);
+    if (m_around.slurm != nullptr) m_around.slurm->part(*this);
 }
 
 wire::JobState Job::state() const {
@@ -42,6 +43,7 @@ wire::JobState Job::state() const {
     if (m_step > 0) state.residual = m_residual;
     if (m_phase == wire::JobPhase::running) state.lost_crossings = m_lost;
     state.left_s = left_s();
+    if (m_is_in_slurm && !is_over()) state.batch = m_around.slurm->place_of(number());
     return state;
 }
 
@@ -77,6 +79,7 @@ Json Job::status(bool with_names) const {
     if (!with_names) return told;
     told["person"] = person();
     told["title"] = m_kept.title;
+    if (now.batch) told["batch"] = *now.batch;
     if (m_worker) {
         if (const auto process = m_around.crew.process(*m_worker)) told["worker"] = *process;
     }
@@ -85,7 +88,15 @@ Json Job::status(bool with_names) const {
 
 // ---- Its work ----
 
+void Job::take_up() {
+    m_is_in_slurm = !is_over() && m_around.slurm != nullptr && m_around.slurm->resume(*this, number(), person());
+}
+
 void Job::begin() {
+    if (m_around.slurm != nullptr) {
+        m_is_in_slurm = true;
+        return m_around.slurm->hand_over(*this, number(), person());
+    }
     auto task = m_around.store.task_of_job(number());
     if (!task) return;
     m_task = std::move(*task);
@@ -127,13 +138,17 @@ void Job::planned(const Json& plan) {
         m_phase = wire::JobPhase::waiting;
         return;
     }
+    begun();
+    if (m_is_cancelled) m_around.crew.ask_to_end(*m_worker, true);
+}
+
+void Job::begun() {
     m_phase = wire::JobPhase::running;
     m_began = Clock::now();
     m_pace.reset();
     m_rate = {};
     const Status started = m_around.store.start_job(number());
     if (!started) log(LogLevel::warning, "job " + std::to_string(number()) + ": " + started.error().text());
-    if (m_is_cancelled) m_around.crew.ask_to_end(*m_worker, true);
 }
 
 void Job::said(const std::string& what, const Json& message) {
@@ -150,8 +165,12 @@ void Job::said(const std::string& what, const Json& message) {
         m_around.store.job_progress(number(), m_step, m_residual);
     } else if (what == "checkpoint") {
         log(LogLevel::warning, "job " + std::to_string(number()) + ": " + error_from(message.at("error")).text());
+    } else if (what == "begun") {  // by a worker of Slurm, which needs no room here
+        m_points = message.at("points");
+        begun();
     } else if (what == "done") {
         m_is_done = true;
+        m_is_cancelled = message.value("was_stopped", m_is_cancelled);  // before this daemon was started, maybe
         m_step = message.at("step");
         const Json& residual = message.at("report").at("residual");
         if (residual.is_number()) m_residual = residual.get<double>();
@@ -163,7 +182,8 @@ void Job::said(const std::string& what, const Json& message) {
 void Job::cancel() {
     if (is_over()) return;
     m_is_cancelled = true;
-    if (m_phase == wire::JobPhase::running && m_worker) m_around.crew.ask_to_end(*m_worker, true);
+    if (m_phase == wire::JobPhase::running && m_is_in_slurm) m_around.slurm->stop(number());
+    else if (m_phase == wire::JobPhase::running && m_worker) m_around.crew.ask_to_end(*m_worker, true);
     else end(wire::JobPhase::cancelled, {}, Json::object(), {});
 }
 
@@ -175,6 +195,7 @@ void Job::put_away() {
 
 void Job::ended(const WorkerEnd& end) {
     m_worker.reset();
+    m_is_in_slurm = false;
     if (is_over() || m_is_put_away) return;
     const Error why = end.failure.value_or(system_fault("the worker " + end.how));
     log(LogLevel::warning, "job " + std::to_string(number()) + ": " + why.text());
@@ -195,6 +216,8 @@ void Job::ended(const WorkerEnd& end) {
 
 void Job::end(wire::JobPhase phase, std::optional<Error> error, Json report, std::string yarns) {
     if (m_worker && !m_is_done) m_around.crew.dismiss(*std::exchange(m_worker, {}));
+    m_is_in_slurm = false;
+    if (m_around.slurm != nullptr) m_around.slurm->leave(number());
     m_phase = phase;
     m_error = std::move(error);
     m_report = std::move(report);

@@ -9,6 +9,7 @@
 #include <functional>
 #include <optional>
 #include <simd/daemon/crew.hpp>
+#include <simd/daemon/slurm_crew.hpp>
 #include <simd/daemon/step_rate.hpp>
 #include <simd/daemon/task.hpp>
 #include <simd/store/store.hpp>
@@ -24,6 +25,7 @@ class Job final : public Task {
     struct Surroundings {
         Store& store;
         Crew& crew;
+        SlurmCrew* slurm;              ///< null: the crew of this machine does it
         std::filesystem::path folder;  ///< of this job
         /// The signed evidence document for a report and the hash of its yarns; nothing where this machine signs none.
         std::function<std::optional<std::string>(const Json& report)> sign;
@@ -38,9 +40,9 @@ class Job final : public Task {
     [[nodiscard]] const std::string& person() const { return m_kept.person; }
     [[nodiscard]] wire::JobPhase phase() const { return m_phase; }
     [[nodiscard]] bool is_over() const { return m_phase >= wire::JobPhase::done; }
-    /// Has a worker, or waits for one of the crew.
-    [[nodiscard]] bool is_at_work() const { return m_worker.has_value(); }
-    [[nodiscard]] bool waits() const { return !is_over() && !m_worker && !m_is_put_away; }
+    /// Has a worker, or waits for one of the crew, or is Slurm's business.
+    [[nodiscard]] bool is_at_work() const { return m_worker || m_is_in_slurm; }
+    [[nodiscard]] bool waits() const { return !is_over() && !is_at_work() && !m_is_put_away; }
     /// Memory that it will take, where that is known already.
     [[nodiscard]] std::uint64_t expected() const { return m_points > 0 ? expected_bytes(m_points) : 0; }
     /// Since it came, or since the daemon was started.
@@ -53,6 +55,8 @@ class Job final : public Task {
     [[nodiscard]] const std::optional<std::string>& evidence() const { return m_end.evidence; }
     [[nodiscard]] Json status(bool with_names) const;
 
+    /// Goes on where Slurm has it since an earlier life of the daemon.
+    void take_up();
     /// Has it put to work; nothing where the store cannot be read just now.
     void begin();
     void cancel();
@@ -68,6 +72,7 @@ class Job final : public Task {
     void ended(const WorkerEnd& end) override;
 
   private:
+    void begun();
     void end(wire::JobPhase phase, std::optional<Error> error, Json report, std::string yarns);
     void save_end();
 
@@ -85,6 +90,7 @@ class Job final : public Task {
     StepRate m_rate;
     std::optional<sim::Pace> m_pace;
     Clock::time_point m_began{}, m_came = Clock::now();
+    bool m_is_in_slurm = false;
     bool m_is_cancelled = false, m_is_ended_again = false, m_is_put_away = false, m_is_done = false, m_is_saved = false;
     Json m_report = Json::object();
     std::optional<Error> m_error;

@@ -71,6 +71,7 @@ Json to_json(const WorkOrder& order) {
             {"folder", order.folder},
             {"backend", order.backend},
             {"planning_bytes", order.planning_bytes},
+            {"checkpoint_s", order.checkpoint_s},
             {"takes_up", order.takes_up},
             {"changes", std::move(changes)},
             {"runs", order.runs},
@@ -91,6 +92,7 @@ Result<WorkOrder> work_order_from(const Json& json) {
     order.folder = json.at("folder");
     order.backend = json.at("backend");
     order.planning_bytes = json.at("planning_bytes");
+    order.checkpoint_s = json.at("checkpoint_s");
     order.takes_up = json.at("takes_up");
     for (const Json& change : json.at("changes")) {
         WEAVE_TRY(JournaledChange journaled, journaled_change_from(change));

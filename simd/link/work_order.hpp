@@ -30,6 +30,7 @@ struct WorkOrder {
     std::string folder;               ///< where its checkpoint lies, and where results go
     std::string backend = "auto";     ///< what computes, by sim::parse_backend
     std::uint64_t planning_bytes = 0; ///< memory that it may take until it is admitted; 0: any
+    std::uint64_t checkpoint_s = 3;   ///< seconds from one checkpoint to the next, as long as legs end
     bool takes_up = false;            ///< goes on from the checkpoint in the folder, if there is one
     std::vector<JournaledChange> changes;  ///< of a session, all that its journal has
     bool runs = false;                     ///< a session that is not paused

@@ -3,6 +3,7 @@
 #include <cstdint>
 #include <optional>
 #include <string>
+#include <vector>
 
 namespace weave::simd {
 
@@ -111,6 +112,22 @@ struct KeptJob {
     Number step = 0;
     std::optional<double> residual;
     std::optional<JobEnd> end;  ///< there once it has ended
+};
+
+/// A job that Slurm has.
+struct SubmittedJob {
+    Number job = 0;
+    Number place = 0;    ///< in its array, from 0
+    Number attempt = 0;  ///< the newest that has begun; 0: none yet
+    bool operator==(const SubmittedJob&) const = default;
+};
+
+/// An array of jobs as Slurm has it.
+struct KeptSubmission {
+    Number number = 0;
+    std::optional<Number> slurm_id;  ///< none: Slurm has not told it yet
+    std::vector<SubmittedJob> jobs;  ///< those that were not given to a later one
+    bool operator==(const KeptSubmission&) const = default;
 };
 
 /// The answer to a request that made something.

@@ -95,6 +95,21 @@ class Store {
     Status forget_job(Number job);
     /// @}
 
+    /// @name Jobs that Slurm has
+    /// @{
+    /// By what this store is known in the queue of a cluster: 16 hexadecimal digits.
+    Result<std::string> cluster_id();
+    /// Makes a submission of jobs that have not ended, at places 0, 1, 2 … of its array, in place of an earlier one that had
+    /// any of them.
+    Result<Number> add_submission(const std::vector<Number>& jobs);
+    /// Slurm has told the number of its array.
+    Status name_submission(Number submission, Number slurm_id);
+    /// Those that have jobs, in the order of their numbers.
+    Result<std::vector<KeptSubmission>> submissions();
+    /// Lets this attempt at a job count from now on, and none before it. Refused: a later one counts already.
+    Status note_attempt(Number job, Number attempt);
+    /// @}
+
     /// How the last call that wrote ended, for who watches over the machine.
     Status last_write();
 

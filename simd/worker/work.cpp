@@ -19,8 +19,7 @@ namespace weave::simd {
 
 namespace {
 
-/// How often a checkpoint is written, at least, as long as legs end; and how often progress is told.
-constexpr std::chrono::seconds between_checkpoints{3};
+/// How often progress is told.
 constexpr std::chrono::milliseconds between_tellings{200};
 /// On a machine that is busy a leg may last long. It ends then before its steps are made, with a checkpoint, so that none gets too
 /// old; the run is another one from there on than on an idle machine, by as much as a leg's end changes it. Time for which it was
@@ -159,7 +158,7 @@ void Work::keep_state() {
 
 void Work::save_if_due(bool now) {
     if (m_saved && m_saved_step == m_kept.step && m_saved_changes == m_kept.changes) return;
-    if (!now && Clock::now() - m_last_saved < between_checkpoints) return;
+    if (!now && Clock::now() - m_last_saved < std::chrono::seconds(m_order.checkpoint_s)) return;
     save({{"say", "checkpoint"}});
 }
 

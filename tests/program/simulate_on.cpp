@@ -440,6 +440,44 @@ TEST_CASE("sessions are listed, and closed for good") {
     mill.shop.refused({"sessions"}, 2, {"--on HOST"});
 }
 
+TEST_CASE("a sweep hands over a job for each combination of its numbers and each can be fetched") {
+    Mill mill;
+    const std::vector<std::string> words = mill.on({"simulate", "d.weave", "--fidelity", "draft", "--set", "weft.strain=1.01", "--sweep", "warp.strain=1.01,1.02", "--sweep", "friction=0,0.1,0.2"});
+    CHECK(mill.shop.must(words).out ==
+          "1  warp.strain=1.01 friction=0\n2  warp.strain=1.01 friction=0.1\n3  warp.strain=1.01 friction=0.2\n"
+          "4  warp.strain=1.02 friction=0\n5  warp.strain=1.02 friction=0.1\n6  warp.strain=1.02 friction=0.2\n");
+    CHECK(mill.simd.look([](ScriptedSimd& s) { return s.count_of<wire::Submit>(); }) == 6);
+    CHECK(mill.settled().empty());
+    mill.shop.must({"simulate", "d.weave", "--fidelity", "draft", "--set", "weft.strain=1.01", "--set", "warp.strain=1.02", "--set", "friction=0.1", "-o", "here.yarns"});
+    mill.shop.must(mill.on({"jobs", "fetch", "5", "-o", "there.yarns"}));
+    const Yarns here = read_yarns(mill.shop.get("here.yarns")).value(), there = read_yarns(mill.shop.get("there.yarns")).value();
+    CHECK(here.scene_sha256 == there.scene_sha256);
+    CHECK(here.design_sha256 == there.design_sha256);
+    const Json told = mill.shop.json(mill.on({"simulate", "d.weave", "--sweep", "warp.radius=1,1.1"}));
+    CHECK((told.at("server") == mill.simd.place().name && told.at("jobs").size() == 2));
+    CHECK((told.at("jobs").at(1).at("job") == 8 && told.at("jobs").at(1).at("set") == Json::array({"warp.radius=1.1"})));
+}
+
+TEST_CASE("a sweep that makes no sense is refused before any job is handed over") {
+    Mill mill;
+    const auto sweep = [&](std::vector<std::string> more) {
+        more.insert(more.begin(), {"simulate", "d.weave"});
+        return mill.on(std::move(more));
+    };
+    mill.shop.refused({"simulate", "d.weave", "--sweep", "friction=0,1"}, 2, {"--on"});
+    mill.shop.refused(sweep({"--sweep", "friction=0,1", "-o", "d.yarns"}), 2, {"--sweep friction=0,1", "weave jobs fetch"});
+    mill.shop.refused(sweep({"--sweep", "friction=0,1", "--explain"}), 2, {"--sweep"});
+    for (const char* word : {"friction", "friction=", "=1", "friction=0,,1", "friction=0,0", "friction=0,"})
+        mill.shop.refused(sweep({"--sweep", word}), 2, {std::string("--sweep ") + word, "NAME=N,N"});
+    mill.shop.refused(sweep({"--sweep", "friction=0,a"}), 2, {"--sweep friction=a"});
+    mill.shop.refused(sweep({"--sweep", "speed=1,2"}), 2, {"--sweep speed=1"});
+    mill.shop.refused(sweep({"--sweep", "friction=0,1", "--sweep", "friction=2"}), 2, {"--sweep friction=2", "given before"});
+    std::string many = "warp.strain=1";
+    for (int k = 1; k <= 40; ++k) many += ",1.0" + std::to_string(10 + k);
+    mill.shop.refused(sweep({"--sweep", many, "--sweep", "weft" + many.substr(4)}), 2, {"more than 1000 runs"});
+    CHECK(mill.simd.look([](ScriptedSimd& s) { return s.count_of<wire::Submit>(); }) == 0);
+}
+
 TEST_CASE("jobs are listed, fetched and cancelled") {
     Mill mill;
     mill.simd.holds_jobs = true;

@@ -2,6 +2,7 @@
 
 #include "box.hpp"
 #include "results.hpp"
+#include "submitted.hpp"
 
 #include <weave/core/sha256.hpp>
 #include <weave/keys/server_key.hpp>
@@ -11,39 +12,6 @@
 
 using namespace weave;
 using namespace weave::simd::testing;
-
-namespace {
-
-std::uint64_t submit(wire::Follower& follower, const std::string& document, const wire::Simulation& simulation, std::vector<Flip> flips = {}) {
-    const auto accepted = wire::answer_of<wire::Accepted>(follower.ask(wire::Submit{wire::new_request_id(), document, simulation, std::move(flips)}, 60s));
-    INFO((accepted ? "" : accepted.error().text()));
-    REQUIRE(accepted);
-    return accepted->job.value();
-}
-
-/// Until this job has ended.
-wire::JobEnded end_of(wire::Follower& follower, std::uint64_t job) {
-    const auto late = std::chrono::steady_clock::now() + 180s;
-    while (std::chrono::steady_clock::now() < late) {
-        const auto received = follower.receive(200ms);
-        INFO((received ? "" : received.error().text()));
-        REQUIRE(received);
-        const auto* message = *received ? std::get_if<wire::ServerMessage>(&**received) : nullptr;
-        if (message == nullptr) continue;
-        if (const auto* ended = std::get_if<wire::JobEnded>(message); ended != nullptr && ended->job == job) return *ended;
-    }
-    FAIL("the job did not end");
-    return {};
-}
-
-std::string yarns_of(wire::Follower& follower, std::uint64_t job) {
-    const auto bytes = follower.download(wire::job_yarns(job), std::uint64_t{1} << 30);
-    INFO((bytes ? "" : bytes.error().text()));
-    REQUIRE(bytes);
-    return *bytes;
-}
-
-}  // namespace
 
 TEST_CASE("a job runs to its end, hands out its yarns, and is told of until it is acknowledged") {
     const Box box;

@@ -312,9 +312,9 @@ class ScriptedSimd {
         if (!all && newest && newest->head.number > frame) put(line, wire::encode_frame(*newest).value(), true);
     }
     wire::JobState state_of(std::uint64_t number, const Job& job) const {
-        if (job.end) return {number, job.end->phase, "cloth", 20, {}, {}, {}, {}, {}};
-        if (holds_queue) return {number, wire::JobPhase::waiting, "cloth", 0, {}, {}, {}, 3, 240};
-        return {number, wire::JobPhase::running, "cloth", 20, 0.5, {}, 12, {}, {}};
+        if (job.end) return {number, job.end->phase, "cloth", 20, {}, {}, {}, {}, {}, {}};
+        if (holds_queue) return {number, wire::JobPhase::waiting, "cloth", 0, {}, {}, {}, 3, 240, {}};
+        return {number, wire::JobPhase::running, "cloth", 20, 0.5, {}, 12, {}, {}, {}};
     }
     void finish(std::uint64_t number, Job& job, wire::JobPhase phase = wire::JobPhase::done) {
         job.result = work(job.submit);

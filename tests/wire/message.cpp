@@ -141,6 +141,7 @@ TEST_CASE("a server's answers mean what the protocol says") {
     }
     const JobState waiting = server<JobList>("jobs").jobs.at(1);
     CHECK((waiting.phase == JobPhase::waiting && waiting.place == 2U && waiting.wait_s == 240.0 && !waiting.left_s));
+    CHECK((!waiting.batch && server<JobProgress>("job", 1).state.batch == "Slurm 4711_3: running on n1, GPU 0"));
     const SessionSummary session = server<SessionList>("sessions").sessions.at(0);
     CHECK((session.session == 7 && session.title == "shoe" && session.phase == Phase::running && session.step == 1200));
     CHECK((session.residual == 0.015625 && session.points == 97232 && session.attached == 1));

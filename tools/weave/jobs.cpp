@@ -37,6 +37,7 @@ std::string line_of(const Json& job) {
     if (job.contains("place")) facts += ", place " + std::to_string(job.at("place").get<std::uint64_t>()) + " in the queue";
     if (job.contains("wait_s")) std::snprintf(text, sizeof text, ", begins in some %.0f s", job.at("wait_s").get<double>()), facts += text;
     if (job.contains("left_s")) std::snprintf(text, sizeof text, ", to go some %.0f s", job.at("left_s").get<double>()), facts += text;
+    if (job.contains("batch")) facts += "; " + on_one_line(job.at("batch").get<std::string>());
     return beginning_of(job, "job", job.at("phase").get<std::string>()) + facts;
 }
 

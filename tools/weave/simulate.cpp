@@ -6,6 +6,7 @@
 #include "simulate_ending.hpp"
 #include "simulate_on.hpp"
 #include "simulate_wish.hpp"
+#include "sweep.hpp"
 #include "teller.hpp"
 
 #include <weave/core/file.hpp>
@@ -158,6 +159,26 @@ Result<Yarns> watched(const Block& block, SimulateTask& task, const sim::Plan& p
     return yarns;
 }
 
+/// All runs are understood, and one is planned, before the first is handed over: what a server would refuse is known then.
+Status sweep(CommandOutcome& outcome, wire::Follower& server, const Cloth& cloth, const SimulateWish& wish) {
+    WEAVE_TRY(const auto settings, runs_of_sweep(wish.sweep));
+    std::vector<SimulateTask> tasks;
+    for (const auto& run : settings) {
+        SimulateWish one = wish;
+        one.set.insert(one.set.end(), run.begin(), run.end());
+        auto task = understand(cloth, one);
+        if (!task) {
+            Error error = std::move(task).error();
+            if (error.where.starts_with("--set ") && std::ranges::find(wish.set, error.where.substr(6)) == wish.set.end()) error.where.replace(0, 5, "--sweep");
+            return std::move(error).in(wish.file);
+        }
+        tasks.push_back(std::move(*task));
+    }
+    WEAVE_TRY(const sim::Plan plan, plan_of(tasks.front().design, *cloth.evaluation.block, tasks.front().request, wish.file));
+    if (tasks.front().request.region) WEAVE_CHECK_OK(check_flips_within(plan, tasks.front().flips));
+    return sweep_on(outcome, server, tasks, settings, wish);
+}
+
 Status run_simulation(CommandOutcome& outcome, const SimulateWish& wish) {
     WEAVE_CHECK_OK(check_wish(wish));
     std::optional<wire::Follower> server;
@@ -174,6 +195,7 @@ Status run_simulation(CommandOutcome& outcome, const SimulateWish& wish) {
     }
     WEAVE_TRY(const Cloth cloth, load_cloth(outcome, wish.file));
     const Block& block = *cloth.evaluation.block;
+    if (!wish.sweep.empty()) return sweep(outcome, *server, cloth, wish);
     auto understood = understand(cloth, wish);
     if (!understood) return std::move(understood).error().in(wish.file);
     SimulateTask& task = *understood;
@@ -220,6 +242,10 @@ void add_simulate(CLI::App& app, CommandOutcome& outcome) {
         ->check(positive_number())
         ->type_name("N");
     command->add_option("--set", wish->set, "a number of the scene for this run, such as warp.strain=1.02 or friction=0.2")->type_name("NAME=N");
+    CLI::Option* sweeping = command->add_option("--sweep", wish->sweep, "with --on: a job for each of these numbers of the scene, and for each combination where it is given again; "
+                                                                        "their numbers are told, and weave jobs fetch gets what came of each")
+                                ->type_name("NAME=N,N,…")
+                                ->allow_extra_args(false);
     command->add_option("--backend", wish->backend, "what computes: auto (if nothing is said: a CUDA device where there is one that can, else the processor), cpu or cuda (weave devices "
                                                     "lists them); a server has its own")->type_name("WORD");
     command->add_option("--boundary", wish->boundaries, "the rim for this run: x= or y= with periodic, frozen, free or relaxing:FORCE")
@@ -252,12 +278,13 @@ void add_simulate(CLI::App& app, CommandOutcome& outcome) {
     command->add_option("--seconds", wish->seconds, "stop after so long in all; each run of --starts and --symmetry has as long")->check(positive_number())->type_name("N");
     add_threads(command, wish->threads);
     CLI::Option* on = add_server_options(command, wish->server);
+    sweeping->needs(on);
     command->add_option("--evidence", wish->evidence, "the file for what the server signs of the result, for loomlink")->needs(on)->type_name("FILE");
     command->footer("Ctrl-C writes the yarns as they lie (exit 1), for --resume to go on from; again, half a second later or more, ends at "
                     "once without them.\nWith --on the file is written once, at the end; Ctrl-C cancels the job and writes its yarns as they lay. weave jobs "
                     "lists what is on the server.\n" + command->get_footer());
     on_run(command, outcome, [=, &outcome] {
-        wish->no_plan_option = given_of(command, {"--out", "--solver", "--residual", "--flip", "--save-design", "--resume", "--start-from", "--starts",
+        wish->no_plan_option = given_of(command, {"--out", "--sweep", "--solver", "--residual", "--flip", "--save-design", "--resume", "--start-from", "--starts",
                                                   "--symmetry", "--seed", "--steps", "--seconds", "--threads", "--on"});
         wish->no_server_option = given_of(command, {"--resume", "--starts", "--symmetry", "--seed", "--threads"});
         return run_simulation(outcome, *wish);

@@ -7,10 +7,15 @@
 
 #include <weave/core/exit_code.hpp>
 #include <weave/core/file.hpp>
+#include <weave/core/text.hpp>
 #include <weave/design/document.hpp>
 
+#include <algorithm>
+#include <chrono>
 #include <optional>
+#include <thread>
 #include <utility>
+#include <variant>
 
 namespace weave::program {
 
@@ -84,6 +89,62 @@ Json report_of(const wire::JobEnded& ended, const SimulateTask& task) {
 }
 
 }  // namespace
+
+namespace {
+
+/// The number of the job that was made. A server that is asked for many in a short time says when it takes the next.
+Result<std::uint64_t> submitted(wire::Follower& follower, const wire::Submit& order) {
+    constexpr int most_tries = 100;
+    for (int k = 0; k < most_tries && !interrupted(); ++k) {
+        auto answer = follower.ask(order, wire::answer_patience);
+        const auto* refused = answer ? std::get_if<wire::Refused>(&*answer) : nullptr;
+        if (refused != nullptr && refused->wait_s) {
+            constexpr double longest_s = 60;
+            std::this_thread::sleep_for(std::chrono::duration<double>(std::min(*refused->wait_s, longest_s)));
+            continue;
+        }
+        WEAVE_TRY(const wire::Accepted accepted, wire::answer_of<wire::Accepted>(std::move(answer)));
+        if (!accepted.job) return bad_input("the server gives the job no number", follower.place().name);
+        return *accepted.job;
+    }
+    return Error{ErrorCode::refused, interrupted() ? "was broken off" : "the server has too much to do", follower.place().name};
+}
+
+std::string joined(const std::vector<std::string>& words) {
+    std::string text;
+    for (const std::string& word : words) text += (text.empty() ? "" : " ") + word;
+    return text;
+}
+
+}  // namespace
+
+Status sweep_on(CommandOutcome& outcome, wire::Follower& follower, const std::vector<SimulateTask>& tasks, const std::vector<std::vector<std::string>>& settings,
+                const SimulateWish& wish) {
+    const HeldInterrupt held("no more jobs are handed over; those that were go on");
+    Json jobs = Json::array();
+    std::string words;
+    std::optional<Error> trouble;
+    for (std::size_t k = 0; k < tasks.size() && !trouble; ++k) {
+        WEAVE_TRY(const wire::Submit order, order_of(tasks[k], wish));
+        const auto job = submitted(follower, order);
+        if (!job) {
+            trouble = job.error();
+            break;
+        }
+        jobs.push_back({{"job", *job}, {"set", settings[k]}});
+        words += std::to_string(*job) + "  " + joined(settings[k]) + "\n";
+    }
+    follower.close();
+    const std::size_t made = jobs.size();
+    if (trouble && made == 0) return *trouble;
+    Json answer{{"server", follower.place().name}, {"jobs", std::move(jobs)}};
+    if (trouble) {
+        trouble->message += "; " + counted(made, "job") + " of " + std::to_string(tasks.size()) + " were handed over before";
+        answer["error"] = error_json(*trouble);
+    }
+    outcome.answer(answer, words);
+    return trouble ? Status(*trouble) : Status();
+}
 
 Status simulate_on(CommandOutcome& outcome, wire::Follower& follower, const Design& design, const SimulateTask& task, const SimulateWish& wish,
                    double goal) {

@@ -13,4 +13,9 @@ namespace weave::program {
 Status simulate_on(CommandOutcome& outcome, wire::Follower& follower, const Design& design, const SimulateTask& task,
                    const SimulateWish& wish, double goal);
 
+/// `weave simulate --on --sweep`: hands over a job for each of these tasks, and answers with their numbers, each beside what its
+/// run was set to. Errors: what the server refuses; the jobs that it took before stay, and are told.
+Status sweep_on(CommandOutcome& outcome, wire::Follower& follower, const std::vector<SimulateTask>& tasks, const std::vector<std::vector<std::string>>& settings,
+                const SimulateWish& wish);
+
 }  // namespace weave::program

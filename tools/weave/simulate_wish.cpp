@@ -46,7 +46,9 @@ Status check_wish(const SimulateWish& wish) {
         return usage_error("cannot be had from a server (--on): it computes alone, on what it has", wish.no_server_option);
     WEAVE_CHECK_OK(check_backend(wish));
     WEAVE_CHECK_OK(check_files(wish));
-    if (!wish.explain && wish.out.empty()) return usage_error("say where the yarns go: -o OUT.yarns", "");
+    if (!wish.sweep.empty() && (!wish.out.empty() || !wish.evidence.empty() || !wish.save_design.empty()))
+        return usage_error("leaves its jobs to the server, and writes nothing: weave jobs fetch gets what came of each", "--sweep " + wish.sweep.front());
+    if (!wish.explain && wish.out.empty() && wish.sweep.empty()) return usage_error("say where the yarns go: -o OUT.yarns", "");
     if (wish.explain && !wish.no_plan_option.empty())
         return usage_error("nothing is simulated with --explain, and the plan owes nothing to it", wish.no_plan_option);
     if (wish.seed && wish.starts == 0 && !wish.symmetry)

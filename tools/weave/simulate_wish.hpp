@@ -17,7 +17,7 @@ namespace weave::program {
 /// The options of `weave simulate`.
 struct SimulateWish {
     std::string file, out, fidelity = "standard", region, solver = "relax", backend = "auto", resume, save_design, start_from;
-    std::vector<std::string> set, boundaries, pins, fields, flips;
+    std::vector<std::string> set, sweep, boundaries, pins, fields, flips;
     bool wraparound = false, explain = false, whole = false, symmetry = false;
     std::optional<double> residual, points, seconds;
     std::optional<std::size_t> steps;

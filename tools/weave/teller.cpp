@@ -52,7 +52,8 @@ void Teller::operator()(const wire::JobState& job) {
         if (seconds() < m_next) return;
         const std::string place = job.place ? "place " + std::to_string(*job.place) + " in the queue, " : "";
         const std::string wait = job.wait_s ? "begins in " + some_seconds(*job.wait_s) + ", " : "";
-        return tell("waiting" + m_what + " ... " + place + wait + so_far(seconds()));
+        const std::string batch = job.batch ? on_one_line(*job.batch) + ", " : "";
+        return tell("waiting" + m_what + " ... " + place + wait + batch + so_far(seconds()));
     }
     if (is_due(job.residual.value_or(0), job.step)) tell_residual(*job.residual, job.step, order_of(job.lost_crossings), job.left_s ? job.left_s : m_pace.seconds_left());
 }

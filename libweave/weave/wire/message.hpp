@@ -192,6 +192,7 @@ struct JobState {
     std::optional<double> left_s;                 ///< estimated until its end
     std::optional<std::uint64_t> place;  ///< of a waiting one in the queue; 1: the next to begin
     std::optional<double> wait_s;        ///< of a waiting one: expected until it begins
+    std::optional<std::string> batch;    ///< of one that the server has given to a batch system: where it is there, for people
 };
 struct JobList {
     std::string request;

@@ -325,6 +325,7 @@ void describe(Form& form, M& job) {
     maybe_number(form, "left_s", job.left_s, {0, most_seconds_told});
     maybe_count(form, "place", job.place, 1);
     maybe_number(form, "wait_s", job.wait_s, {0, most_seconds_told});
+    form.maybe("batch", job.batch, [](auto& inner, auto& where) { inner.text("batch", where, longest_title); });
 }
 template <class Form, Either<JobList> M>
 void describe(Form& form, M& list) {

@@ -1,4 +1,4 @@
-#include <simd/daemon/worker_process.hpp>
+#include <simd/link/worker_process.hpp>
 
 #include <weave/core/log.hpp>
 
