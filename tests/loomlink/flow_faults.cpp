@@ -224,12 +224,11 @@ void fail_at_writes(std::size_t stride) {
 
 }  // namespace
 
-TEST_CASE(
-    "a disk that fails somewhere in a story costs one clean error, and the request repeated is done once") {
+TEST_CASE("a disk that fails somewhere in a story costs one clean error, and the request repeated is done once", "[file]") {
     fail_at_writes(25);
 }
 
-TEST_CASE("a disk that fails at any write of a story costs one clean error at most", "[.][long]") {
+TEST_CASE("a disk that fails at any write of a story costs one clean error at most", "[.][long][file]") {
     fail_at_writes(1);
 }
 

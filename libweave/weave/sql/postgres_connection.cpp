@@ -138,11 +138,10 @@ Error PostgresConnection::lost() const {
     return system_fault("no connection to the server: " + on_one_line(PQerrorMessage(m_handle)), m_label);
 }
 
-/// What the server warns of: a commit that it stopped waiting for is stored on the primary alone.
+/// What the server warns of. Where it stopped waiting for a standby, a warning of no kind of its own is all that tells it.
 void PostgresConnection::note_warning(void* connection, const PGresult* notice) {
-    const std::string kind = field(notice, PG_DIAG_SQLSTATE);
-    if (field(notice, PG_DIAG_SEVERITY_NONLOCALIZED) == "WARNING" && kind.starts_with("57"))
-        static_cast<PostgresConnection*>(connection)->m_unconfirmed = field(notice, PG_DIAG_MESSAGE_PRIMARY);
+    if (field(notice, PG_DIAG_SEVERITY_NONLOCALIZED) == "WARNING")
+        static_cast<PostgresConnection*>(connection)->m_warning = field(notice, PG_DIAG_MESSAGE_PRIMARY);
 }
 
 Result<PostgresConnection::Answer> PostgresConnection::next(const Deadline& deadline) {
@@ -208,7 +207,7 @@ Status PostgresConnection::begin_write() {
 }
 
 Status PostgresConnection::commit() {
-    m_unconfirmed.clear();
+    m_warning.clear();
     if (PQsendQuery(m_handle, "COMMIT") == 0) return lost();
     Status status = finish(nullptr, std::chrono::steady_clock::now() + m_patience);
     if (m_is_late) return status;
@@ -217,8 +216,8 @@ Status PostgresConnection::commit() {
                             m_label);
     if (!status) return status;
     if (m_last_command != "COMMIT") return system_fault("the transaction was ended; nothing was stored", m_label);
-    if (!m_unconfirmed.empty())
-        return system_fault("the commit was stored here, but no standby has confirmed it (" + m_unconfirmed +
+    if (!m_warning.empty())
+        return system_fault("the commit was stored here, but no standby has confirmed it (" + m_warning +
                                 "): repeat the request with its id",
                             m_label);
     return {};

@@ -61,7 +61,7 @@ class PostgresConnection final : public Connection {
     std::map<std::string, std::string, std::less<>> m_statements;  ///< names by texts
     std::int64_t m_changes = 0;
     std::string m_last_command;        ///< as the server calls what it did last
-    std::string m_unconfirmed;         ///< a warning that a commit was not waited for
+    std::string m_warning;             ///< the last; one at a commit is that it was not waited for
     bool m_is_late = false;            ///< an answer is still to come: nothing more can be asked
 };
 
