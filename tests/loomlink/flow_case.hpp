@@ -76,14 +76,17 @@ struct FlowSite {
     /// Opens the store that lies at `path` now, and leaves the one from before.
     void open() {
         flow.reset();
+        flow = another(path);
+    }
+    /// One more program of the same site, on this store or a copy of it.
+    [[nodiscard]] std::unique_ptr<Workflow> another(const std::string& place) {
         DeskSettings settings;
         settings.key_cost = settings.login_cost = test_cost();
         settings.refusals = refusals;
-        flow =
-            got(Workflow::open(Store::open(path).value(),
-                               {KeyPair::from_seed(keys.log.seed()), KeyPair::from_seed(keys.stamp.seed()),
-                                KeyPair::from_seed(keys.access.seed())},
-                               settings, [this] { return time; }));
+        return got(Workflow::open(got(Store::open(place)),
+                                  {KeyPair::from_seed(keys.log.seed()), KeyPair::from_seed(keys.stamp.seed()),
+                                   KeyPair::from_seed(keys.access.seed())},
+                                  settings, [this] { return time; }));
     }
 
     static std::string password(const std::string& name) { return "the password of " + name; }

@@ -157,7 +157,7 @@ class Teller {
 
     Left tell(FaultDisk& disk, DiskFault fault, std::uint64_t at) {
         m_site.flow.reset();
-        for (const char* more : {"-wal", "-shm"}) std::filesystem::remove(m_site.path.string() + more);
+        for (const char* more : {"-wal", "-shm"}) std::filesystem::remove(m_site.path + more);
         std::filesystem::copy_file(m_begin, m_site.path, std::filesystem::copy_options::overwrite_existing);
         m_site.open();
         Left left;

@@ -36,6 +36,9 @@ const passwd* servant() {
 /// Starts a program as the servant, in a group of its own; it does not outlive the test.
 pid_t spawn(std::vector<std::string> words, const fs::path& log) {
     const passwd* const user = servant();
+    std::string path = "PATH=/usr/bin:/bin", locale = "LC_ALL=C", shim = "LD_PRELOAD=" WEAVE_FULL_DISK_SHIM,
+                full = "WEAVE_FULL_DISK=" + (log.parent_path() / "full").string();
+    char* environment[]{path.data(), locale.data(), shim.data(), full.data(), nullptr};
     std::vector<char*> list;
     for (auto& word : words) list.push_back(word.data());
     list.push_back(nullptr);
@@ -48,7 +51,7 @@ pid_t spawn(std::vector<std::string> words, const fs::path& log) {
     if (user != nullptr && (::setgid(user->pw_gid) != 0 || ::setuid(user->pw_uid) != 0)) ::_exit(126);
     ::prctl(PR_SET_PDEATHSIG, SIGKILL);
     ::close_range(3, ~0U, 0);
-    ::execv(list.front(), list.data());
+    ::execve(list.front(), list.data(), environment);
     ::_exit(127);
 }
 
@@ -81,12 +84,12 @@ PostgresServer& PostgresServer::shared() {
     return server;
 }
 
-PostgresServer::PostgresServer(const std::string& settings) {
+PostgresServer::PostgresServer() {
     make_folder();
     run_to_end({program("initdb"), "-D", m_folder / "data", "-U", "postgres", "-A", "trust", "-E", "UTF8", "--locale", "C", "--no-sync",
                 "--no-instructions"},
                m_folder / "log");
-    write_settings(settings);
+    write_settings();
     start();
 }
 
@@ -95,7 +98,7 @@ PostgresServer::PostgresServer(const PostgresServer& primary, const std::string&
     run_to_end({program("pg_basebackup"), "-D", m_folder / "data", "-h", primary.m_folder, "-U", "postgres", "-c", "fast", "--no-sync", "-R", "-X",
                 "stream", "-d", "application_name=" + name},
                m_folder / "log");
-    write_settings("");
+    write_settings();
     start();
 }
 
@@ -114,11 +117,10 @@ void PostgresServer::make_folder() {
         if (::chown(m_folder.c_str(), user->pw_uid, user->pw_gid) != 0) throw std::runtime_error("the folder cannot be given away");
 }
 
-void PostgresServer::write_settings(const std::string& more) const {
+void PostgresServer::write_settings() const {
     configure("listen_addresses = ''\nunix_socket_directories = '" + m_folder.string() +
               "'\nfsync = off\nmax_connections = 60\nshared_buffers = 16MB\nwal_keep_size = 256MB\nwal_log_hints = on\nautovacuum = "
-              "off\nlog_min_messages = fatal\nwal_receiver_status_interval = 1s\nwal_retrieve_retry_interval = 100ms\n" +
-              more);
+              "off\nlog_min_messages = fatal\nwal_receiver_status_interval = 1s\nwal_retrieve_retry_interval = 100ms\n");
 }
 
 void PostgresServer::configure(const std::string& lines) const {
@@ -196,6 +198,13 @@ void PostgresServer::stop() {
     ::kill(m_process, SIGINT);
     ::waitpid(m_process, nullptr, 0);
     m_process = 0;
+}
+
+void PostgresServer::cut_off() const {
+    run("ALTER SYSTEM SET primary_conninfo = ''");
+    reload();
+    for (int waits = 0; waits < most_waits && number("SELECT count(*) FROM pg_stat_wal_receiver") > 0; ++waits)
+        std::this_thread::sleep_for(pause);
 }
 
 void PostgresServer::promote() {

@@ -17,7 +17,7 @@ class PostgresServer {
     static PostgresServer& shared();
 
     /// An empty primary that runs.
-    explicit PostgresServer(const std::string& settings = {});
+    PostgresServer();
     /// A standby of a primary that runs: it follows by streaming, under `name`.
     PostgresServer(const PostgresServer& primary, const std::string& name);
     ~PostgresServer();
@@ -43,6 +43,10 @@ class PostgresServer {
     /// kill -9 of all of it.
     void kill();
     void stop();
+    /// Its disk is full whenever this file is there (tests/support/full_disk.cpp).
+    [[nodiscard]] std::filesystem::path full_disk() const { return m_folder / "full"; }
+    /// Stops what a standby receives, as a line that is cut would: it lags from then on.
+    void cut_off() const;
     /// Makes a standby a primary, and answers once it is.
     void promote();
     /// Adds lines to its configuration; they count from the next start, or with reload().
@@ -51,7 +55,7 @@ class PostgresServer {
 
   private:
     void make_folder();
-    void write_settings(const std::string& more) const;
+    void write_settings() const;
     void wait_until(const std::string& question) const;
 
     std::filesystem::path m_folder;
