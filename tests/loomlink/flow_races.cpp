@@ -99,7 +99,7 @@ TEST_CASE("a request that comes to two programs at once is done once and answere
     TwoPrograms site;
     for (int round = 0; round < 8; ++round) {
         const Ask ask = site.ask();
-        const std::string name = "cloth " + std::to_string(round);
+        const std::string name = "cloth-" + std::to_string(round);
         const auto [one, other] = together([&] { return site.flow->designs().add(site.people.at("dora"), ask, name); },
                                            [&] { return site.second->designs().add(site.people.at("dora"), ask, name); });
         CHECK(got(one) == got(other));

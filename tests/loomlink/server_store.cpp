@@ -47,8 +47,8 @@ std::set<std::string> rules_of(sql::Connection& connection) {
     REQUIRE(connection.each(
         is_file ? "SELECT m.name, 'checks', (length(m.sql) - length(replace(m.sql, 'CHECK (', ''))) / 7 FROM sqlite_schema m WHERE m.type = "
                   "'table' AND m.sql LIKE '%CHECK (%'"
-                : "SELECT conrelid::regclass::text, 'checks', count(*) FROM pg_constraint WHERE contype = 'c' AND conrelid <> "
-                  "'store_version'::regclass GROUP BY conrelid",
+                : "SELECT conrelid::regclass::text, 'checks', count(*) FROM pg_constraint WHERE contype = 'c' AND conrelid NOT IN (0, "
+                  "'store_version'::regclass) GROUP BY conrelid",
         take));
     return rules;
 }
@@ -188,7 +188,6 @@ TEST_CASE("two primaries are refused, and a server that lost what was acknowledg
 
     got(store.write([](Writer& writer) { return note(writer); }));  // on the old one, which the young one never gets
     old.kill();
-    CHECK_THAT(text_of(store.write([](Writer& writer) { return note(writer); })), Catch::Contains("no connection"));
     const auto lost = store.write([](Writer& writer) { return note(writer); });
     CHECK_THAT(text_of(lost), Catch::Contains("another log than before") && Catch::Contains("old primary, or a standby that lagged"));
     CHECK_FALSE(store.last_write());

@@ -36,7 +36,7 @@ const passwd* servant() {
 /// Starts a program as the servant, in a group of its own; it does not outlive the test.
 pid_t spawn(std::vector<std::string> words, const fs::path& log) {
     const passwd* const user = servant();
-    std::string path = "PATH=/usr/bin:/bin", locale = "LC_ALL=C", shim = "LD_PRELOAD=" WEAVE_FULL_DISK_SHIM,
+    std::string path = "PATH=/usr/bin:/bin", locale = "LC_ALL=C", shim = "LD_PRELOAD=" + (log.parent_path() / "full_disk.so").string(),
                 full = "WEAVE_FULL_DISK=" + (log.parent_path() / "full").string();
     char* environment[]{path.data(), locale.data(), shim.data(), full.data(), nullptr};
     std::vector<char*> list;
@@ -113,6 +113,7 @@ void PostgresServer::make_folder() {
     std::string name = (fs::temp_directory_path() / "weave-pg-XXXXXX").string();
     if (::mkdtemp(name.data()) == nullptr) throw std::runtime_error("no folder for a server");
     m_folder = name;
+    fs::copy_file(WEAVE_FULL_DISK_SHIM, m_folder / "full_disk.so");  // from where its user may read it
     if (const passwd* const user = servant())
         if (::chown(m_folder.c_str(), user->pw_uid, user->pw_gid) != 0) throw std::runtime_error("the folder cannot be given away");
 }

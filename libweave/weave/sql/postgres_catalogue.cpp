@@ -93,7 +93,7 @@ Status PostgresConnection::inspect_links(const Find& find) {
               }));
     for (const Link& link : links) {
         WEAVE_TRY(const std::int64_t count, number(link.question));
-        if (count > 0) find(link.table, "points at " + std::to_string(count) + " rows of " + link.other + " that are not there");
+        if (count > 0) find(link.table, "points at a row of " + link.other + " that is not there, in " + std::to_string(count) + " of its rows");
     }
     return {};
 }
