@@ -1,6 +1,5 @@
 -- What the role `loomlink` may do in a database that another role owns: serve the store, and neither change what it keeps nor its
 -- rules. Run by the owner, in the database, once the tables are there and after each new version of them (db/README.md).
-GRANT CREATE ON SCHEMA public TO CURRENT_USER;
 REVOKE ALL ON SCHEMA public FROM PUBLIC;
 GRANT USAGE ON SCHEMA public TO loomlink;
 REVOKE ALL ON ALL TABLES IN SCHEMA public FROM loomlink;

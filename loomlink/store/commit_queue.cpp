@@ -26,6 +26,13 @@ Status call(const std::function<Status(Writer&)>& change, Writer& writer) {
 
 }  // namespace
 
+/// The system may fail one change and take the others, as a server does whose disk is full.
+Status CommitQueue::first_fault(const std::deque<Job*>& jobs) {
+    for (const Job* job : jobs)
+        if (!job->outcome && job->outcome.error().code == ErrorCode::system) return job->outcome;
+    return {};
+}
+
 CommitQueue::CommitQueue(std::string place, std::unique_ptr<sql::Connection> connection, LogMark& mark)
     : m_place(std::move(place)), m_mark(mark), m_connection(std::move(connection)), m_thread([this] { work(); }) {}
 
@@ -73,7 +80,7 @@ void CommitQueue::commit_all(const std::deque<Job*>& jobs) {
     if (status) status = run_all(jobs);
     {
         const std::lock_guard lock(m_mutex);
-        m_last_write = status;
+        m_last_write = status ? first_fault(jobs) : status;
     }
     if (status) return;
     // Nothing of the batch was stored, so nobody of it may believe so. Whose change was refused anyway keeps

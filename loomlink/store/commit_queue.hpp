@@ -41,6 +41,7 @@ class CommitQueue {
 
     void work();
     void commit_all(const std::deque<Job*>& jobs);
+    static Status first_fault(const std::deque<Job*>& jobs);
     Status run_all(const std::deque<Job*>& jobs);
     Status run_one(Job& job);
     Status begin();

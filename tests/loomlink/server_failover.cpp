@@ -89,13 +89,16 @@ struct Pair {
     std::unique_ptr<PostgresServer> primary, standby;
     std::string database;
 
-    Pair() : primary(std::make_unique<PostgresServer>()), database(primary->make_database()) {
+    /// With `flushed` it writes to the disk as it would in earnest.
+    explicit Pair(bool flushed = false) : primary(std::make_unique<PostgresServer>()), database(primary->make_database()) {
+        if (flushed) primary->configure("fsync = on"), primary->stop(), primary->start();
         Store made = got(Store::create(primary->place(database), "mill"));
         got(made.write([](Writer& writer) -> Result<Id> {
             WEAVE_TRY(const Seq event, note(writer));
             return writer.add_person({0, "anna", "Anna", true, "hash", {}, event});
         }));
         follow();
+        if (flushed) standby->configure("fsync = on"), standby->stop(), standby->start(), wait_for_synchronous(*primary);
     }
     /// Gives the primary a fresh standby, and has it wait for that.
     void follow() {
@@ -157,7 +160,44 @@ void fail_over_times(int rounds) {
                 told.acknowledged.size(), told.doubtful.load());
 }
 
+/// Milliseconds of one request after the other, and of requests that eight ask for at once.
+void measure(const char* name, Store& store) {
+    constexpr int requests = 1000, together = 8;
+    const auto time = [&](int threads) {
+        const auto begin = std::chrono::steady_clock::now();
+        std::vector<std::thread> all;
+        for (int who = 0; who < threads; ++who)
+            all.emplace_back([&, who] {
+                for (int k = 0; k < requests / threads; ++k)
+                    REQUIRE(request(store, "many-" + std::to_string(threads) + "-" + std::to_string(who) + "-" + std::to_string(k)));
+            });
+        for (std::thread& one : all) one.join();
+        return std::chrono::duration<double, std::milli>(std::chrono::steady_clock::now() - begin).count() / requests;
+    };
+    const double alone = time(1), eight = time(together);
+    std::printf("%-42s %6.2f ms a request, %6.2f ms where eight ask at once\n", name, alone, eight);
+}
+
 }  // namespace
+
+TEST_CASE("what a request costs on each kind of store", "[.][measure]") {
+    if (there_is_no_server()) return;
+    const Folder folder;
+    Store file = got(Store::create(folder / "s.db", "mill"));
+    got(file.write([](Writer& writer) -> Result<Id> {
+        WEAVE_TRY(const Seq event, note(writer));
+        return writer.add_person({0, "anna", "Anna", true, "hash", {}, event});
+    }));
+    measure("a file of SQLite", file);
+    Pair pair(true);
+    Store both = got(Store::open(pair.both()));
+    measure("PostgreSQL with a synchronous standby", both);
+    pair.standby->kill();
+    pair.primary->configure("synchronous_standby_names = ''");
+    pair.primary->reload();
+    Store one = got(Store::open(pair.primary->place(pair.database)));
+    measure("PostgreSQL alone", one);
+}
 
 TEST_CASE("kill -9 of the primary and promotion of its standby lose nothing that was acknowledged", "[server]") {
     if (there_is_no_server()) return;
