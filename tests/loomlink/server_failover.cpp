@@ -161,7 +161,7 @@ void fail_over_times(int rounds) {
 }
 
 /// Milliseconds of one request after the other, and of requests that eight ask for at once.
-void measure(const char* name, Store& store) {
+void measure(const std::string& name, Store& store) {
     constexpr int requests = 1000, together = 8;
     const auto time = [&](int threads) {
         const auto begin = std::chrono::steady_clock::now();
@@ -169,13 +169,13 @@ void measure(const char* name, Store& store) {
         for (int who = 0; who < threads; ++who)
             all.emplace_back([&, who] {
                 for (int k = 0; k < requests / threads; ++k)
-                    REQUIRE(request(store, "many-" + std::to_string(threads) + "-" + std::to_string(who) + "-" + std::to_string(k)));
+                    REQUIRE(request(store, name.substr(name.size() - 5) + std::to_string(threads) + "-" + std::to_string(who) + "-" + std::to_string(k)));
             });
         for (std::thread& one : all) one.join();
         return std::chrono::duration<double, std::milli>(std::chrono::steady_clock::now() - begin).count() / requests;
     };
     const double alone = time(1), eight = time(together);
-    std::printf("%-42s %6.2f ms a request, %6.2f ms where eight ask at once\n", name, alone, eight);
+    std::printf("%-42s %6.2f ms a request, %6.2f ms where eight ask at once\n", name.c_str(), alone, eight);
 }
 
 }  // namespace
