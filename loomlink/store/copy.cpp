@@ -117,6 +117,7 @@ Status copy_table(sql::Connection& source, sql::Connection& target, const Table&
     WEAVE_CHECK_OK(source.each(question(table), [&](const sql::Row& row) {
         if (!outcome) return;
         std::vector<sql::Value> values;
+        values.reserve(static_cast<std::size_t>(row.columns()));
         for (int column = 0; column < row.columns(); ++column) values.push_back(row.value(column));
         outcome = target.rows(insert, values, [](const sql::Row&) {});
     }));
