@@ -1,7 +1,7 @@
 # Writes a source with all migrations of db/FOLDER, which are numbered from 0001 on without a gap, so that they travel inside
-# the program: weave_embed_migrations(RESULT FOLDER HEADER NAMESPACE). HEADER declares `migrations()` in NAMESPACE; RESULT names the
-# source.
-function(weave_embed_migrations result folder header namespace)
+# the program: weave_embed_migrations(RESULT FOLDER HEADER FUNCTION). HEADER declares FUNCTION, such as `weave::simd::migrations`;
+# RESULT names the source.
+function(weave_embed_migrations result folder header function)
   file(GLOB migrations CONFIGURE_DEPENDS ${CMAKE_SOURCE_DIR}/db/${folder}/*.sql)
   list(SORT migrations)
   set(count 0)
@@ -18,14 +18,14 @@ function(weave_embed_migrations result folder header namespace)
     string(APPEND entries "    {${number}, R\"sql(${script})sql\"},\n")
     set_property(DIRECTORY APPEND PROPERTY CMAKE_CONFIGURE_DEPENDS ${migration})
   endforeach()
-  file(CONFIGURE OUTPUT ${CMAKE_CURRENT_BINARY_DIR}/migration_texts.cpp @ONLY CONTENT
+  file(CONFIGURE OUTPUT ${CMAKE_CURRENT_BINARY_DIR}/${folder}_texts.cpp @ONLY CONTENT
 "#include <@header@>
 
-std::span<const weave::sql::Migration> @namespace@::migrations() {
+std::span<const weave::sql::Migration> @function@() {
     static constexpr weave::sql::Migration steps[]{
 @entries@    };
     return steps;
 }
 ")
-  set(${result} ${CMAKE_CURRENT_BINARY_DIR}/migration_texts.cpp PARENT_SCOPE)
+  set(${result} ${CMAKE_CURRENT_BINARY_DIR}/${folder}_texts.cpp PARENT_SCOPE)
 endfunction()

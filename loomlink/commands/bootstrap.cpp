@@ -2,7 +2,6 @@
 
 #include <weave/core/text.hpp>
 
-#include <filesystem>
 #include <loomlink/commands/site_folder.hpp>
 #include <loomlink/workflow/workflow.hpp>
 #include <memory>
@@ -13,8 +12,7 @@ namespace weave::loomlink {
 namespace {
 
 Status bootstrap(const SiteFolder& folder, CommandOutcome& outcome) {
-    std::error_code code;
-    if (!std::filesystem::exists(folder.store(), code))
+    if (!folder.holds_site())
         return bad_input("holds no site", folder.path.string());
     WEAVE_TRY(OpenSite site, open_site(folder, {}));
     WEAVE_TRY(const auto workflow, Workflow::open(std::move(site.store), std::move(site.keys)));

@@ -31,6 +31,7 @@ CLI::Option* add_text(CLI::App* command, const std::string& name, std::string& v
 void add_init_command(CLI::App& app, CommandOutcome& outcome);
 void add_serve_command(CLI::App& app, CommandOutcome& outcome);
 void add_upkeep_commands(CLI::App& app, CommandOutcome& outcome);       // verify, backup, restore
+void add_migrate_store_command(CLI::App& app, CommandOutcome& outcome);  // migrate-store
 void add_session_commands(CLI::App& app, CommandOutcome& outcome);      // login, logout, me
 void add_token_command(CLI::App& app, CommandOutcome& outcome);         // token
 void add_user_commands(CLI::App& app, CommandOutcome& outcome);         // user

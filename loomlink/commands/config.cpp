@@ -2,6 +2,9 @@
 
 #include <weave/core/text.hpp>
 
+#include <loomlink/store/store.hpp>
+#include <utility>
+
 namespace weave::loomlink {
 
 Result<ServeConfig> parse_config(std::string_view text, const std::filesystem::path& folder) {
@@ -10,6 +13,8 @@ Result<ServeConfig> parse_config(std::string_view text, const std::filesystem::p
     ServeConfig config;
     read_service(reader, folder, config);
     config.site = reader.text("site", config.site, 200);
+    config.store = reader.text("store", config.store, 2000);
+    config.standby = reader.text("standby", config.standby, 2000);
     config.heads = path_member(reader, "heads", folder);
     reader.no_others();
     WEAVE_CHECK_OK(reader.status());
@@ -20,6 +25,9 @@ Result<ServeConfig> parse_config(std::string_view text, const std::filesystem::p
 Status check_config(const ServeConfig& config) {
     if (config.site.empty() || on_one_line(config.site) != config.site)
         return bad_input("must be a name on one line", "site");
+    for (const auto& [member, place] : {std::pair("store", config.store), std::pair("standby", config.standby)})
+        if (!place.empty() && (!is_database(place) || on_one_line(place) != place))
+            return bad_input("must be a connection string of PostgreSQL, such as postgresql://db.mill.example/mill", member);
     if (config.address.empty()) return bad_input("must be an address to listen on", "address");
     return check_service(config);
 }

@@ -13,6 +13,8 @@ namespace weave::loomlink {
 struct ServeConfig : ServiceConfig {
     ServeConfig() { port = 8443; }
     std::string site = "mill";    ///< `site`: name of the site; counts when it is made
+    std::string store;    ///< `store`: connection string of a PostgreSQL database; counts when the site is made. None: a file
+    std::string standby;  ///< `standby`: of a server that follows the database, to read from. None: all from the primary
     std::filesystem::path heads;  ///< `heads`: a file in a second place that keeps every signed head of the log.
                                   ///< None: kept by the looms alone
 };

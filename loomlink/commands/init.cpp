@@ -39,6 +39,8 @@ void add_init_command(CLI::App& app, CommandOutcome& outcome) {
     auto config = std::make_shared<ServeConfig>();
     add_text(command, "folder", *folder, "the folder of the site; the current one if not given");
     command->add_option("--site", config->site, "the name of the site (mill)");
+    add_text(command, "--store", config->store,
+             "connection string of the PostgreSQL database to keep it in (postgresql://HOST/DATABASE); a file if not given");
     command->add_option("--host", config->hosts,
                         "a name or address that clients use, for the certificate; may be repeated");
     on_run(command, outcome,

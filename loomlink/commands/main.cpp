@@ -13,7 +13,7 @@ int main(int count, char** words) {
                            weave::loomlink::add_design_commands, weave::loomlink::add_step_commands,
                            weave::loomlink::add_evidence_commands, weave::loomlink::add_release_commands,
                            weave::loomlink::add_pull_command, weave::loomlink::add_verify_files_command,
-                           weave::loomlink::add_log_commands, weave::loomlink::add_upkeep_commands})
+                           weave::loomlink::add_log_commands, weave::loomlink::add_upkeep_commands, weave::loomlink::add_migrate_store_command})
         add(app, outcome);
     return weave::run_program(app, outcome, count, words);
 }

@@ -66,6 +66,10 @@ void add_serve_command(CLI::App& app, CommandOutcome& outcome) {
     auto options = std::make_shared<ServeOptions>(command);
     add_text(command, "folder", options->folder, "the folder of the site; the current one if not given");
     options->words.add("--site", "site", options->config.site, "the name of a site that is made");
+    options->words.add("--store", "store", options->config.store,
+                       "connection string of the PostgreSQL database for a site that is made (postgresql://HOST/DATABASE); a file if not given");
+    options->words.add("--standby", "standby", options->config.standby,
+                       "connection string of a server that follows that database, to read from");
     options->words.add_service(options->config);
     on_run(command, outcome, [options, &outcome] { return serve(*options, outcome); });
 }

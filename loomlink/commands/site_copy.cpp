@@ -8,7 +8,6 @@
 
 #include <csignal>
 #include <fcntl.h>
-#include <loomlink/store/backup.hpp>
 #include <loomlink/store/signatures.hpp>
 #include <loomlink/workflow/retelling.hpp>
 #include <sys/stat.h>
@@ -23,8 +22,7 @@ namespace {
 constexpr std::size_t most_key_file = 65536;
 
 Status check_store_is_there(const SiteFolder& site) {
-    std::error_code code;
-    if (fs::exists(site.store(), code)) return {};
+    if (site.holds_site()) return {};
     return bad_input("holds no store of loomlink", site.path.string());
 }
 
@@ -122,6 +120,12 @@ fs::path without_slash(const fs::path& folder) {
 Result<std::vector<AuditFinding>> verify_site(const SiteFolder& site,
                                               const std::optional<SignedTreeHead>& retained) {
     WEAVE_CHECK_OK(check_store_is_there(site));
+    WEAVE_TRY(const std::string store, site.store());
+    return verify_site_in(site, store, retained);
+}
+
+Result<std::vector<AuditFinding>> verify_site_in(const SiteFolder& site, const std::string& store,
+                                                 const std::optional<SignedTreeHead>& retained) {
     std::vector<AuditFinding> findings;
     const auto log = load_server_key(site.log_key(), ServerKeyRole::log);
     look_at_key(log, site.log_key(), findings);
@@ -132,16 +136,16 @@ Result<std::vector<AuditFinding>> verify_site(const SiteFolder& site,
     look_at_certificate(site.tls(), findings);
     StoreTrust trust;
     if (log) {
-        auto own = own_trust(site.store(), log->public_key());
+        auto own = own_trust(store, log->public_key());
         if (own)
             trust = *std::move(own);
         else
             findings.push_back({{}, "store", own.error().text()});
     }
     trust.retained = retained;
-    WEAVE_TRY(const auto in_store, verify_store(site.store(), trust));
+    WEAVE_TRY(const auto in_store, verify_store(store, trust));
     findings.insert(findings.end(), in_store.begin(), in_store.end());
-    for (const auto& looked_at : {verify_signatures(site.store()), verify_tables(site.store())})
+    for (const auto& looked_at : {verify_signatures(store), verify_tables(store)})
         if (looked_at)
             findings.insert(findings.end(), looked_at->begin(), looked_at->end());
         else
@@ -159,7 +163,8 @@ Status back_up_site(const SiteFolder& site, const fs::path& to) {
     const NewFolder made(target.string() + ".part-" + std::to_string(::getpid()));
     WEAVE_CHECK_OK(made.make());
     const SiteFolder copy{made.path()};
-    WEAVE_CHECK_OK(copy_database(site.store().string(), copy.store()));
+    WEAVE_TRY(const std::string store, site.store());
+    WEAVE_CHECK_OK(back_up_store(store, copy.own_store()));
     WEAVE_CHECK_OK(copy_keys(site, copy));
     if (held.one_waits()) return system_fault("was asked to end; nothing was made", target.string());
     return made.put(target);
@@ -176,7 +181,8 @@ Status restore_site(const SiteFolder& backup, const SiteFolder& to) {
         return file_fault(to.path, "make the folder");
     WEAVE_CHECK_OK(check_site_folder(to));
     WEAVE_TRY(const FolderLock lock, FolderLock::take(to.path, "loomlink"));
-    WEAVE_CHECK_OK(restore_store(backup.store(), to.store()));
+    WEAVE_TRY(const std::string target, to.store());
+    WEAVE_CHECK_OK(restore_store(backup.own_store(), target));
     return copy_keys(backup, to);
 }
 

@@ -12,8 +12,12 @@ namespace weave::loomlink {
 Result<std::vector<AuditFinding>> verify_site(const SiteFolder& site,
                                               const std::optional<SignedTreeHead>& retained);
 
-/// Copies a site, served or not, into a new folder of mode 0700 that appears whole or not at all: the store,
-/// the server's keys and its certificate. Refused where `to` exists.
+/// The same of a store elsewhere, with the keys in the folder, as before or after a move.
+Result<std::vector<AuditFinding>> verify_site_in(const SiteFolder& site, const std::string& store,
+                                                 const std::optional<SignedTreeHead>& retained);
+
+/// Copies a site, served or not, into a new folder of mode 0700 that appears whole or not at all: the store, as a file
+/// wherever it is, the server's keys and its certificate. Refused where `to` exists.
 Status back_up_site(const SiteFolder& site, const std::filesystem::path& to);
 
 /// Puts a backup into place, after verifying it; the folder may be missing, empty, or hold the site that is

@@ -1,5 +1,6 @@
 #include <loomlink/commands/site_folder.hpp>
 
+#include <weave/core/file.hpp>
 #include <weave/keys/private_file.hpp>
 #include <weave/keys/server_key.hpp>
 
@@ -16,6 +17,7 @@ namespace fs = std::filesystem;
 namespace {
 
 constexpr const char* lock_name = ".lock";
+constexpr std::uint64_t most_place = 4096;
 
 Error fault(const fs::path& path, const std::string& action) {
     return system_fault("cannot " + action + ": " + std::strerror(errno), path.string());
@@ -31,12 +33,22 @@ Result<bool> holds_nothing(const fs::path& folder) {
     return true;
 }
 
-Result<OpenSite> make_site(FolderLock lock, const SiteFolder& folder, const std::string& name) {
+/// The keys, and the store: last what makes the folder a site, so that one is never half there. A database comes first, since
+/// it may be out of reach.
+Result<OpenSite> make_site(FolderLock lock, const SiteFolder& folder, const ServeConfig& config) {
+    std::optional<Store> made;
+    if (!config.store.empty()) {
+        WEAVE_TRY(made, Store::create(config.store, config.site));
+    }
     WEAVE_TRY(KeyPair log, create_server_key(folder.log_key(), ServerKeyRole::log));
     WEAVE_TRY(KeyPair stamp, create_server_key(folder.stamp_key(), ServerKeyRole::stamp));
     WEAVE_TRY(KeyPair access, create_server_key(folder.access_key(), ServerKeyRole::access));
-    WEAVE_TRY(Store store, Store::create(folder.store(), name));
-    return OpenSite{std::move(lock), std::move(store), {std::move(log), std::move(stamp), std::move(access)}, name, true};
+    if (made) {
+        WEAVE_CHECK_OK(create_private_file(folder.store_place(), config.store + "\n"));
+    } else {
+        WEAVE_TRY(made, Store::create(folder.own_store(), config.site));
+    }
+    return OpenSite{std::move(lock), *std::move(made), {std::move(log), std::move(stamp), std::move(access)}, config.site, true};
 }
 
 /// The key for access tokens. Sites that were made before there was one have none yet.
@@ -48,21 +60,24 @@ Result<KeyPair> access_key_of(const SiteFolder& folder) {
 }
 
 /// Nothing is served that somebody changed past the program: a recall that was undone would go to a loom.
-Status check_tables(const SiteFolder& folder) {
-    WEAVE_TRY(const auto findings, verify_tables(folder.store()));
+Status check_tables(const std::string& store) {
+    WEAVE_TRY(const auto findings, verify_tables(store));
     if (findings.empty()) return {};
     return Error{ErrorCode::refused,
                  "was changed by something else than loomlink: " + findings.front().text() +
                      "; `loomlink verify` tells all, a backup can be restored",
-                 folder.store().string()};
+                 store};
 }
 
-Result<OpenSite> open_old_site(FolderLock lock, const SiteFolder& folder) {
+Result<OpenSite> open_old_site(FolderLock lock, const SiteFolder& folder, const ServeConfig& config) {
+    WEAVE_TRY(const std::string place, folder.store());
+    if (!config.store.empty() && config.store != place)
+        return Error{ErrorCode::refused, "the store of this site is " + place + "; `loomlink migrate-store` moves it", "store"};
     WEAVE_TRY(KeyPair log, load_server_key(folder.log_key(), ServerKeyRole::log));
     WEAVE_TRY(KeyPair stamp, load_server_key(folder.stamp_key(), ServerKeyRole::stamp));
     WEAVE_TRY(KeyPair access, access_key_of(folder));
-    WEAVE_TRY(Store store, Store::open(folder.store()));
-    WEAVE_CHECK_OK(check_tables(folder));
+    WEAVE_TRY(Store store, Store::open(place, config.standby));
+    WEAVE_CHECK_OK(check_tables(place));
     WEAVE_TRY(std::string name, store.read([](const Reader& reader) { return reader.site(); }));
     return OpenSite{std::move(lock), std::move(store), {std::move(log), std::move(stamp), std::move(access)}, std::move(name), false};
 }
@@ -74,9 +89,22 @@ std::string SiteFolder::whole_path() const {
     return fs::absolute(path, unknown).lexically_normal().string();
 }
 
-Status check_site_folder(const SiteFolder& folder) {
+bool SiteFolder::holds_site() const {
     std::error_code trouble;
-    if (fs::exists(folder.store(), trouble)) return {};
+    return fs::exists(store_place(), trouble) || fs::exists(own_store(), trouble);
+}
+
+Result<std::string> SiteFolder::store() const {
+    std::error_code trouble;
+    if (!fs::exists(store_place(), trouble)) return own_store().string();
+    WEAVE_TRY(std::string place, read_file(store_place(), most_place));
+    while (place.ends_with('\n')) place.pop_back();
+    if (!is_database(place)) return bad_input("holds no connection string of PostgreSQL", store_place().string());
+    return place;
+}
+
+Status check_site_folder(const SiteFolder& folder) {
+    if (folder.holds_site()) return {};
     WEAVE_TRY(const bool empty, holds_nothing(folder.path));
     if (empty) return {};
     return Error{ErrorCode::refused, "holds no store of loomlink, and is not empty", folder.path.string()};
@@ -85,11 +113,10 @@ Status check_site_folder(const SiteFolder& folder) {
 Result<OpenSite> open_site(const SiteFolder& folder, const ServeConfig& config) {
     WEAVE_CHECK_OK(make_service_folder(folder.path));
     WEAVE_CHECK_OK(check_site_folder(folder));
-    std::error_code trouble;
     WEAVE_TRY(FolderLock lock, FolderLock::take(folder.path, "loomlink"));
-    if (fs::exists(folder.store(), trouble)) return open_old_site(std::move(lock), folder);
+    if (folder.holds_site()) return open_old_site(std::move(lock), folder, config);
     if (::chmod(folder.path.c_str(), 0700) != 0) return fault(folder.path, "close it to others");
-    return make_site(std::move(lock), folder, config.site);
+    return make_site(std::move(lock), folder, config);
 }
 
 }  // namespace weave::loomlink

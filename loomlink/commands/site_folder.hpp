@@ -17,7 +17,14 @@ struct SiteFolder {
     std::filesystem::path path;
     /// Its path from the root, to be told to people.
     [[nodiscard]] std::string whole_path() const;
-    [[nodiscard]] std::filesystem::path store() const { return path / "loomlink.db"; }
+    /// The store where nothing else is said: one file of SQLite.
+    [[nodiscard]] std::filesystem::path own_store() const { return path / "loomlink.db"; }
+    /// Holds the connection string of the database, where the store is one; it wins over a file.
+    [[nodiscard]] std::filesystem::path store_place() const { return path / "store.url"; }
+    /// Whether it holds a site, wherever its store is.
+    [[nodiscard]] bool holds_site() const;
+    /// Where the store is: a path or a connection string, for Store::open(). Errors: a `store.url` that is none.
+    [[nodiscard]] Result<std::string> store() const;
     [[nodiscard]] std::filesystem::path log_key() const { return path / "log.key"; }
     [[nodiscard]] std::filesystem::path stamp_key() const { return path / "stamp.key"; }
     [[nodiscard]] std::filesystem::path access_key() const { return path / "access.key"; }
@@ -36,10 +43,10 @@ struct OpenSite {
     bool is_new = false;
 };
 
-/// Opens the site in a folder, or makes it where the folder is missing or empty: the store, and the keys for
-/// log, stamps and access tokens (mode 0600). The last is made anew where it is missing, since nothing that lasts is
+/// Opens the site in a folder, or makes it where the folder is missing or empty: the store (in the database that
+/// `config.store` names, else a file), and the keys for log, stamps and access tokens (mode 0600). The last is made anew where it is missing, since nothing that lasts is
 /// signed with it. Errors: a folder that is missing with the one above it (bad_input); refused:
-/// one that holds other things, or half a site.
+/// one that holds other things, or half a site; one whose store is elsewhere than `config.store` says.
 Result<OpenSite> open_site(const SiteFolder& folder, const ServeConfig& config);
 
 }  // namespace weave::loomlink

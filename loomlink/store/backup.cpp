@@ -1,10 +1,11 @@
 #include <loomlink/store/backup.hpp>
 
-#include <weave/sql/database.hpp>
+#include <weave/sql/sqlite.hpp>
 
 #include <cerrno>
 #include <cstring>
 #include <fcntl.h>
+#include <loomlink/store/copy.hpp>
 #include <loomlink/store/store.hpp>
 #include <unistd.h>
 
@@ -46,7 +47,7 @@ fs::path folder_of(const fs::path& path) {
     return path.has_parent_path() ? path.parent_path() : fs::path(".");
 }
 
-Status copy_pages(sql::Connection& source, sql::Connection& target) {
+Status copy_pages(sql::SqliteConnection& source, sql::SqliteConnection& target) {
     sqlite3_backup* backup = sqlite3_backup_init(target.handle(), "main", source.handle(), "main");
     if (backup == nullptr) return target.trouble(sqlite3_errcode(target.handle()));
     int code = SQLITE_OK;
@@ -71,8 +72,8 @@ Status make_empty(const fs::path& path) {
 
 /// A copy as one closed file, flushed.
 Status make_copy(const std::string& from, const std::string& to) {
-    WEAVE_TRY(auto source, sql::Connection::open(from, sql::Access::read));
-    WEAVE_TRY(auto target, sql::Connection::open(to, sql::Access::create));
+    WEAVE_TRY(auto source, sql::SqliteConnection::open_file(from, sql::Access::read));
+    WEAVE_TRY(auto target, sql::SqliteConnection::open_file(to, sql::Access::create));
     // One view for all pages, so that writes meanwhile neither show nor start the copy anew.
     WEAVE_CHECK_OK(source->script("BEGIN; SELECT count(*) FROM sqlite_schema"));
     return copy_pages(*source, *target);
@@ -80,14 +81,30 @@ Status make_copy(const std::string& from, const std::string& to) {
 
 /// Closes the way to a store for all others for as long as the connection lives; refused while anybody has it
 /// open.
-Result<std::unique_ptr<sql::Connection>> shut(const fs::path& path) {
-    WEAVE_TRY(auto connection, sql::Connection::open(path.string(), sql::Access::write));
+Result<std::unique_ptr<sql::SqliteConnection>> shut(const fs::path& path) {
+    WEAVE_TRY(auto connection, sql::SqliteConnection::open_file(path.string(), sql::Access::write));
     sqlite3_busy_timeout(connection->handle(), 0);
     // Only the last connection may leave WAL, and the other journal takes no second one beside an exclusive
     // lock.
     if (!connection->script("PRAGMA journal_mode = DELETE") || !connection->script("BEGIN EXCLUSIVE"))
         return Error{ErrorCode::refused, "is in use; stop the program that has it open", path.string()};
     return connection;
+}
+
+/// Replaces the file of a store that no program has open.
+Status put_into_place(const fs::path& backup, const fs::path& to) {
+    std::unique_ptr<sql::SqliteConnection> held;
+    std::error_code code;
+    const Temporary temporary{beside(to)};
+    WEAVE_CHECK_OK(make_empty(temporary.path));
+    WEAVE_CHECK_OK(make_copy(backup.string(), temporary.path.string()));
+    WEAVE_CHECK_OK(flush(temporary.path, O_RDWR));
+    if (fs::exists(to, code)) {
+        WEAVE_TRY(held, shut(to));
+    }
+    fs::rename(temporary.path, to, code);
+    if (code) return system_fault("cannot be put into place: " + code.message(), to.string());
+    return flush(folder_of(to), O_RDONLY | O_DIRECTORY);
 }
 
 }  // namespace
@@ -108,22 +125,12 @@ Status copy_database(const std::string& from, const fs::path& to) {
     return make_database(to, [&](const std::string& temporary) { return make_copy(from, temporary); });
 }
 
-Status restore_store(const fs::path& backup, const fs::path& to) {
+Status restore_store(const fs::path& backup, const std::string& to) {
     WEAVE_TRY(const auto findings, verify_store(backup));
     if (!findings.empty())
         return Error{ErrorCode::refused, "is not whole: " + findings.front().text(), backup.string()};
-    std::unique_ptr<sql::Connection> held;
-    std::error_code code;
-    const Temporary temporary{beside(to)};
-    WEAVE_CHECK_OK(make_empty(temporary.path));
-    WEAVE_CHECK_OK(make_copy(backup.string(), temporary.path.string()));
-    WEAVE_CHECK_OK(flush(temporary.path, O_RDWR));
-    if (fs::exists(to, code)) {
-        WEAVE_TRY(held, shut(to));
-    }
-    fs::rename(temporary.path, to, code);
-    if (code) return system_fault("cannot be put into place: " + code.message(), to.string());
-    return flush(folder_of(to), O_RDONLY | O_DIRECTORY);
+    if (is_database(to)) return replace_store(backup, to);
+    return put_into_place(backup, to);
 }
 
 }  // namespace weave::loomlink

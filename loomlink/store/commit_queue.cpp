@@ -4,6 +4,7 @@
 
 #include <algorithm>
 #include <exception>
+#include <loomlink/store/server.hpp>
 #include <utility>
 
 namespace weave::loomlink {
@@ -25,8 +26,15 @@ Status call(const std::function<Status(Writer&)>& change, Writer& writer) {
 
 }  // namespace
 
-CommitQueue::CommitQueue(std::string path, std::unique_ptr<sql::Connection> connection)
-    : m_path(std::move(path)), m_connection(std::move(connection)), m_thread([this] { work(); }) {}
+/// The system may fail one change and take the others, as a server does whose disk is full.
+Status CommitQueue::first_fault(const std::deque<Job*>& jobs) {
+    for (const Job* job : jobs)
+        if (!job->outcome && job->outcome.error().code == ErrorCode::system) return job->outcome;
+    return {};
+}
+
+CommitQueue::CommitQueue(std::string place, std::unique_ptr<sql::Connection> connection, LogMark& mark)
+    : m_place(std::move(place)), m_mark(mark), m_connection(std::move(connection)), m_thread([this] { work(); }) {}
 
 CommitQueue::~CommitQueue() {
     {
@@ -72,22 +80,33 @@ void CommitQueue::commit_all(const std::deque<Job*>& jobs) {
     if (status) status = run_all(jobs);
     {
         const std::lock_guard lock(m_mutex);
-        m_last_write = status;
+        m_last_write = status ? first_fault(jobs) : status;
     }
     if (status) return;
     // Nothing of the batch was stored, so nobody of it may believe so. Whose change was refused anyway keeps
     // the reason.
     for (Job* job : jobs)
         if (job->outcome) job->outcome = status;
-    if (m_connection && m_connection->in_transaction()) static_cast<void>(m_connection->script("ROLLBACK"));
+    if (m_connection) m_connection->rollback();
     log(LogLevel::warning, "the store could not write: " + status.error().text());
     m_connection.reset();  // what a failed disk left in its cache is not to be trusted
 }
 
 Status CommitQueue::run_all(const std::deque<Job*>& jobs) {
-    WEAVE_CHECK_OK(m_connection->script("BEGIN IMMEDIATE"));
+    WEAVE_CHECK_OK(begin());
     for (Job* job : jobs) WEAVE_CHECK_OK(run_one(*job));
-    return m_connection->script("COMMIT");
+    WEAVE_TRY(const auto last, LogMark::newest(*m_connection));
+    WEAVE_CHECK_OK(m_connection->commit());
+    m_mark.set(last);
+    return {};
+}
+
+/// Nothing is lost by a second try where the server went away since the last commit.
+Status CommitQueue::begin() {
+    Status begun = m_connection->begin_write();
+    if (begun || m_connection->is_usable()) return begun;
+    WEAVE_CHECK_OK(reopen());
+    return m_connection->begin_write();
 }
 
 /// Runs one change in a savepoint. An error is one that ends the whole batch; the change's own goes into its
@@ -98,13 +117,14 @@ Status CommitQueue::run_one(Job& job) {
     job.outcome = call(*job.change, writer);
     if (!m_connection
              ->in_transaction())  // a full disk may roll back everything, this change's neighbours with it
-        return job.outcome ? system_fault("the transaction was ended", m_path) : Status(job.outcome.error());
+        return job.outcome ? system_fault("the transaction was ended; nothing was stored") : Status(job.outcome.error());
     if (!job.outcome) WEAVE_CHECK_OK(m_connection->script("ROLLBACK TO change"));
     return m_connection->script("RELEASE change");
 }
 
 Status CommitQueue::reopen() {
-    WEAVE_TRY(m_connection, sql::Connection::open(m_path, sql::Access::write));
+    m_connection.reset();
+    WEAVE_TRY(m_connection, open_writer(m_place, m_mark));
     return {};
 }
 

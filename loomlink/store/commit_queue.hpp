@@ -6,6 +6,7 @@
 #include <condition_variable>
 #include <deque>
 #include <functional>
+#include <loomlink/store/log_mark.hpp>
 #include <loomlink/store/writer.hpp>
 #include <memory>
 #include <mutex>
@@ -18,7 +19,8 @@ namespace weave::loomlink {
 /// savepoint of its own, so that one that is refused takes no other with it.
 class CommitQueue {
   public:
-    CommitQueue(std::string path, std::unique_ptr<sql::Connection> connection);
+    /// `mark`, which must outlive it, is kept at the last record that was committed.
+    CommitQueue(std::string place, std::unique_ptr<sql::Connection> connection, LogMark& mark);
     /// Finishes what waits.
     ~CommitQueue();
     CommitQueue(const CommitQueue&) = delete;
@@ -39,11 +41,14 @@ class CommitQueue {
 
     void work();
     void commit_all(const std::deque<Job*>& jobs);
+    static Status first_fault(const std::deque<Job*>& jobs);
     Status run_all(const std::deque<Job*>& jobs);
     Status run_one(Job& job);
+    Status begin();
     Status reopen();
 
-    std::string m_path;
+    std::string m_place;
+    LogMark& m_mark;
     std::unique_ptr<sql::Connection> m_connection;
     mutable std::mutex m_mutex;
     std::condition_variable m_wake;  ///< the writer: there is work, or an end

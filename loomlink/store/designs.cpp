@@ -190,7 +190,7 @@ Reader::List<Comment> Reader::comments(Id revision) const {
 }
 
 Result<Id> Writer::add_design(const std::string& name, Seq event) {
-    return connection().insert("INSERT INTO design (name, event) VALUES (?, ?)", name, number_of(event));
+    return connection().number("INSERT INTO design (name, event) VALUES (?, ?) RETURNING id", name, number_of(event));
 }
 
 Result<Revision> Writer::add_revision(const Revision& given) {
@@ -214,9 +214,9 @@ Result<Revision> Writer::add_revision(const Revision& given) {
         connection().number("SELECT coalesce(max(number), 0) FROM revision WHERE design = ?", given.design));
     WEAVE_TRY(
         const Id id,
-        connection().insert(
+        connection().number(
             "INSERT INTO revision (hash, design, number, author, at, message, document, design_sha256, "
-            "scene_sha256, card_sha256, picks, ends, event) VALUES (?, ?, ?, ?, ?, ?, ?, ?, ?, ?, ?, ?, ?)",
+            "scene_sha256, card_sha256, picks, ends, event) VALUES (?, ?, ?, ?, ?, ?, ?, ?, ?, ?, ?, ?, ?) RETURNING id",
             revision_hash(given, *design, author->login, parents), given.design, last + 1, given.author,
             given.at, given.message, document, given.design_sha256, given.scene_sha256, given.card_sha256,
             given.picks, given.ends, number_of(given.event)));
@@ -264,10 +264,10 @@ Status Writer::add_waiver(const Waiver& waiver) {
 
 Result<Id> Writer::add_evidence(const Evidence& evidence) {
     WEAVE_TRY(const Id report, object_id(evidence.report));
-    return connection().insert(
+    return connection().number(
         "INSERT INTO evidence (design_sha256, scene_sha256, coverage, fidelity, parameters, solver, "
         "residual, "
-        "converged, report, signer, event) VALUES (?, ?, ?, ?, ?, ?, ?, ?, ?, ?, ?)",
+        "converged, report, signer, event) VALUES (?, ?, ?, ?, ?, ?, ?, ?, ?, ?, ?) RETURNING id",
         evidence.design_sha256, evidence.scene_sha256, evidence.coverage, evidence.fidelity,
         evidence.parameters, evidence.solver, evidence.residual, std::int64_t{evidence.converged ? 1 : 0},
         report, evidence.signer, number_of(evidence.event));

@@ -37,7 +37,7 @@ Reader::List<std::pair<Seq, std::string>> Reader::events(const EventFilter& filt
     const std::int64_t from = signed_of(filter.from);
     if (filter.subject)
         return connection().all(
-            "SELECT seq, record FROM event WHERE subject = ?1 AND seq >= ?2 AND (?3 IS NULL OR kind = ?3) "
+            "SELECT seq, record FROM event WHERE subject = ?1 AND seq >= ?2 AND kind = coalesce(?3, kind) "
             "ORDER BY seq LIMIT ?4",
             make, *filter.subject, from, filter.kind, most);
     if (filter.kind)

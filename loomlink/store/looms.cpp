@@ -160,7 +160,7 @@ Reader::List<Loaded> Reader::loaded(Id release) const {
 }
 
 Result<Id> Writer::add_loom(const std::string& name, Seq event) {
-    return connection().insert("INSERT INTO loom (name, event) VALUES (?, ?)", name, number_of(event));
+    return connection().number("INSERT INTO loom (name, event) VALUES (?, ?) RETURNING id", name, number_of(event));
 }
 
 Result<std::int64_t> Writer::add_profile(Id loom, const Hash& object, Seq event) {
@@ -189,9 +189,9 @@ Result<Release> Writer::add_release(const Release& given) {
     WEAVE_TRY(const std::int64_t last,
               connection().number("SELECT coalesce(max(number), 0) FROM release WHERE loom = ?", given.loom));
     WEAVE_TRY(const Id id,
-              connection().insert(
+              connection().number(
                   "INSERT INTO release (loom, number, revision, profile_version, feeders, manifest, "
-                  "event) VALUES (?, ?, ?, ?, ?, ?, ?)",
+                  "event) VALUES (?, ?, ?, ?, ?, ?, ?) RETURNING id",
                   given.loom, last + 1, given.revision, given.profile_version, given.feeders, manifest,
                   number_of(given.event)));
     for (const ReleaseFile& file : given.files) {

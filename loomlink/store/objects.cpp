@@ -27,7 +27,7 @@ Result<Id> put_chunk(sql::Connection& connection, std::string_view bytes) {
     WEAVE_TRY(const Id known, connection.number("SELECT id FROM chunk WHERE hash = ?", hash));
     if (known != 0) return known;
     const auto packed = pack(bytes);
-    return connection.insert("INSERT INTO chunk (hash, size, packed, bytes) VALUES (?, ?, ?, ?)", hash,
+    return connection.number("INSERT INTO chunk (hash, size, packed, bytes) VALUES (?, ?, ?, ?) RETURNING id", hash,
                              static_cast<std::int64_t>(bytes.size()), std::int64_t{packed ? 1 : 0},
                              sql::Blob{packed ? std::string_view(*packed) : bytes});
 }
@@ -75,7 +75,7 @@ Result<Hash> Writer::put_object(std::string_view bytes) {
     const Hash hash = sha256(bytes);
     WEAVE_TRY(const bool known, has_object(hash));
     if (known) return hash;
-    WEAVE_TRY(const Id object, connection().insert("INSERT INTO object (hash, size) VALUES (?, ?)", hash,
+    WEAVE_TRY(const Id object, connection().number("INSERT INTO object (hash, size) VALUES (?, ?) RETURNING id", hash,
                                                    static_cast<std::int64_t>(bytes.size())));
     std::int64_t position = 0;
     for (const std::string_view chunk : cut_into_chunks(bytes)) {

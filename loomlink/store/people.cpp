@@ -44,7 +44,7 @@ Reader::Maybe<Person> with_roles(sql::Connection& connection, Reader::Maybe<Pers
 Status set_roles(sql::Connection& connection, Id person, const std::vector<PersonRole>& roles) {
     WEAVE_CHECK_OK(connection.run("DELETE FROM person_role WHERE person = ?", person));
     for (const PersonRole role : roles)
-        WEAVE_CHECK_OK(connection.run("INSERT OR IGNORE INTO person_role (person, role) VALUES (?, ?)",
+        WEAVE_CHECK_OK(connection.run("INSERT INTO person_role (person, role) VALUES (?, ?) ON CONFLICT DO NOTHING",
                                       person, std::string(word(role))));
     return {};
 }
@@ -88,7 +88,7 @@ Reader::Maybe<PersonKey> Reader::key(const std::string& id) const {
 
 Reader::List<PersonKey> Reader::keys(std::optional<Id> person) const {
     return connection().all(
-        "SELECT id, person, purpose, public_key, sealed, created, revoked FROM person_key WHERE person IS ? "
+        "SELECT id, person, purpose, public_key, sealed, created, revoked FROM person_key WHERE person IS NOT DISTINCT FROM ? "
         "ORDER BY created, id",
         key_of, person);
 }
@@ -115,8 +115,8 @@ Reader::Maybe<std::string> Reader::answer(const std::string& request, Id person)
 
 Result<Id> Writer::add_person(const Person& person) {
     WEAVE_TRY(const Id id,
-              connection().insert(
-                  "INSERT INTO person (login, full_name, active, password, event) VALUES (?, ?, ?, ?, ?)",
+              connection().number(
+                  "INSERT INTO person (login, full_name, active, password, event) VALUES (?, ?, ?, ?, ?) RETURNING id",
                   person.login, person.full_name, std::int64_t{person.active ? 1 : 0}, person.password,
                   static_cast<std::int64_t>(person.event)));
     WEAVE_CHECK_OK(set_roles(connection(), id, person.roles));

@@ -94,7 +94,7 @@ Status inspect_trust(const Reader& reader, std::vector<AuditFinding>& findings) 
 
 }  // namespace
 
-Result<StoreTrust> own_trust(const std::filesystem::path& store, const PublicKey& log) {
+Result<StoreTrust> own_trust(const std::string& store, const PublicKey& log) {
     KeysById people, logs{{key_id(log), log}};
     const Status asked = look_into(store, [&](const Reader& reader) -> Status {
         WEAVE_TRY(people, keys_in(reader));
@@ -110,7 +110,7 @@ Result<StoreTrust> own_trust(const std::filesystem::path& store, const PublicKey
         check_by(std::move(logs), Purpose::tree_head), check_by(std::move(people), Purpose::statement), {}};
 }
 
-Result<std::vector<AuditFinding>> verify_signatures(const std::filesystem::path& store) {
+Result<std::vector<AuditFinding>> verify_signatures(const std::string& store) {
     std::vector<AuditFinding> findings;
     const Status asked = look_into(store, [&](const Reader& reader) -> Status {
         WEAVE_TRY(const KeysById keys, keys_in(reader));

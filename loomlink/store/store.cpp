@@ -1,35 +1,19 @@
 #include <loomlink/store/store.hpp>
 
+#include <weave/core/log.hpp>
 #include <weave/sql/database.hpp>
 
-#include <condition_variable>
+#include <atomic>
 #include <loomlink/store/backup.hpp>
 #include <loomlink/store/commit_queue.hpp>
+#include <loomlink/store/copy.hpp>
 #include <loomlink/store/migrations.hpp>
-#include <mutex>
+#include <loomlink/store/readers.hpp>
+#include <loomlink/store/server.hpp>
 
 namespace weave::loomlink {
 
 namespace {
-
-namespace fs = std::filesystem;
-
-constexpr std::size_t most_readers = 8;
-
-/// A transaction that only reads; over at the end of its scope.
-class ReadView {
-  public:
-    explicit ReadView(sql::Connection& connection) : m_connection(connection) {}
-    ~ReadView() {
-        if (m_connection.in_transaction()) static_cast<void>(m_connection.script("ROLLBACK"));
-    }
-    ReadView(const ReadView&) = delete;
-    ReadView& operator=(const ReadView&) = delete;
-    Status begin() { return m_connection.script("BEGIN"); }
-
-  private:
-    sql::Connection& m_connection;
-};
 
 Status call(const std::function<Status(const Reader&)>& ask, const Reader& reader) {
     try {
@@ -45,57 +29,52 @@ Status call(const std::function<Status(const Reader&)>& ask, const Reader& reade
 
 class Store::Core {
   public:
-    Core(std::string path, std::unique_ptr<sql::Connection> writer)
-        : m_path(path), m_queue(std::move(path), std::move(writer)) {}
+    Core(const std::string& place, std::unique_ptr<sql::Connection> writer, const std::string& standby,
+         const std::optional<LogMark::Record>& newest)
+        : m_readers(place, sql::Access::read), m_queue(place, std::move(writer), m_mark) {
+        m_mark.set(newest);
+        if (!standby.empty()) m_standby.emplace(standby, sql::Access::standby);
+    }
 
     Status commit(const std::function<Status(Writer&)>& change) { return m_queue.commit(change); }
 
     [[nodiscard]] Status last_write() const { return m_queue.last_write(); }
 
     Status view(const std::function<Status(const Reader&)>& ask) {
-        WEAVE_TRY(auto connection, take_reader());
-        Status status;
-        {
-            ReadView transaction(*connection);
-            status = transaction.begin();
-            if (status) status = call(ask, Reader(*connection));
-        }
-        give_back(std::move(connection));
-        return status;
+        if (m_standby)
+            if (const auto lease = take_standby()) return call(ask, Reader(lease->connection()));
+        WEAVE_TRY(const auto lease, m_readers.take(m_mark));
+        WEAVE_CHECK_OK(lease.connection().begin_read());
+        return call(ask, Reader(lease.connection()));
     }
 
-    [[nodiscard]] const std::string& path() const { return m_path; }
+    [[nodiscard]] const std::string& place() const { return m_readers.place(); }
 
   private:
-    /// A reader that is free, a new one, or the next that becomes free.
-    Result<std::unique_ptr<sql::Connection>> take_reader() {
-        std::unique_lock lock(m_mutex);
-        m_free.wait(lock, [this] { return !m_readers.empty() || m_open < most_readers; });
-        if (!m_readers.empty()) {
-            auto connection = std::move(m_readers.back());
-            m_readers.pop_back();
-            return connection;
-        }
-        ++m_open;
-        lock.unlock();
-        auto connection = sql::Connection::open(m_path, sql::Access::read);
-        if (!connection) give_back(nullptr);
-        return connection;
+    /// The standby with a view that holds all that was acknowledged before, by whomever; else the reason is logged, once.
+    std::optional<Readers::Lease> take_standby() {
+        auto lease = try_standby();
+        if (lease && m_is_behind.exchange(false)) log(LogLevel::info, "views are read from the standby again");
+        if (!lease && !m_is_behind.exchange(true))
+            log(LogLevel::warning, "views are read from the primary: the standby " + lease.error().text());
+        return lease ? std::optional(std::move(lease).value()) : std::nullopt;
     }
-    void give_back(std::unique_ptr<sql::Connection> connection) {
-        const std::lock_guard lock(m_mutex);
-        if (connection)
-            m_readers.push_back(std::move(connection));
-        else
-            --m_open;
-        m_free.notify_one();
+    Result<Readers::Lease> try_standby() {
+        WEAVE_TRY(auto lease, m_standby->take(m_mark));
+        {
+            WEAVE_TRY(const auto primary, m_readers.take(m_mark));
+            WEAVE_TRY(const bool caught_up, catches_up(lease.connection(), primary.connection()));
+            if (!caught_up) return system_fault("lags behind the primary");
+        }
+        WEAVE_CHECK_OK(lease.connection().begin_read());
+        WEAVE_CHECK_OK(m_mark.check(lease.connection()));
+        return lease;
     }
 
-    std::string m_path;
-    std::mutex m_mutex;
-    std::condition_variable m_free;
-    std::vector<std::unique_ptr<sql::Connection>> m_readers;
-    std::size_t m_open = 0;
+    LogMark m_mark;
+    Readers m_readers;
+    std::optional<Readers> m_standby;
+    std::atomic<bool> m_is_behind = false;
     CommitQueue m_queue;
 };
 
@@ -104,22 +83,41 @@ Store::~Store() = default;
 Store::Store(Store&&) noexcept = default;
 Store& Store::operator=(Store&&) noexcept = default;
 
-Result<Store> Store::create(const fs::path& path, const std::string& site) {
-    const auto fill = [&](const std::string& temporary) -> Status {
-        WEAVE_TRY(auto connection, sql::Connection::open(temporary, sql::Access::create));
-        WEAVE_CHECK_OK(sql::migrate(*connection, migrations(), store_owner));
-        return connection->run("INSERT INTO site (one, name) VALUES (1, ?)", site);
-    };
-    WEAVE_CHECK_OK(make_database(path, fill));
-    return open(path);
+namespace {
+
+/// Tables, and the site that they are of.
+Status fill(sql::Connection& connection, const std::string& site) {
+    WEAVE_CHECK_OK(sql::migrate(connection, migrations(connection.engine()), store_owner));
+    return connection.run("INSERT INTO site (one, name) VALUES (1, ?)", site);
 }
 
-Result<Store> Store::open(const fs::path& path) {
-    WEAVE_TRY(auto connection, sql::Connection::open(path.string(), sql::Access::write));
-    Status status = sql::migrate(*connection, migrations(), store_owner);
-    if (!status) return std::move(status).error().in(path.string());
+Status create_file(const std::string& path, const std::string& site) {
+    return make_database(path, [&](const std::string& temporary) -> Status {
+        WEAVE_TRY(const auto connection, sql::Connection::open(temporary, sql::Access::create));
+        return fill(*connection, site);
+    });
+}
+
+Status create_on_server(const std::string& place, const std::string& site) {
+    WEAVE_TRY(const auto connection, open_writer(place, {}));
+    if (Status filled = fill(*connection, site); !filled) return std::move(filled).error().in("the database for the store");
+    return {};
+}
+
+}  // namespace
+
+Result<Store> Store::create(const std::string& place, const std::string& site) {
+    WEAVE_CHECK_OK(is_database(place) ? create_on_server(place, site) : create_file(place, site));
+    return open(place);
+}
+
+Result<Store> Store::open(const std::string& place, const std::string& standby) {
+    WEAVE_TRY(auto connection, open_writer(place, {}));
+    Status status = sql::migrate(*connection, migrations(connection->engine()), store_owner);
+    if (!status) return std::move(status).error().in(place);
     WEAVE_CHECK_OK(Reader(*connection).site());
-    return Store(std::make_unique<Core>(path.string(), std::move(connection)));
+    WEAVE_TRY(const auto newest, LogMark::newest(*connection));
+    return Store(std::make_unique<Core>(place, std::move(connection), standby, newest));
 }
 
 Status Store::commit(const std::function<Status(Writer&)>& change) {
@@ -134,8 +132,16 @@ Status Store::last_write() const {
     return m_core->last_write();
 }
 
-Status Store::backup(const fs::path& to) const {
-    return copy_database(m_core->path(), to);
+Status Store::backup(const std::filesystem::path& to) const {
+    return back_up_store(m_core->place(), to);
+}
+
+bool is_database(const std::string& place) {
+    return sql::engine_of(place) == sql::Engine::postgres;
+}
+
+Status back_up_store(const std::string& place, const std::filesystem::path& to) {
+    return is_database(place) ? copy_store(place, to.string()) : copy_database(place, to);
 }
 
 }  // namespace weave::loomlink

@@ -16,15 +16,17 @@
 
 namespace weave::loomlink {
 
-/// The one way to what loomlink keeps. One file of SQLite; a server database can stand in behind the same
-/// face. Any thread may call. What a write() has answered well survives kill -9 and power loss.
+/// The one way to what loomlink keeps, in the place that sql::engine_of() tells: one file of SQLite, or a database of
+/// PostgreSQL, which several programs may have open. Any thread may call. What a write() has answered well survives kill -9
+/// and power loss, and on a server with a synchronous standby the loss of the primary.
 class Store {
   public:
-    /// Makes a store for a site. Refused where the file exists.
-    static Result<Store> create(const std::filesystem::path& path, const std::string& site);
+    /// Makes a store for a site. Refused where the file exists, or the database holds one.
+    static Result<Store> create(const std::string& place, const std::string& site);
     /// Opens a store, and brings one of an older version up to date. Refused: a newer one, another program's
-    /// file.
-    static Result<Store> open(const std::filesystem::path& path);
+    /// file, and as of open_writer(). `standby`: the place of a server that follows, from which views are then read as
+    /// long as it shows all that the primary has; else from the primary.
+    static Result<Store> open(const std::string& place, const std::string& standby = {});
     /// Waits for the writes under way.
     ~Store();
     Store(Store&&) noexcept;
@@ -52,7 +54,8 @@ class Store {
     /// How the disk took the last write: an error of the system while it is full or fails.
     [[nodiscard]] Status last_write() const;
 
-    /// A copy of the store as it is now, while it is in use. Refused where the file exists.
+    /// A copy of the store as it is now, while it is in use: a file of SQLite, whatever the store is. Refused where the
+    /// file exists.
     Status backup(const std::filesystem::path& to) const;
 
   private:
@@ -77,12 +80,22 @@ class Store {
     std::unique_ptr<Core> m_core;
 };
 
-/// Asks the file of a store on one unchanging view; changes nothing, also while it is in use.
-Status look_into(const std::filesystem::path& path, const std::function<Status(const Reader&)>& ask);
+/// Whether a place is a connection string of PostgreSQL, not the path of a file.
+bool is_database(const std::string& place);
+
+/// Asks a store on one unchanging view; changes nothing, also while it is in use.
+Status look_into(const std::string& place, const std::function<Status(const Reader&)>& ask);
+
+/// Refused: a store that programs of loomlink have open, on whatever machine. A file's program is known by the lock of its
+/// folder instead.
+Status refuse_in_use(const std::string& place);
+
+/// Copies a store, in use or not, into a new file of SQLite. Refused where it exists.
+Status back_up_store(const std::string& place, const std::filesystem::path& to);
 
 /// Puts a backup into place, whole or not at all, after verifying it. Refused: a backup with findings, and a
 /// target that a program has open.
-Status restore_store(const std::filesystem::path& backup, const std::filesystem::path& to);
+Status restore_store(const std::filesystem::path& backup, const std::string& to);
 
 /// What verify_store() trusts beforehand. What is missing is not checked.
 struct StoreTrust {
@@ -91,11 +104,11 @@ struct StoreTrust {
     std::optional<SignedTreeHead> retained;
 };
 
-/// Everything that a store holds, looked at once more: pages and links by SQLite, every object's hash, every
+/// Everything that a store holds, looked at once more: pages and links by the database, every object's hash, every
 /// record, its leaf and chain, the tree, the heads, every revision's hash. Whether the tables say what the log tells
 /// is for those who know what each record means (workflow/retelling.hpp).
 /// Empty: all well. An error only where the store cannot be read at all.
-Result<std::vector<AuditFinding>> verify_store(const std::filesystem::path& path,
+Result<std::vector<AuditFinding>> verify_store(const std::string& place,
                                                const StoreTrust& trust = {});
 
 }  // namespace weave::loomlink

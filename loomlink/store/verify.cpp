@@ -8,32 +8,24 @@ namespace weave::loomlink {
 namespace {
 
 Status inspect_pages(Inspection& inspection) {
-    WEAVE_CHECK_OK(inspection.connection.each("PRAGMA integrity_check", [&](const sql::Row& row) {
-        if (row.bytes(0) != "ok") inspection.find("pages", row.bytes(0));
-    }));
-    return inspection.connection.each("PRAGMA foreign_key_check", [&](const sql::Row& row) {
-        inspection.find(row.bytes(0) + " " + std::to_string(row.integer(1)),
-                        "points at a row of " + row.bytes(2) + " that is not there");
-    });
+    const auto find = [&](const std::string& place, const std::string& cause) { inspection.find(place, cause); };
+    WEAVE_CHECK_OK(inspection.connection.inspect_pages(find));
+    return inspection.connection.inspect_links(find);
 }
 
 /// What the migrations made: the schema, and the table of which state may follow which.
 Result<std::set<std::string>> rules_of(sql::Connection& connection) {
-    std::set<std::string> rules;
-    const auto take = [&](const sql::Row& row) { rules.insert(row.bytes(0)); };
-    WEAVE_CHECK_OK(
-        connection.each("SELECT type || ' ' || name || ': ' || sql FROM sqlite_schema WHERE sql IS NOT NULL "
-                        "AND name NOT LIKE 'sqlite_%'",
-                        take));
+    WEAVE_TRY(auto rules, connection.rules());
     WEAVE_CHECK_OK(connection.each(
-        "SELECT 'transition ' || thing || ' ' || before || ' to ' || after FROM transition", take));
+        "SELECT 'transition ' || thing || ' ' || before || ' to ' || after FROM transition",
+        [&](const sql::Row& row) { rules.insert(row.bytes(0)); }));
     return rules;
 }
 
 /// The rules that keep history are part of the schema: a store that lacks one was opened by something else.
 Status inspect_schema(Inspection& inspection) {
-    WEAVE_TRY(auto fresh, sql::Connection::open(":memory:", sql::Access::create));
-    WEAVE_CHECK_OK(sql::migrate(*fresh, migrations(), store_owner));
+    WEAVE_TRY(const auto fresh, inspection.connection.scratch());
+    for (const sql::Migration& step : migrations(fresh->engine())) WEAVE_CHECK_OK(fresh->script(std::string(step.script)));
     WEAVE_TRY(const auto expected, rules_of(*fresh));
     WEAVE_TRY(const auto found, rules_of(inspection.connection));
     const auto name_of = [](const std::string& entry) { return entry.substr(0, entry.find(':')); };
@@ -136,30 +128,29 @@ Status inspect_rules(Inspection& inspection) {
 }
 
 Status inspect_version(sql::Connection& connection) {
-    WEAVE_TRY(const std::int64_t id, connection.number("PRAGMA application_id"));
-    WEAVE_TRY(const std::int64_t version, connection.number("PRAGMA user_version"));
-    if (id != store_owner.application_id) return Error{ErrorCode::refused, "is no store of loomlink", {}};
-    if (version != migrations().back().version)
+    WEAVE_TRY(const sql::Stamp stamp, connection.stamp());
+    if (stamp.application != store_owner.application_id) return Error{ErrorCode::refused, "is no store of loomlink", {}};
+    if (stamp.version != migrations(connection.engine()).back().version)
         return Error{
             ErrorCode::refused,
-            "is a store of version " + std::to_string(version) + "; open it with a program of that version",
+            "is a store of version " + std::to_string(stamp.version) + "; open it with a program of that version",
             {}};
     return {};
 }
 
 }  // namespace
 
-Status look_into(const std::filesystem::path& path, const std::function<Status(const Reader&)>& ask) {
-    WEAVE_TRY(auto connection, sql::Connection::open(path.string(), sql::Access::read));
-    WEAVE_CHECK_OK(connection->script("BEGIN"));  // one view for all questions, while others write
+Status look_into(const std::string& place, const std::function<Status(const Reader&)>& ask) {
+    WEAVE_TRY(auto connection, sql::Connection::open(place, sql::Access::read));
+    WEAVE_CHECK_OK(connection->begin_read());  // one view for all questions, while others write
     return ask(Reader(*connection));
 }
 
-Result<std::vector<AuditFinding>> verify_store(const std::filesystem::path& path, const StoreTrust& trust) {
-    WEAVE_TRY(auto connection, sql::Connection::open(path.string(), sql::Access::read));
-    WEAVE_CHECK_OK(connection->script("BEGIN"));  // one view for all steps, while others write
+Result<std::vector<AuditFinding>> verify_store(const std::string& place, const StoreTrust& trust) {
+    WEAVE_TRY(auto connection, sql::Connection::open(place, sql::Access::read));
+    WEAVE_CHECK_OK(connection->begin_read());  // one view for all steps, while others write
     if (Status status = inspect_version(*connection); !status)
-        return std::move(status).error().in(path.string());
+        return std::move(status).error().in(place);
     Inspection inspection{*connection, trust, {}};
     for (const auto step : {inspect_pages, inspect_schema, inspect_chunks, inspect_objects, inspect_log,
                             inspect_revisions, inspect_rules}) {

@@ -81,7 +81,7 @@ Status inspect_tree(Inspection& inspection, const Leaves& leaves) {
         for (const auto& [place, hash] : complete) expected[place] = hash;
     }
     WEAVE_CHECK_OK(inspection.connection.each(
-        "SELECT level, position, hash FROM tree_node ORDER BY position << level, level",
+        "SELECT level, position, hash FROM tree_node ORDER BY position << CAST(level AS INTEGER), level",
         [&](const sql::Row& row) {
             const NodePlace place{static_cast<unsigned>(row.integer(0) & 63),
                                   static_cast<std::uint64_t>(row.integer(1))};

@@ -178,7 +178,7 @@ Status tell_all(const Reader& reader, Retelling& retelling) {
 
 }  // namespace
 
-Result<std::vector<AuditFinding>> verify_tables(const std::filesystem::path& store) {
+Result<std::vector<AuditFinding>> verify_tables(const std::string& store) {
     std::vector<AuditFinding> findings;
     const Status asked = look_into(store, [&](const Reader& reader) -> Status {
         Retelling retelling;

@@ -13,6 +13,6 @@ namespace weave::loomlink {
 /// more, or says something else is told, with the records that lack what their kind must tell and steps that
 /// were not signed by the key that the person had then. The log itself is verify_store()'s. Reads the file and
 /// changes nothing, also while it is in use. Empty: all well.
-Result<std::vector<AuditFinding>> verify_tables(const std::filesystem::path& store);
+Result<std::vector<AuditFinding>> verify_tables(const std::string& store);
 
 }  // namespace weave::loomlink

@@ -66,7 +66,7 @@ Result<Made> Store::add_job(const NewJob& job, const AnswerOf& answer) {
         WEAVE_TRY(const auto before, made_before(connection, job.person, job.request));
         if (before) return made = *before, Status();
         WEAVE_TRY(const std::int64_t number,
-                  connection.insert("INSERT INTO job (person, request, title) VALUES (?, ?, ?)", job.person,
+                  connection.number("INSERT INTO job (person, request, title) VALUES (?, ?, ?) RETURNING number", job.person,
                                     job.request, job.title));
         WEAVE_CHECK_OK(
             connection.run("INSERT INTO job_task (job, document, simulation) VALUES (?, ?, ?)",

@@ -115,7 +115,7 @@ Result<Made> Store::add_session(const NewSession& session, const AnswerOf& answe
         WEAVE_TRY(const auto before, made_before(connection, session.person, session.request));
         if (before) return made = *before, Status();
         WEAVE_TRY(const std::int64_t number,
-                  connection.insert("INSERT INTO session (person, request, title) VALUES (?, ?, ?)",
+                  connection.number("INSERT INTO session (person, request, title) VALUES (?, ?, ?) RETURNING number",
                                     session.person, session.request, session.title));
         WEAVE_CHECK_OK(
             connection.run("INSERT INTO session_task (session, document, simulation) VALUES (?, ?, ?)",

@@ -1,6 +1,7 @@
 #pragma once
 
 #include "service_case.hpp"
+#include "store_places.hpp"
 
 #include <weave/core/file.hpp>
 
@@ -20,6 +21,7 @@ inline const std::string api_password = "warp and weft and warp";
 /// nothing, so that signing does not take all the time.
 struct ApiMill {
     weave::testing::TemporaryFolder folder;
+    Folder stores;
     std::unique_ptr<RunningSite> site;
     Json introduction;
     std::optional<net::HttpClient> client;
@@ -31,6 +33,7 @@ struct ApiMill {
 
     void start() {
         ServeConfig config;
+        if (stores_are_on_server()) config.store = stores.store("site");
         config.port = 0;
         config.hosts = {"localhost", "127.0.0.1"};
         config.plain = m_plain;

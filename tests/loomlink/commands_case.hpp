@@ -1,5 +1,7 @@
 #pragma once
 
+#include "store_places.hpp"
+
 #include <weave/core/file.hpp>
 #include <weave/core/json.hpp>
 #include <weave/design/document.hpp>
@@ -112,6 +114,7 @@ struct CommandMill {
     static constexpr const char* password = "warp and weft and warp";
 
     TemporaryFolder folder;
+    Folder stores;
     std::filesystem::path site_folder = folder.path / "site";
     std::unique_ptr<RunningSite> site;
     Json introduction;
@@ -127,6 +130,7 @@ struct CommandMill {
 
     [[nodiscard]] Result<std::unique_ptr<RunningSite>> try_start() const {
         ServeConfig config;
+        if (stores_are_on_server()) config.store = stores.store("site");
         config.port = port;
         config.plain = plain;
         config.certificate = certificate;

@@ -214,7 +214,7 @@ TEST_CASE("a site that was changed past the program is not served", "[commands]"
     CommandMill mill;
     mill.set_up();
     mill.stop();
-    tamper_with(mill.site_folder / "loomlink.db",
+    tamper_with(SiteFolder{mill.site_folder}.store().value(),
                 "INSERT INTO person_role SELECT id, 'engineer' FROM person WHERE login = 'dora'");
     const auto refused = mill.try_start();
     REQUIRE_FALSE(refused);

@@ -39,7 +39,7 @@ Denial denied(const Result<T>& result) {
 
 struct FlowSite {
     Folder folder;
-    std::filesystem::path path = folder / "store.db";
+    std::string path = folder.store("store.db");
     Instant time = parse_utc("2026-11-26T08:00:00.000Z").value();
     ServerKeys keys{KeyPair::generate(), KeyPair::generate(), KeyPair::generate()};
     std::unique_ptr<Workflow> flow;
@@ -76,14 +76,17 @@ struct FlowSite {
     /// Opens the store that lies at `path` now, and leaves the one from before.
     void open() {
         flow.reset();
+        flow = another(path);
+    }
+    /// One more program of the same site, on this store or a copy of it.
+    [[nodiscard]] std::unique_ptr<Workflow> another(const std::string& place) {
         DeskSettings settings;
         settings.key_cost = settings.login_cost = test_cost();
         settings.refusals = refusals;
-        flow =
-            got(Workflow::open(Store::open(path).value(),
-                               {KeyPair::from_seed(keys.log.seed()), KeyPair::from_seed(keys.stamp.seed()),
-                                KeyPair::from_seed(keys.access.seed())},
-                               settings, [this] { return time; }));
+        return got(Workflow::open(got(Store::open(place)),
+                                  {KeyPair::from_seed(keys.log.seed()), KeyPair::from_seed(keys.stamp.seed()),
+                                   KeyPair::from_seed(keys.access.seed())},
+                                  settings, [this] { return time; }));
     }
 
     static std::string password(const std::string& name) { return "the password of " + name; }
@@ -159,33 +162,22 @@ struct FlowSite {
 
     /// All rows of all tables but the log's, as text.
     [[nodiscard]] std::string dump() const {
-        sqlite3* handle = nullptr;
-        if (sqlite3_open(path.c_str(), &handle) != SQLITE_OK) throw std::runtime_error("cannot open");
+        const auto connection = got(sql::Connection::open(path, sql::Access::read));
+        const auto tables = got(connection->all(
+            connection->engine() == sql::Engine::sqlite
+                ? "SELECT name FROM sqlite_schema WHERE type = 'table' ORDER BY name"
+                : "SELECT tablename FROM pg_tables WHERE schemaname = current_schema() ORDER BY tablename",
+            [](const sql::Row& row) { return row.bytes(0); }));
         std::string text;
-        const auto each = [&](const std::string& sql, const auto& take) {
-            sqlite3_stmt* statement = nullptr;
-            if (sqlite3_prepare_v2(handle, sql.c_str(), -1, &statement, nullptr) != SQLITE_OK)
-                throw std::runtime_error(sqlite3_errmsg(handle));
-            while (sqlite3_step(statement) == SQLITE_ROW) take(statement);
-            sqlite3_finalize(statement);
-        };
-        std::vector<std::string> tables;
-        each("SELECT name FROM sqlite_schema WHERE type = 'table' ORDER BY name", [&](sqlite3_stmt* row) {
-            tables.emplace_back(reinterpret_cast<const char*>(sqlite3_column_text(row, 0)));
-        });
         for (const std::string& table : tables) {
             if (table == "event" || table == "tree_node" || table == "tree_head") continue;
-            each("SELECT * FROM " + table, [&](sqlite3_stmt* row) {
+            const Status read = connection->each("SELECT * FROM " + table, [&](const sql::Row& row) {
                 text += table;
-                for (int k = 0; k < sqlite3_column_count(row); ++k) {
-                    const auto* bytes = static_cast<const char*>(sqlite3_column_blob(row, k));
-                    text += '|' + std::string(bytes == nullptr ? "" : bytes,
-                                              static_cast<std::size_t>(sqlite3_column_bytes(row, k)));
-                }
+                for (int k = 0; k < row.columns(); ++k) text += '|' + row.json(k).dump();
                 text += '\n';
             });
+            REQUIRE(read);
         }
-        sqlite3_close(handle);
         return text;
     }
     /// What the records from a number on say.

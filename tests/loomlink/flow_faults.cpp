@@ -157,7 +157,7 @@ class Teller {
 
     Left tell(FaultDisk& disk, DiskFault fault, std::uint64_t at) {
         m_site.flow.reset();
-        for (const char* more : {"-wal", "-shm"}) std::filesystem::remove(m_site.path.string() + more);
+        for (const char* more : {"-wal", "-shm"}) std::filesystem::remove(m_site.path + more);
         std::filesystem::copy_file(m_begin, m_site.path, std::filesystem::copy_options::overwrite_existing);
         m_site.open();
         Left left;
@@ -224,12 +224,11 @@ void fail_at_writes(std::size_t stride) {
 
 }  // namespace
 
-TEST_CASE(
-    "a disk that fails somewhere in a story costs one clean error, and the request repeated is done once") {
+TEST_CASE("a disk that fails somewhere in a story costs one clean error, and the request repeated is done once", "[file]") {
     fail_at_writes(25);
 }
 
-TEST_CASE("a disk that fails at any write of a story costs one clean error at most", "[.][long]") {
+TEST_CASE("a disk that fails at any write of a story costs one clean error at most", "[.][long][file]") {
     fail_at_writes(1);
 }
 

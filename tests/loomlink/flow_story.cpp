@@ -253,7 +253,7 @@ TEST_CASE("two people sign where the policy asks for two; a revoked key has to b
 
 TEST_CASE("the codes for the first administrator end with that one; who has the folder can make another") {
     Folder folder;
-    const auto path = folder / "store.db";
+    const auto path = folder.store("store.db");
     DeskSettings settings;
     settings.key_cost = settings.login_cost = test_cost();
     static_cast<void>(Store::create(path, "mill").value());

@@ -15,6 +15,8 @@ TEST_CASE("a configuration is read, and what it leaves out stays as it is") {
     CHECK(client_hosts(*config) == config->hosts);
     CHECK(config->workers == 2);
     CHECK_FALSE(config->plain);
+    CHECK(config->store.empty());
+    CHECK(parse_config(R"({"store":"postgresql://a,b/mill","standby":"postgres://b/mill"})")->standby == "postgres://b/mill");
     REQUIRE(parse_config("{}"));
     CHECK(parse_config("{}")->port == 8443);
 }
@@ -35,6 +37,10 @@ TEST_CASE("a configuration that is wrong is refused at its place") {
              {R"({"plain":true,"address":"0.0.0.0"})", "address"},
              {R"({"heads":[]})", "heads"},
              {R"({"site":""})", "site"},
+             {R"({"store":"loomlink.db"})", "store"},
+             {R"({"store":"postgresql://db/mill\n"})", "store"},
+             {R"({"store":7})", "store"},
+             {R"({"standby":"mysql://db/mill"})", "standby"},
              {R"({"site":"a\nb"})", "site"},
              {R"({"certificate":"x.pem"})", "key"},
              {R"({"key":"x.key"})", "certificate"},

@@ -274,7 +274,7 @@ class KilledMill {
     }
     [[nodiscard]] std::string site() const { return m_mill.folder.path / "site"; }
     [[nodiscard]] std::string told_to_people() const { return m_mill.folder.path / "told.txt"; }
-    [[nodiscard]] std::filesystem::path path() const { return SiteFolder{site()}.store(); }
+    [[nodiscard]] std::string path() const { return SiteFolder{site()}.store().value(); }
 
     ApiMill m_mill;
     std::vector<Lane> m_lanes;

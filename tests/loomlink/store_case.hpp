@@ -2,60 +2,16 @@
 
 #include "audit_case.hpp"
 
+#include "store_places.hpp"
+
 #include <algorithm>
 #include <atomic>
 #include <filesystem>
 #include <loomlink/store/store.hpp>
-#include <sqlite3.h>
 #include <stdexcept>
 #include <string>
-#include <unistd.h>
 
 namespace weave::loomlink::testing {
-
-/// A folder of its own, removed at the end.
-class Folder {
-  public:
-    Folder() {
-        static std::atomic<int> count = 0;
-        m_path = std::filesystem::temp_directory_path() /
-                 ("weave-store-" + std::to_string(::getpid()) + "-" + std::to_string(count++));
-        std::filesystem::remove_all(m_path);
-        std::filesystem::create_directories(m_path);
-    }
-    ~Folder() {
-        std::error_code ignored;
-        std::filesystem::remove_all(m_path, ignored);
-    }
-    Folder(const Folder&) = delete;
-    Folder& operator=(const Folder&) = delete;
-    [[nodiscard]] std::filesystem::path operator/(const std::string& name) const { return m_path / name; }
-
-  private:
-    std::filesystem::path m_path;
-};
-
-/// flip(blob, number): the blob with one bit turned, whichever the number comes to.
-inline void flip_bit(sqlite3_context* context, int, sqlite3_value** values) {
-    const auto* data = static_cast<const char*>(sqlite3_value_blob(values[0]));
-    std::string bytes(data, static_cast<std::size_t>(sqlite3_value_bytes(values[0])));
-    const auto bit = static_cast<std::size_t>(sqlite3_value_int64(values[1])) % (8 * bytes.size());
-    bytes[bit / 8] = static_cast<char>(bytes[bit / 8] ^ (1 << bit % 8));
-    sqlite3_result_blob(context, bytes.data(), static_cast<int>(bytes.size()), SQLITE_TRANSIENT);
-}
-
-/// Runs SQL on a store's file behind its back, rules or no rules.
-inline void tamper_with(const std::filesystem::path& path, const std::string& sql) {
-    sqlite3* handle = nullptr;
-    if (sqlite3_open(path.c_str(), &handle) != SQLITE_OK) throw std::runtime_error("cannot open");
-    sqlite3_create_function(handle, "flip", 2, SQLITE_UTF8, nullptr, flip_bit, nullptr, nullptr);
-    char* message = nullptr;
-    const int code = sqlite3_exec(handle, sql.c_str(), nullptr, nullptr, &message);
-    const std::string text = message == nullptr ? "" : message;
-    sqlite3_free(message);
-    sqlite3_close(handle);
-    if (code != SQLITE_OK) throw std::runtime_error(text);
-}
 
 inline std::string all_text(const std::vector<AuditFinding>& findings) {
     std::string text;
@@ -85,7 +41,7 @@ inline Result<Seq> note(Writer& writer, std::uint64_t number = 1) {
 /// A small mill: three people, one design, one loom with a profile.
 struct Mill {
     Folder folder;
-    std::filesystem::path path = folder / "store.db";
+    std::string path = folder.store("store.db");
     Store store = Store::create(path, "mill").value();
     Id anna = 0, bert = 0, cleo = 0, shoe = 0, loom = 0;
 

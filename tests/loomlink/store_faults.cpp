@@ -200,27 +200,27 @@ void kill_often(std::size_t rounds) {
 
 }  // namespace
 
-TEST_CASE("no power loss takes back what was acknowledged") {
+TEST_CASE("no power loss takes back what was acknowledged", "[file]") {
     expect_no_losses(60);
 }
 
-TEST_CASE("1,000 power losses take back nothing that was acknowledged", "[.][long]") {
+TEST_CASE("1,000 power losses take back nothing that was acknowledged", "[.][long][file]") {
     expect_no_losses(1000);
 }
 
-TEST_CASE("the power-loss disk bites: without full flushes it takes acknowledged writes back") {
+TEST_CASE("the power-loss disk bites: without full flushes it takes acknowledged writes back", "[file]") {
     expect_losses(20);
 }
 
-TEST_CASE("kill -9 takes back nothing that was acknowledged") {
+TEST_CASE("kill -9 takes back nothing that was acknowledged", "[file]") {
     kill_often(30);
 }
 
-TEST_CASE("1,000 kills take back nothing that was acknowledged", "[.][long]") {
+TEST_CASE("1,000 kills take back nothing that was acknowledged", "[.][long][file]") {
     kill_often(1000);
 }
 
-TEST_CASE("a full disk, an I/O error or a short write at any write is a clean error, and the store goes on") {
+TEST_CASE("a full disk, an I/O error or a short write at any write is a clean error, and the store goes on", "[file]") {
     for (const DiskFault fault : {DiskFault::full, DiskFault::io_error, DiskFault::short_write}) {
         const Folder folder;
         FaultDisk disk;

@@ -56,7 +56,7 @@ TEST_CASE("chunks join to what was cut, and keep to their bounds") {
 
 TEST_CASE("objects come back as they were, whatever is in them") {
     const Folder folder;
-    Store store = Store::create(folder / "s.db", "mill").value();
+    Store store = Store::create(folder.store("s.db"), "mill").value();
     weave::testing::for_all(
         [&](Random& random) {
             const std::string bytes = random.coin() ? random_bytes(random, random.between(0, 100'000))
@@ -68,18 +68,18 @@ TEST_CASE("objects come back as they were, whatever is in them") {
         20);
     REQUIRE(get(store, put(store, "").value()).value() == "");
     REQUIRE_FALSE(get(store, sha256("not there")).value());
-    REQUIRE(all_text(verify_store(folder / "s.db").value()).empty());
+    REQUIRE(all_text(verify_store(folder.store("s.db")).value()).empty());
 }
 
-TEST_CASE("a small edit of a document of 20 MB adds kilobytes") {
+TEST_CASE("a small edit of a document of 20 MB adds kilobytes", "[file]") {
     const Folder folder;
     const auto size = [&] { return std::filesystem::file_size(folder / "s.db"); };
     std::string document = large_document();
     const auto save = [&] {
-        Store store = Store::open(folder / "s.db").value();  // closing it folds the WAL in
+        Store store = Store::open(folder.store("s.db")).value();  // closing it folds the WAL in
         REQUIRE(put(store, document));
     };
-    { const Store store = Store::create(folder / "s.db", "mill").value(); }
+    { const Store store = Store::create(folder.store("s.db"), "mill").value(); }
     save();
     const auto first = size();
     document[document.size() / 2] = '#';
@@ -93,13 +93,13 @@ TEST_CASE("a small edit of a document of 20 MB adds kilobytes") {
     REQUIRE(first > 4'000'000);
     REQUIRE(changed - first < 200'000);
     REQUIRE(inserted - changed < 300'000);
-    Store store = Store::open(folder / "s.db").value();
+    Store store = Store::open(folder.store("s.db")).value();
     REQUIRE(get(store, sha256(document)).value() == document);
 }
 
 TEST_CASE("a damaged object is an error and is never given out") {
     const Folder folder;
-    const auto path = folder / "s.db";
+    const auto path = folder.store("s.db");
     Hash hash{};
     {
         Store store = Store::create(path, "mill").value();
@@ -111,11 +111,11 @@ TEST_CASE("a damaged object is an error and is never given out") {
     const Store store = Store::open(path).value();
     REQUIRE_THAT(text_of(get(store, hash)), Catch::Contains("damaged"));
     REQUIRE_THAT(all_text(verify_store(path).value()),
-                 Catch::Contains("object " + hash_hex(hash)) && Catch::Contains("trigger chunk_no_update"));
+                 Catch::Contains("object " + hash_hex(hash)));
 }
 
 TEST_CASE("an object that is too large is refused") {
     const Folder folder;
-    Store store = Store::create(folder / "s.db", "mill").value();
+    Store store = Store::create(folder.store("s.db"), "mill").value();
     REQUIRE_THAT(text_of(put(store, std::string(largest_object + 1, 'x'))), Catch::Contains("larger than"));
 }

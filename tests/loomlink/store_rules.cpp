@@ -19,13 +19,13 @@ std::string outcome(Mill& mill, Change change) {
 
 TEST_CASE("a store is made once, and opened by its own program alone") {
     const Folder folder;
-    const auto path = folder / "s.db";
+    const auto path = folder.store("s.db");
     REQUIRE_FALSE(Store::open(path));
     { const Store store = Store::create(path, "mill").value(); }
     REQUIRE_THAT(text_of(Store::create(path, "mill")), Catch::Contains("exists already"));
     REQUIRE(Store::open(path));
-    tamper_with(folder / "other.db", "CREATE TABLE t (x)");
-    REQUIRE_THAT(text_of(Store::open(folder / "other.db")), Catch::Contains("another program"));
+    tamper_with(folder.store("other.db"), "CREATE TABLE t (x)");
+    REQUIRE_THAT(text_of(Store::open(folder.store("other.db"))), Catch::Contains("another program"));
     tamper_with(path, "PRAGMA user_version = 99");
     REQUIRE_THAT(text_of(Store::open(path)), Catch::Contains("version 99"));
 }

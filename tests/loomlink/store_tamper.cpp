@@ -301,23 +301,23 @@ void harm_bytes(std::size_t attempts) {
 
 }  // namespace
 
-TEST_CASE("random tampering with records, objects and tree in the file is found, and the record named") {
+TEST_CASE("random tampering with records, objects and tree in the file is found, and the record named", "[file]") {
     tamper(300);
 }
 
-TEST_CASE("10,000 random tamperings with the file are found, and the record named", "[.][long]") {
+TEST_CASE("10,000 random tamperings with the file are found, and the record named", "[.][long][file]") {
     tamper(10000);
 }
 
-TEST_CASE("random harm to the bytes of the file is found, and the record named") {
+TEST_CASE("random harm to the bytes of the file is found, and the record named", "[file]") {
     harm_bytes(300);
 }
 
-TEST_CASE("10,000 random harms to the bytes of the file are found, and the record named", "[.][long]") {
+TEST_CASE("10,000 random harms to the bytes of the file are found, and the record named", "[.][long][file]") {
     harm_bytes(10000);
 }
 
-TEST_CASE("an older copy is clean by itself, and found by the retained head alone") {
+TEST_CASE("an older copy is clean by itself, and found by the retained head alone", "[file]") {
     const Original original;
     for (const auto& [records, path] : original.older) {
         StoreTrust trust = original.trust;
@@ -328,9 +328,8 @@ TEST_CASE("an older copy is clean by itself, and found by the retained head alon
     }
 }
 
-TEST_CASE(
-    "a store that somebody rewrote as a whole, tree and all, is found by its signatures and the retained "
-    "head") {
+TEST_CASE("a store that somebody rewrote as a whole, tree and all, is found by its signatures and the retained "
+    "head", "[file]") {
     const Original original;
     const Folder folder;
     {

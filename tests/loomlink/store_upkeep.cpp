@@ -12,8 +12,8 @@ using namespace weave::loomlink::testing;
 
 namespace {
 
-std::unique_ptr<sql::Connection> connect(const std::filesystem::path& path) {
-    return sql::Connection::open(path.string(), sql::Access::create).value();
+std::unique_ptr<sql::Connection> connect(const std::string& place) {
+    return sql::Connection::open(place, sql::Access::create).value();
 }
 
 }  // namespace
@@ -21,8 +21,8 @@ std::unique_ptr<sql::Connection> connect(const std::filesystem::path& path) {
 TEST_CASE("a store of version 1, filled as that version did, opens and verifies") {
     const Folder folder;
     {
-        const auto connection = connect(folder / "v1.db");
-        REQUIRE(sql::migrate(*connection, migrations().first(1), store_owner));
+        const auto connection = connect(folder.store("v1.db"));
+        REQUIRE(sql::migrate(*connection, migrations(connection->engine()).first(1), store_owner));
         // a site and its first record, as version 1 wrote them
         REQUIRE(connection->script("INSERT INTO site (one, name) VALUES (1, 'mill')"));
         const std::string record = record_bytes({0, {}, statement_of(1), {}}).value();
@@ -35,10 +35,10 @@ TEST_CASE("a store of version 1, filled as that version did, opens and verifies"
                                "(1, 'anna', 'Anna', 1, 'x', 0);"
                                "INSERT INTO person_role (person, role) VALUES (1, 'designer')"));
     }
-    const Store store = Store::open(folder / "v1.db").value();
+    const Store store = Store::open(folder.store("v1.db")).value();
     REQUIRE(store.read([](const Reader& reader) { return reader.person("anna"); }).value()->roles.size() ==
             1);
-    REQUIRE(all_text(verify_store(folder / "v1.db").value()).empty());
+    REQUIRE(all_text(verify_store(folder.store("v1.db")).value()).empty());
 }
 
 TEST_CASE("a backup of a store in use is a store as of one moment") {
@@ -59,7 +59,8 @@ TEST_CASE("a backup of a store in use is a store as of one moment") {
 
 TEST_CASE("a restore is whole or not at all, and never under a running store") {
     const Folder folder;
-    const auto path = folder / "s.db", copy = folder / "copy.db";
+    const std::string path = folder.store("s.db");
+    const auto copy = folder / "copy.db";
     const auto size = [&] {
         return Store::open(path).value().read([](const Reader& reader) { return reader.log_size(); }).value();
     };
@@ -85,6 +86,6 @@ TEST_CASE("a restore is whole or not at all, and never under a running store") {
     REQUIRE_FALSE(restore_store(folder / "text.db", path));
     REQUIRE_FALSE(restore_store(folder / "missing.db", path));
     REQUIRE(size() == 1);
-    for (const auto& entry : std::filesystem::directory_iterator(path.parent_path()))
+    for (const auto& entry : std::filesystem::directory_iterator(copy.parent_path()))
         REQUIRE(entry.path().string().find(".part-") == std::string::npos);
 }

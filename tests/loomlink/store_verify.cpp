@@ -11,10 +11,9 @@ TEST_CASE("tree nodes, heads, schema, links and revisions are looked at as well"
         return {};
     }));
     sign_log(mill.store);
+    { const Store closed = std::move(mill.store); }  // a copy is taken of what nobody has open
     const auto found = [&](const std::string& sql, const std::string& words) {
-        const auto copy = mill.folder / "copy.db";
-        std::filesystem::remove(copy);
-        REQUIRE(mill.store.backup(copy));
+        const std::string copy = mill.folder.copy(mill.path, "copy.db");
         tamper_with(copy, sql);
         const auto findings = verify_store(copy, {log_key().check(), {}, {}}).value();
         INFO(sql << "\n" << all_text(findings));

@@ -7,13 +7,15 @@
 #include <array>
 #include <chrono>
 #include <cstdint>
-#include <map>
+#include <functional>
 #include <memory>
 #include <optional>
-#include <sqlite3.h>
+#include <set>
+#include <span>
 #include <string>
 #include <string_view>
 #include <utility>
+#include <variant>
 #include <vector>
 
 namespace weave::sql {
@@ -23,20 +25,23 @@ struct Blob {
     std::string_view bytes;
 };
 
-/// What the row that a statement stands on holds, column by column from 0.
+/// What is bound, or what a row holds: nothing, a number, TEXT, or a BLOB. Text and bytes belong to somebody else.
+using Value = std::variant<std::monostate, std::int64_t, double, std::string_view, Blob>;
+
+/// What the row that a statement stands on holds, column by column from 0. It lives until the next one.
 class Row {
   public:
-    explicit Row(sqlite3_stmt* statement) : m_statement(statement) {}
-    [[nodiscard]] std::int64_t integer(int column) const { return sqlite3_column_int64(m_statement, column); }
-    [[nodiscard]] double real(int column) const { return sqlite3_column_double(m_statement, column); }
-    [[nodiscard]] bool is_null(int column) const {
-        return sqlite3_column_type(m_statement, column) == SQLITE_NULL;
-    }
-    [[nodiscard]] int columns() const { return sqlite3_column_count(m_statement); }
+    [[nodiscard]] virtual int columns() const = 0;
+    [[nodiscard]] virtual Value value(int column) const = 0;
+
+    /// 0 and 0.0 where the column holds something else.
+    [[nodiscard]] std::int64_t integer(int column) const;
+    [[nodiscard]] double real(int column) const;
+    [[nodiscard]] bool is_null(int column) const { return value(column).index() == 0; }
     /// A number, text, or null; of a BLOB its bytes in hexadecimal.
     [[nodiscard]] Json json(int column) const;
     /// TEXT or BLOB as it is.
-    [[nodiscard]] std::string bytes(int column) const;
+    [[nodiscard]] std::string bytes(int column) const { return std::string(view(column)); }
     /// A BLOB of a fixed size, such as a hash: `fixed<std::array<unsigned char, 32>>(0)`; zeros where the
     /// column holds anything else.
     template <class Array>
@@ -47,69 +52,93 @@ class Row {
         return value;
     }
 
+  protected:
+    Row() = default;
+    ~Row() = default;
+
   private:
     [[nodiscard]] std::string_view view(int column) const;
-
-    sqlite3_stmt* m_statement;
 };
 
-enum class Access : std::uint8_t { create, write, read };
+enum class Engine : std::uint8_t { sqlite, postgres };
 
-/// One connection with the settings of a store, and its prepared statements. For one thread at a time.
+/// What a place names: the path of a file is SQLite's; `postgresql://…` (or `postgres://…`) a database of PostgreSQL's, as
+/// libpq reads it.
+Engine engine_of(std::string_view place);
+
+/// `standby` reads as `read` does, from a server that follows another; only PostgreSQL has one.
+enum class Access : std::uint8_t { create, write, read, standby };
+
+/// What a database says of itself: whose it is and of which version; zeros where nobody has said so yet.
+struct Stamp {
+    std::int64_t application = 0, version = 0;
+};
+
+/// Something that a database finds wrong with itself.
+using Find = std::function<void(const std::string& place, const std::string& cause)>;
+
+/// One connection with the settings of a store, and its prepared statements. For one thread at a time. Statements are
+/// written in what both engines understand, with `?` or `?1` for what is bound.
 class Connection {
   public:
-    /// Opens a database; `create` makes it where it is missing, `write` and `read` refuse what is missing. A
-    /// database is durable by WAL and synchronous=FULL: with NORMAL a power loss takes acknowledged commits
-    /// back. Each statement waits `patience` for other connections that are in its way.
+    /// Opens a database. `create` makes a file that is missing (a server's database must be there), `write` and
+    /// `read` refuse what is missing. Writing is durable, on a synchronous standby as well where the server has one.
+    /// Each statement waits `patience` for other connections that are in its way. A place that holds a password is
+    /// refused: it belongs into a file or the environment (libpq's `passfile`).
     static Result<std::unique_ptr<Connection>> open(
-        const std::string& path, Access access,
+        const std::string& place, Access access,
         std::chrono::milliseconds patience = std::chrono::seconds(10));
-    ~Connection();
+    virtual ~Connection() = default;
     Connection(const Connection&) = delete;
     Connection& operator=(const Connection&) = delete;
 
+    [[nodiscard]] virtual Engine engine() const = 0;
+
     /// Runs a script of fixed text, such as a migration. No value ever goes into its text.
-    Status script(const std::string& text);
+    virtual Status script(const std::string& text) = 0;
+
+    /// A transaction that reads one unchanging view, beside others that write.
+    virtual Status begin_read() = 0;
+    /// A transaction that writes, and sees all that was written before: there is one at a time.
+    virtual Status begin_write() = 0;
+    /// Answers once all of it is durable. Where the error says so, it may have been stored all the same.
+    virtual Status commit() = 0;
+    void rollback() {
+        if (in_transaction()) static_cast<void>(script("ROLLBACK"));
+    }
+    /// Whether a transaction is open; a full disk may have ended one.
+    [[nodiscard]] virtual bool in_transaction() const = 0;
+    /// False once the way to a server is lost: the connection is good for nothing more.
+    [[nodiscard]] virtual bool is_usable() const = 0;
+    /// Rows that the last statement changed.
+    [[nodiscard]] virtual std::int64_t changes() const = 0;
 
     /// Runs a statement without an answer.
     template <class... Values>
-    Status run(const char* text, const Values&... values) {
+    Status run(std::string_view text, const Values&... values) {
         return each(
             text, [](const Row&) {}, values...);
     }
-    /// Runs an INSERT and tells the number of the new row.
-    template <class... Values>
-    Result<std::int64_t> insert(const char* text, const Values&... values) {
-        WEAVE_CHECK_OK(run(text, values...));
-        return sqlite3_last_insert_rowid(m_handle);
-    }
-    /// Calls `take(row)` for each row. It must not run the same statement.
+    /// Calls `take(row)` for each row. It must not use the connection.
     template <class Take, class... Values>
-    Status each(const char* text, Take take, const Values&... values) {
-        WEAVE_TRY(sqlite3_stmt* const statement, prepared(text));
-        const Reset reset{statement};
-        int column = 0;
-        for (const int code : {SQLITE_OK, bind(statement, ++column, values)...})
-            if (code != SQLITE_OK) return trouble(code);
-        int code = SQLITE_ROW;
-        while ((code = sqlite3_step(statement)) == SQLITE_ROW) take(Row(statement));
-        if (code != SQLITE_DONE) return trouble(code);
-        return {};
+    Status each(std::string_view text, Take take, const Values&... values) {
+        const std::array<Value, sizeof...(Values)> all{bound(values)...};
+        return rows(text, all, std::ref(take));
     }
     /// All rows as `make(row)` makes them.
     template <class Make, class... Values>
-    auto all(const char* text, Make make, const Values&... values)
-        -> Result<std::vector<decltype(make(std::declval<Row>()))>> {
-        std::vector<decltype(make(std::declval<Row>()))> rows;
+    auto all(std::string_view text, Make make, const Values&... values)
+        -> Result<std::vector<decltype(make(std::declval<const Row&>()))>> {
+        std::vector<decltype(make(std::declval<const Row&>()))> rows;
         WEAVE_CHECK_OK(each(
             text, [&](const Row& row) { rows.push_back(make(row)); }, values...));
         return rows;
     }
     /// The first row, or nothing.
     template <class Make, class... Values>
-    auto one(const char* text, Make make, const Values&... values)
-        -> Result<std::optional<decltype(make(std::declval<Row>()))>> {
-        std::optional<decltype(make(std::declval<Row>()))> found;
+    auto one(std::string_view text, Make make, const Values&... values)
+        -> Result<std::optional<decltype(make(std::declval<const Row&>()))>> {
+        std::optional<decltype(make(std::declval<const Row&>()))> found;
         WEAVE_CHECK_OK(each(
             text,
             [&](const Row& row) {
@@ -118,59 +147,52 @@ class Connection {
             values...));
         return found;
     }
-    /// The number in the first column of the first row; 0 without a row.
+    /// The number in the first column of the first row; 0 without a row. An INSERT tells its row's with RETURNING.
     template <class... Values>
-    Result<std::int64_t> number(const char* text, const Values&... values) {
+    Result<std::int64_t> number(std::string_view text, const Values&... values) {
         WEAVE_TRY(const auto found, one(
                                         text, [](const Row& row) { return row.integer(0); }, values...));
         return found.value_or(0);
     }
+    /// Calls `take(row)` for each row of a statement that binds any number of values.
+    virtual Status rows(std::string_view text, std::span<const Value> values,
+                        const std::function<void(const Row&)>& take) = 0;
 
-    /// Whether a transaction is open; a full disk may have ended one.
-    [[nodiscard]] bool in_transaction() const { return sqlite3_get_autocommit(m_handle) == 0; }
-    /// Rows that the last statement changed.
-    [[nodiscard]] int changes() const { return sqlite3_changes(m_handle); }
-    [[nodiscard]] sqlite3* handle() const { return m_handle; }
-    /// What the connection's last call failed of, in words for a person.
-    [[nodiscard]] Error trouble(int code) const;
+    // Where the engines differ in more than their words.
+
+    virtual Result<Stamp> stamp() = 0;
+    virtual Status set_stamp(const Stamp& stamp) = 0;
+    /// Whether there are no tables.
+    virtual Result<bool> is_empty() = 0;
+    /// Removes everything, within a transaction, so that it can be filled anew.
+    virtual Status clear() = 0;
+    /// Damaged pages, where the engine looks at them when asked.
+    virtual Status inspect_pages(const Find& find) = 0;
+    /// Rows that point at rows that are not there.
+    virtual Status inspect_links(const Find& find) = 0;
+    /// The schema in words, one for each table, index, trigger and constraint: two that are alike have the same.
+    virtual Result<std::set<std::string>> rules() = 0;
+    /// An empty database of the same engine, in an open transaction; it goes with its connection.
+    virtual Result<std::unique_ptr<Connection>> scratch() = 0;
+    /// Runs `fill` with all triggers asleep, as a copy of a whole database needs; within a transaction.
+    virtual Status load(const std::function<Status()>& fill) = 0;
+
+  protected:
+    Connection() = default;
 
   private:
-    struct Reset {
-        sqlite3_stmt* statement;
-        ~Reset() {
-            sqlite3_reset(statement);
-            sqlite3_clear_bindings(statement);
-        }
-    };
-    Connection(sqlite3* handle, std::string path) : m_handle(handle), m_path(std::move(path)) {}
-    Status configure(Access access, std::chrono::milliseconds patience);
-    Result<sqlite3_stmt*> prepared(const char* text);
-
-    static int bind(sqlite3_stmt* statement, int column, std::int64_t value) {
-        return sqlite3_bind_int64(statement, column, value);
-    }
-    static int bind(sqlite3_stmt* statement, int column, double value) {
-        return sqlite3_bind_double(statement, column, value);
-    }
-    static int bind(sqlite3_stmt* statement, int column, const std::string& value) {
-        return sqlite3_bind_text64(statement, column, value.data(), value.size(), SQLITE_STATIC, SQLITE_UTF8);
-    }
-    static int bind(sqlite3_stmt* statement, int column, Blob value) {
-        return sqlite3_bind_blob64(statement, column, value.bytes.empty() ? "" : value.bytes.data(),
-                                   value.bytes.size(), SQLITE_STATIC);
-    }
+    static Value bound(std::int64_t value) { return value; }
+    static Value bound(double value) { return value; }
+    static Value bound(const std::string& value) { return std::string_view(value); }
+    static Value bound(Blob value) { return value; }
     template <std::size_t Size>
-    static int bind(sqlite3_stmt* statement, int column, const std::array<unsigned char, Size>& value) {
-        return sqlite3_bind_blob64(statement, column, value.data(), value.size(), SQLITE_STATIC);
+    static Value bound(const std::array<unsigned char, Size>& value) {
+        return Blob{{reinterpret_cast<const char*>(value.data()), Size}};
     }
-    template <class Value>
-    static int bind(sqlite3_stmt* statement, int column, const std::optional<Value>& value) {
-        return value ? bind(statement, column, *value) : sqlite3_bind_null(statement, column);
+    template <class Bound>
+    static Value bound(const std::optional<Bound>& value) {
+        return value ? bound(*value) : Value();
     }
-
-    sqlite3* m_handle;
-    std::string m_path;
-    std::map<const char*, sqlite3_stmt*> m_statements;  // by the address of their text, which is a literal
 };
 
 }  // namespace weave::sql

@@ -1,0 +1,107 @@
+// migrate-store: a site's store from its file into a database, and back.
+
+#include <weave/command/serving.hpp>
+#include <weave/core/text.hpp>
+#include <weave/keys/hex.hpp>
+#include <weave/keys/private_file.hpp>
+
+#include <loomlink/commands/command.hpp>
+#include <loomlink/commands/site_copy.hpp>
+#include <loomlink/store/copy.hpp>
+#include <memory>
+
+namespace weave::loomlink {
+
+namespace {
+
+namespace fs = std::filesystem;
+
+constexpr const char* as_a_file = "file";
+
+/// The log as both stores must tell it.
+struct LogFacts {
+    std::uint64_t size = 0;
+    std::string root;
+    friend bool operator==(const LogFacts&, const LogFacts&) = default;
+};
+
+Result<LogFacts> log_facts(const std::string& store) {
+    LogFacts facts;
+    WEAVE_CHECK_OK(look_into(store, [&](const Reader& reader) -> Status {
+        WEAVE_TRY(facts.size, reader.log_size());
+        WEAVE_TRY(const Hash root, reader.root(facts.size));
+        facts.root = hash_hex(root);
+        return {};
+    }));
+    return facts;
+}
+
+/// The file that was the store until now stays, under a name by which nothing opens it.
+Status set_aside(const fs::path& file) {
+    fs::path aside = file;
+    aside += ".moved";
+    std::error_code trouble;
+    if (fs::exists(aside, trouble))
+        return Error{ErrorCode::refused, "is in the way: put it elsewhere, it is the store of an earlier move", aside.string()};
+    fs::rename(file, aside, trouble);
+    return trouble ? Status(system_fault("cannot be set aside: " + trouble.message(), file.string())) : Status();
+}
+
+/// From here on the folder names the new place. `store.url` wins over a file, so that no order of these steps leaves two.
+Status switch_over(const SiteFolder& site, const std::string& from, const std::string& to) {
+    if (is_database(to)) {
+        WEAVE_CHECK_OK(write_private_file(site.store_place(), to + "\n"));
+        return is_database(from) ? Status() : set_aside(from);
+    }
+    std::error_code trouble;
+    fs::remove(site.store_place(), trouble);
+    return trouble ? Status(system_fault("cannot be removed: " + trouble.message(), site.store_place().string())) : Status();
+}
+
+Error not_as_written(const std::string& what, const AuditFinding& finding) {
+    return {ErrorCode::refused, "is not as it was written: " + finding.text() + " (verify tells all)", what};
+}
+
+Status move_store(const SiteFolder& site, const std::string& wish, CommandOutcome& outcome) {
+    if (!site.holds_site()) return bad_input("holds no store of loomlink", site.path.string());
+    WEAVE_TRY(const FolderLock lock, FolderLock::take(site.path, "loomlink"));
+    WEAVE_TRY(const std::string from, site.store());
+    const std::string to = wish == as_a_file ? site.own_store().string() : wish;
+    if (to != site.own_store().string() && !is_database(to))
+        return bad_input("must be a connection string (postgresql://HOST/DATABASE), or the word file", "TO");
+    if (from == to) return Error{ErrorCode::refused, "is where the store of this site is already", to};
+    WEAVE_CHECK_OK(refuse_in_use(from));
+    WEAVE_TRY(const auto before, verify_site(site, {}));
+    if (!before.empty()) return not_as_written(site.path.string(), before.front());
+    WEAVE_TRY(const LogFacts told, log_facts(from));
+    WEAVE_CHECK_OK(copy_store(from, to));
+    WEAVE_TRY(const auto after, verify_site_in(site, to, {}));
+    if (!after.empty()) return not_as_written(to, after.front());
+    WEAVE_TRY(const LogFacts kept, log_facts(to));
+    if (!(kept == told)) return system_fault("has another log than " + from + "; the site was left where it is", to);
+    WEAVE_CHECK_OK(switch_over(site, from, to));
+    outcome.answer({{"from", from}, {"to", to}, {"records", told.size}, {"root", told.root}},
+                   on_one_line(site.path.string()) + ": the store is in " + to + " now, every row as it was: " +
+                       std::to_string(told.size) + " records, root " + told.root + "\n");
+    return {};
+}
+
+}  // namespace
+
+void add_migrate_store_command(CLI::App& app, CommandOutcome& outcome) {
+    CLI::App* const command = add_command(
+        app, outcome, "migrate-store",
+        "Move the store of a site, which must not be served, into an empty PostgreSQL database, or back into a file. Everything is "
+        "verified before and after; where anything differs the site stays where it is. What was the store stays too: a file as "
+        "loomlink.db.moved, a database as it is",
+        "loomlink migrate-store /srv/mill postgresql://db.mill.example/mill");
+    const auto folder = std::make_shared<std::string>();
+    const auto to = std::make_shared<std::string>();
+    add_text(command, "FOLDER", *folder, "the folder of the site")->required();
+    add_text(command, "TO", *to,
+             "connection string of the database (no password in it: passfile=… or PGPASSFILE), or file: the folder's own loomlink.db")
+        ->required();
+    on_run(command, outcome, [folder, to, &outcome] { return move_store({*folder}, *to, outcome); });
+}
+
+}  // namespace weave::loomlink
