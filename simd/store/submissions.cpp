@@ -35,7 +35,7 @@ Result<std::string> Store::cluster_id() {
 Result<Number> Store::add_submission(const std::vector<Number>& jobs) {
     Number made = 0;
     const auto add = [&](sql::Connection& connection) -> Status {
-        WEAVE_TRY(const std::int64_t submission, connection.insert("INSERT INTO submission DEFAULT VALUES"));
+        WEAVE_TRY(const std::int64_t submission, connection.number("INSERT INTO submission DEFAULT VALUES RETURNING number"));
         std::int64_t place = 0;
         for (const Number job : jobs) {
             WEAVE_TRY(const auto phase, connection.one("SELECT phase FROM job WHERE number = ?", [](const sql::Row& row) { return row.bytes(0); }, whole(job)));

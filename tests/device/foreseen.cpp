@@ -42,16 +42,20 @@ Taken taken_by(const SimScene& scene, double most_seconds) {
             std::to_string(fabric.samples()) + " samples, " + std::to_string(fabric.segments()) + " segments, " + std::to_string(fabric.points()) + " points"};
 }
 
-void check_sample(const std::string& name, double most_seconds) {
+/// `points`: a key point, or 0 for those of the fidelity.
+void check_sample(const std::string& name, double most_seconds, std::size_t points = 0) {
     const weave::Design design = weave::find_sample(name)->make();
     const auto evaluation = weave::evaluate(design);
-    for (const Fidelity fidelity : {Fidelity::draft, Fidelity::standard}) {
+    for (const Fidelity fidelity : {Fidelity::draft, Fidelity::standard, Fidelity::reference}) {
         SimulationRequest request;
         request.fidelity = fidelity;
+        if (points > 0) request.points_per_key = points;
         const auto plan = make_plan(design, *evaluation->block, request);
         REQUIRE(plan);
+        double within_thickness = 0;
+        for (const SimYarn& yarn : plan->scene.yarns) within_thickness += 2 * yarn.radius_mm * double(yarn.control.size()) / yarn.rest_mm / double(plan->scene.yarns.size());
         const Taken taken = taken_by(plan->scene, most_seconds);
-        WARN(name << ", " << name_of(fidelity) << ": " << taken.foreseen << " MB foreseen, " << taken.bytes << " taken (" << taken.foreseen / taken.bytes << "); " << taken.counts);
+        WARN(name << ", " << name_of(fidelity) << ", " << points << " (" << within_thickness << " in a thickness): " << taken.foreseen << " MB foreseen, " << taken.bytes << " taken (" << taken.foreseen / taken.bytes << "); " << taken.counts);
         CHECK(taken.foreseen > taken.bytes);
         CHECK(taken.foreseen < 2 * taken.bytes + 1);
     }
@@ -67,5 +71,11 @@ TEST_CASE("foreseen: all samples take less memory than was foreseen", "[.][long]
     for (const char* name : {"plain", "twill-2-2", "satin-5", "sateen-8", "rib", "basket", "herringbone", "satin-e", "twill-g", "layer-to-layer",
                              "angle-interlock-a", "angle-interlock-b", "orthogonal", "stitched-layers", "hexagon-tubes", "tl013-wrong",
                              "tl013-corrected", "i-beam", "pocket", "three-colour-stencil", "shoe-baby"})
-        check_sample(name, 60);
+        check_sample(name, 30);
+}
+
+TEST_CASE("foreseen: more points than usual", "[.][long][foreseen]") {
+    for (const std::size_t points : {8, 16, 24, 40}) {
+        for (const char* name : {"plain", "satin-5", "layer-to-layer"}) check_sample(name, 30, points);
+    }
 }

@@ -68,11 +68,19 @@ bool device_can_relax(const SimScene& scene) {
     return scene.friction == 0 && !scene.transition;
 }
 
-// The most that relaxations of the samples took (tests/device/foreseen.cpp), and a tenth more. What does not fit after all is told by
+// What relaxations of the samples took in all fidelities and with more points than usual (tests/device/foreseen.cpp), and a tenth more:
+// a matrix has the more blocks in a row the more segments fit into a yarn's thickness. What does not fit after all is told by
 // CrewArrays and goes on on the processor (backend.cpp).
 std::size_t device_bytes(const Fabric<double>& fabric) {
-    constexpr std::size_t a_cloth = 1'000'000, a_sample = 900, a_segment = 2'500, a_point = 6'500;
-    return a_cloth + a_sample * fabric.samples() + a_segment * fabric.segments() + a_point * fabric.points();
+    constexpr double a_cloth = 1e6, a_sample = 900, a_segment = 7'000, and_by_thickness = 5'000;
+    double bytes = a_cloth + a_sample * static_cast<double>(fabric.samples());
+    for (std::size_t y = 0; y < fabric.yarns().size(); ++y) {
+        const auto segments = static_cast<double>(fabric.yarns()[y].segments);
+        const SimYarn& yarn = fabric.scene().yarns[y];
+        const double within_thickness = yarn.rest_mm > 0 ? 2 * yarn.radius_mm * segments / yarn.rest_mm : 1;
+        bytes += segments * (a_segment + and_by_thickness * within_thickness);
+    }
+    return static_cast<std::size_t>(bytes);
 }
 
 template class CrewArrays<float>;
