@@ -72,7 +72,7 @@ bool device_can_relax(const SimScene& scene) {
 // a matrix has the more blocks in a row the more segments fit into a yarn's thickness. What does not fit after all is told by
 // CrewArrays and goes on on the processor (backend.cpp).
 std::size_t device_bytes(const Fabric<double>& fabric) {
-    constexpr double a_cloth = 1e6, a_sample = 900, a_segment = 7'000, and_by_thickness = 5'000;
+    constexpr double a_cloth = 1e6, a_sample = 900, a_segment = 8'000, and_by_thickness = 1'000;
     double bytes = a_cloth + a_sample * static_cast<double>(fabric.samples());
     for (std::size_t y = 0; y < fabric.yarns().size(); ++y) {
         const auto segments = static_cast<double>(fabric.yarns()[y].segments);
