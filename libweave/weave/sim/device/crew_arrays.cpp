@@ -68,8 +68,8 @@ bool device_can_relax(const SimScene& scene) {
     return scene.friction == 0 && !scene.transition;
 }
 
-// What relaxations of the samples took in all fidelities and with more points than usual (tests/device/foreseen.cpp), and a tenth more:
-// a matrix has the more blocks in a row the more segments fit into a yarn's thickness. What does not fit after all is told by
+// More than relaxations of the samples took, in all fidelities and with up to 40 points a key point (tests/device/foreseen.cpp): a
+// matrix has the more blocks in a row the more segments fit into a yarn's thickness. What does not fit after all is told by
 // CrewArrays and goes on on the processor (backend.cpp).
 std::size_t device_bytes(const Fabric<double>& fabric) {
     constexpr double a_cloth = 1e6, a_sample = 900, a_segment = 8'000, and_by_thickness = 1'000;
