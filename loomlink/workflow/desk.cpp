@@ -93,8 +93,12 @@ Result<Json> Desk::attempt(const Caller& caller, const Ask& ask, const Deed& dee
     if (!known) return refuse(caller, ask.request, deed, known.error());
     if (*known) return **known;
     auto answer = work();
-    if (!answer) return refuse(caller, ask.request, deed, answer.error());
-    return answer;
+    if (answer) return answer;
+    // The same request, come twice at a time, may have been done between the look above and the work's own checks,
+    // which then find its traces ("this name is taken").
+    const auto since = recorded(caller, ask.request, deed);
+    if (since && *since) return **since;
+    return refuse(caller, ask.request, deed, answer.error());
 }
 
 Result<Json> Desk::commit(const Caller& caller, const Ask& ask, const Deed& deed, const Check& check,
