@@ -76,8 +76,8 @@ double Energy<Real>::evaluate(const std::vector<Real>& state, std::vector<Real>&
                                                                   m_segment_gradient.data()});
     }
     gather(gradient);
-    double energy = m_executor.sum(m_fabric.segments(),
-                                   [&](std::size_t s) { return static_cast<double>(m_segment_energy[s]); });
+    double energy = m_executor.sum(
+        m_fabric.segments(), [&](std::size_t s) { return m_fabric.is_own(s) ? static_cast<double>(m_segment_energy[s]) : 0; });
     if (terms.elastic && m_fabric.scene().gravity_mm_ms2 != 0) energy += add_weight(state, gradient);
     if (terms.contact && m_transition.is_on()) energy += m_transition.add(view(state), gradient);
     m_fabric.fold(gradient);
@@ -130,10 +130,10 @@ void Energy<Real>::gather(std::vector<Real>& gradient) const {
     const std::vector<std::uint32_t>& yarn_of_slot = m_fabric.yarn_of_slot();
     m_executor.each(m_fabric.slots(), [&](std::size_t slot) {
         const YarnPlace& yarn = yarns[yarn_of_slot[slot]];
-        const std::size_t within = slot - yarn.first_slot;
+        const std::size_t within = slot - yarn.first_slot - yarn.skipped;
         Real sum[3]{};
-        for (std::size_t c = 0; c < 4 && c <= within; ++c) {
-            if (within - c >= yarn.segments) continue;
+        for (std::size_t c = 0; c < 4; ++c) {
+            if (within - c >= yarn.segments) continue;  // also where it would be below 0
             const Real* part = &m_segment_gradient[12 * (yarn.first_segment + within - c) + 3 * c];
             for (int k = 0; k < 3; ++k) sum[k] += part[k];
         }
@@ -148,12 +148,13 @@ double Energy<Real>::add_weight(const std::vector<Real>& state, std::vector<Real
     constexpr double shares[]{1.0 / 24, 11.0 / 24, 11.0 / 24, 1.0 / 24};
     const SimScene& scene = m_fabric.scene();
     double energy = 0;
-    for (const SegmentPlace& segment : m_fabric.segment_places()) {
+    for (std::size_t s = 0; s < m_fabric.segments(); ++s) {
+        const SegmentPlace& segment = m_fabric.segment_places()[s];
         const double weight = scene.yarns[segment.yarn].gram_per_mm * scene.gravity_mm_ms2 *
                               static_cast<double>(m_fabric.constants()[segment.yarn].rest_mm);
         for (std::size_t c = 0; c < 4; ++c) {
             const std::size_t z = 3 * (segment.slot + c) + 2;
-            energy += weight * shares[c] * static_cast<double>(state[z]);
+            if (m_fabric.is_own(s)) energy += weight * shares[c] * static_cast<double>(state[z]);
             gradient[z] += static_cast<Real>(weight * shares[c]);
         }
     }
@@ -217,45 +218,53 @@ double Energy<Real>::safe_share(const std::vector<Real>& state, const std::vecto
 }
 
 template <class Real>
-void Energy<Real>::shorten(const std::vector<Real>& state, std::vector<Real>& change) {
-    constexpr int rounds = 6, most_rounds = 20;
-    constexpr double enough = 0.9;
+bool Energy<Real>::find_safe_shares(const std::vector<Real>& state, const std::vector<Real>& change, std::vector<double>& share) {
     const FabricView<Real> fabric = view(state);
-    std::vector<double> share(m_fabric.segments()), least(m_fabric.slots());
-    const std::vector<YarnPlace>& yarns = m_fabric.yarns();
-    for (int round = 0; round < most_rounds; ++round) {
-        move_samples(state, change);
-        m_executor.each(share.size(), [&](std::size_t s) {
-            const SegmentPlace& segment = fabric.segments[s];
-            share[s] = 1;
-            for (std::uint32_t k = 0; k < fabric.yarns[segment.yarn].samples; ++k)
-                share[s] = std::min(share[s], safe_share_of(fabric, segment.sample + k, 1));
-        });
-        if (std::all_of(share.begin(), share.end(), [](double part) { return part >= enough; })) return;
-        // What is still not safe does not move at all: else one place would hold up the whole cloth.
-        if (round >= rounds) {
-            for (double& part : share) part = part < enough ? 0 : 1;
+    share.resize(m_fabric.segments());
+    move_samples(state, change);
+    m_executor.each(share.size(), [&](std::size_t s) {
+        const SegmentPlace& segment = fabric.segments[s];
+        share[s] = 1;
+        for (std::uint32_t k = 0; k < fabric.yarns[segment.yarn].samples; ++k)
+            share[s] = std::min(share[s], safe_share_of(fabric, segment.sample + k, 1));
+    });
+    return std::all_of(share.begin(), share.end(), [](double part) { return part >= ShorteningRounds::enough; });
+}
+
+template <class Real>
+void Energy<Real>::shorten_by(std::vector<double>& share, int round, std::vector<Real>& change) const {
+    // What is still not safe does not move at all: else one place would hold up the whole cloth.
+    if (round >= ShorteningRounds::gentle) {
+        for (double& part : share) part = part < ShorteningRounds::enough ? 0 : 1;
+    }
+    std::vector<double> least(m_fabric.slots());
+    m_executor.each(m_fabric.slots(), [&](std::size_t slot) {
+        const YarnPlace& yarn = m_fabric.yarns()[m_fabric.yarn_of_slot()[slot]];
+        const std::size_t within = slot - yarn.first_slot - yarn.skipped;
+        least[slot] = 1;
+        for (std::size_t c = 0; c < 4; ++c) {
+            if (within - c < yarn.segments) least[slot] = std::min(least[slot], share[yarn.first_segment + within - c]);
         }
-        m_executor.each(m_fabric.slots(), [&](std::size_t slot) {
-            const YarnPlace& yarn = yarns[m_fabric.yarn_of_slot()[slot]];
-            const std::size_t within = slot - yarn.first_slot;
-            least[slot] = 1;
-            for (std::size_t c = 0; c < 4 && c <= within; ++c) {
-                if (within - c < yarn.segments)
-                    least[slot] = std::min(least[slot], share[yarn.first_segment + within - c]);
-            }
-        });
-        for (const FollowSlot& follow : m_fabric.follows()) {
-            for (std::size_t k = 0; k < 2; ++k) {
-                if (follow.weight[k] != 0) least[follow.from[k]] = std::min(least[follow.from[k]], least[follow.slot]);
-            }
+    });
+    for (const FollowSlot& follow : m_fabric.follows()) {
+        for (std::size_t k = 0; k < 2; ++k) {
+            if (follow.weight[k] != 0) least[follow.from[k]] = std::min(least[follow.from[k]], least[follow.slot]);
         }
-        m_executor.each(change.size(), [&](std::size_t i) { change[i] *= static_cast<Real>(least[i / 3]); });
-        m_fabric.follow_change(change);
+    }
+    m_executor.each(change.size(), [&](std::size_t i) { change[i] *= static_cast<Real>(least[i / 3]); });
+    m_fabric.follow_change(change);
+}
+
+template <class Real>
+void Energy<Real>::shorten(const std::vector<Real>& state, std::vector<Real>& change) {
+    std::vector<double> share;
+    for (int round = 0; round < ShorteningRounds::most; ++round) {
+        if (find_safe_shares(state, change, share)) return;
+        shorten_by(share, round, change);
     }
     // Rounds may run out before all places agree; then all of it is shortened alike.
     const auto whole = static_cast<Real>(safe_share(state, change, 1));
-    if (whole < Real(enough)) {
+    if (whole < Real(ShorteningRounds::enough)) {
         for (Real& part : change) part *= whole;
     }
 }

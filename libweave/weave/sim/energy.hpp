@@ -14,6 +14,12 @@
 
 namespace weave::sim {
 
+/// Rounds of Energy::shorten(): after the gentle ones what is not safe `enough` does not move at all.
+struct ShorteningRounds {
+    static constexpr int gentle = 6, most = 20;
+    static constexpr double enough = 0.9;
+};
+
 /// Energy of the yarns and its gradient: stretch, bending and contact, and the fields and held friction that the scene has.
 template <class Real>
 class Energy {
@@ -51,6 +57,10 @@ class Energy {
     /// Shortens a change where it is not safe: each control point goes as far as the samples near it allow,
     /// and not at all where they do not come to agree. At least 0.9 of what is left is safe.
     void shorten(const std::vector<Real>& state, std::vector<Real>& change);
+    /// A round of shorten() by its two halves, for a cloth that is relaxed in parts: the share of the change that is safe
+    /// by each segment, and whether it is enough everywhere; and the change shortened by these shares.
+    bool find_safe_shares(const std::vector<Real>& state, const std::vector<Real>& change, std::vector<double>& share);
+    void shorten_by(std::vector<double>& share, int round, std::vector<Real>& change) const;
 
   private:
     void lay_samples(const std::vector<Real>& state);

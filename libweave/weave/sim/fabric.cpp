@@ -35,7 +35,7 @@ double control_length(const SimYarn& yarn) {
 
 template <class Real>
 Fabric<Real>::Fabric(const SimScene& scene) : m_scene(scene), m_gauss(gauss_rule<Real>()) {
-    double least_radius = std::numeric_limits<double>::infinity();
+    double least_radius = scene.least_radius_mm > 0 ? scene.least_radius_mm : std::numeric_limits<double>::infinity();
     for (const SimYarn& yarn : scene.yarns) {
         least_radius = std::min(least_radius, yarn.radius_mm);
         m_greatest_radius = std::max(m_greatest_radius, yarn.radius_mm);
@@ -50,15 +50,18 @@ void Fabric<Real>::add_yarn(const SimYarn& yarn) {
     YarnPlace place;
     place.points = points;
     // A yarn of one point is no curve: it stays where it is, and nothing meets it.
-    place.segments = yarn.is_periodic ? points : std::max(points, 1U) - 1;
-    place.slots = place.segments + 3;
+    const std::uint32_t beyond = (yarn.is_cut[0] ? 1U : 0U) + (yarn.is_cut[1] ? 1U : 0U);
+    place.segments = yarn.is_periodic ? points : std::max(points, 1 + beyond) - 1 - beyond;
+    place.slots = points + (yarn.is_periodic ? 3 : 2);
+    place.skipped = yarn.is_cut[0] ? 1 : 0;
     place.first_slot = static_cast<std::uint32_t>(m_moves.size());
     place.first_segment = static_cast<std::uint32_t>(m_segments.size());
     place.first_sample = static_cast<std::uint32_t>(m_samples);
     const auto index = static_cast<std::uint32_t>(m_places.size());
 
     // A few more samples than the planned length asks for keep the spacing when the yarn grows.
-    const double length = (yarn.planned_mm > 0 ? yarn.planned_mm : control_length(yarn)) / std::max<double>(1, place.segments);
+    const double whole = std::max<double>(1, yarn.whole_segments > 0 ? static_cast<double>(yarn.whole_segments) : place.segments);
+    const double length = (yarn.planned_mm > 0 ? yarn.planned_mm : control_length(yarn)) / whole;
     const double nearest = yarn.radius_mm + m_least_reach / 2;
     const double wanted = std::ceil(1.05 * length / (scene().sample_spacing * nearest));
     const auto samples = static_cast<std::uint32_t>(std::clamp(wanted, 2.0, 4096.0));
@@ -69,7 +72,7 @@ void Fabric<Real>::add_yarn(const SimYarn& yarn) {
     constants.bending = static_cast<Real>(yarn.bending_N_mm2);
     constants.tension_N = static_cast<Real>(yarn.stretch_N * (yarn.strain - 1));
     constants.evenness_N = static_cast<Real>(yarn.stretch_N * yarn.strain);
-    constants.rest_mm = static_cast<Real>(yarn.rest_mm / std::max<double>(1, place.segments));
+    constants.rest_mm = static_cast<Real>(yarn.rest_mm / whole);
     constants.root_k = static_cast<Real>(std::sqrt(yarn.contact_N_mm2));
     constants.supply = yarn.is_fed ? Supply::tension : Supply::length;
     constants.samples = samples;
@@ -77,16 +80,28 @@ void Fabric<Real>::add_yarn(const SimYarn& yarn) {
     m_constants.push_back(constants);
 
     for (std::uint32_t s = 0; s < place.segments; ++s) {
-        m_segments.push_back({place.first_slot + s, index, static_cast<std::uint32_t>(m_samples)});
+        m_segments.push_back({place.first_slot + place.skipped + s, index, static_cast<std::uint32_t>(m_samples)});
         m_samples += samples;
     }
     m_moves.resize(m_moves.size() + place.slots, 0);
     m_yarn_of_slot.resize(m_moves.size(), index);
     for (std::uint32_t i = 0; i < points; ++i)
         m_moves[place.first_slot + 1 + i] = place.segments > 0 && (yarn.frozen.empty() || yarn.frozen[i] == 0);
+    add_guests(yarn, place);
     m_points += points;
     if (place.segments > 0) add_follows(yarn, place);
     m_places.push_back(place);
+}
+
+template <class Real>
+void Fabric<Real>::add_guests(const SimYarn& yarn, const YarnPlace& place) {
+    if (yarn.guests.empty() && m_guests.empty()) return;
+    m_guests.resize(m_moves.size(), 0);
+    if (yarn.guests.empty()) return;
+    std::copy(yarn.guests.begin(), yarn.guests.end(), m_guests.begin() + place.first_slot + 1);
+    m_guests[place.first_slot] = yarn.guests.front();
+    for (std::size_t slot = place.first_slot + 1 + place.points; slot < place.first_slot + place.slots; ++slot)
+        m_guests[slot] = yarn.guests.back();
 }
 
 template <class Real>
@@ -94,8 +109,8 @@ void Fabric<Real>::add_follows(const SimYarn& yarn, const YarnPlace& place) {
     const std::uint32_t zero = place.first_slot + 1, points = place.points;
     if (!yarn.is_periodic) {
         const std::uint32_t last = zero + points - 1;
-        m_follows.push_back({zero - 1, {zero, zero + 1}, {2, -1}, 0});
-        m_follows.push_back({last + 1, {last, last - 1}, {2, -1}, 0});
+        if (!yarn.is_cut[0]) m_follows.push_back({zero - 1, {zero, zero + 1}, {2, -1}, 0});
+        if (!yarn.is_cut[1]) m_follows.push_back({last + 1, {last, last - 1}, {2, -1}, 0});
         return;
     }
     for (const std::int64_t i : {std::int64_t{-1}, std::int64_t{points}, std::int64_t{points} + 1}) {
@@ -151,7 +166,7 @@ double Fabric<Real>::length_mm(const std::vector<Real>& state, std::size_t yarn)
     const YarnPlace& place = m_places[yarn];
     double length = 0;
     for (std::size_t s = 0; s < place.segments; ++s)
-        length += static_cast<double>(Speeds<Real>(m_gauss, &state[3 * (place.first_slot + s)]).length);
+        length += static_cast<double>(Speeds<Real>(m_gauss, &state[3 * std::size_t(m_segments[place.first_segment + s].slot)]).length);
     return length;
 }
 
@@ -187,7 +202,7 @@ void Fabric<Real>::fold(std::vector<Real>& gradient) const {
         }
     }
     for (std::size_t slot = 0; slot < m_moves.size(); ++slot) {
-        if (m_moves[slot] != 0) continue;
+        if (m_moves[slot] != 0 && !is_guest(slot)) continue;
         for (std::size_t k = 0; k < 3; ++k) gradient[3 * slot + k] = 0;
     }
 }

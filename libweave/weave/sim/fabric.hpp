@@ -16,6 +16,7 @@ struct YarnPlace {
     std::uint32_t first_slot = 0, slots = 0, points = 0;
     std::uint32_t first_segment = 0, segments = 0;
     std::uint32_t first_sample = 0;
+    std::uint32_t skipped = 0;  ///< slots before its first segment: one where it is cut off
 };
 
 /// A slot beyond a yarn's end that follows from one or two of its control points: weight·point + …, moved by whole
@@ -56,6 +57,15 @@ class Fabric {
     [[nodiscard]] const std::vector<FollowSlot>& follows() const { return m_follows; }
     /// Whether a slot is a control point that may move.
     [[nodiscard]] const std::vector<std::uint8_t>& moves() const { return m_moves; }
+    /// Whether a slot is a control point that belongs to another part of the cloth (SimYarn::guests).
+    [[nodiscard]] bool is_guest(std::size_t slot) const { return !m_guests.empty() && m_guests[slot] != 0; }
+    /// Whether a segment counts as this part's: the control point that it begins at does.
+    [[nodiscard]] bool is_own(std::size_t segment) const { return !is_guest(m_segments[segment].slot + 1); }
+    /// Whether a segment acts on a control point that is no guest.
+    [[nodiscard]] bool is_felt(std::size_t segment) const {
+        const std::size_t slot = m_segments[segment].slot;
+        return m_guests.empty() || !(is_guest(slot) && is_guest(slot + 1) && is_guest(slot + 2) && is_guest(slot + 3));
+    }
     /// Index of the yarn that each slot belongs to.
     [[nodiscard]] const std::vector<std::uint32_t>& yarn_of_slot() const { return m_yarn_of_slot; }
     /// Smallest sum of two radii, and the greatest radius, mm.
@@ -72,12 +82,13 @@ class Fabric {
     void follow(std::vector<Real>& state) const;
     /// The same for a change of state: no periods are added.
     void follow_change(std::vector<Real>& change) const;
-    /// Adds what following slots have gathered to the points that they follow, and clears them and frozen slots.
+    /// Adds what following slots have gathered to the points that they follow, and clears them, frozen slots and guests.
     void fold(std::vector<Real>& gradient) const;
 
   private:
     void add_yarn(const SimYarn& yarn);
     void add_follows(const SimYarn& yarn, const YarnPlace& place);
+    void add_guests(const SimYarn& yarn, const YarnPlace& place);
     std::uint32_t basis_for(std::uint32_t samples);
 
     SimScene m_scene;
@@ -89,6 +100,7 @@ class Fabric {
     Gauss<Real> m_gauss;
     std::vector<FollowSlot> m_follows;
     std::vector<std::uint8_t> m_moves;
+    std::vector<std::uint8_t> m_guests;  ///< per slot; empty where there are none. A following slot is one with what it follows
     std::vector<std::uint32_t> m_yarn_of_slot;
     std::size_t m_points = 0, m_samples = 0;
     double m_least_reach = 0, m_greatest_radius = 0;

@@ -2,15 +2,7 @@
 
 #include <weave/sim/relax.hpp>
 
-#include <cmath>
-
 namespace weave::sim {
-
-namespace {
-
-constexpr std::size_t most_pairs = 16;
-
-}  // namespace
 
 template <class Real>
 HostCloth<Real>::HostCloth(Energy<Real>& energy, Slots& start)
@@ -52,46 +44,24 @@ void HostCloth<Real>::scale(Slots& slots, double share) const {
     for (Real& part : slots) part *= static_cast<Real>(share);
 }
 
-/// The two loops over what is remembered, with the preconditioner between them, scaled by the latest pair.
 template <class Real>
 void HostCloth<Real>::find_direction() {
-    const Executor& executor = m_energy.executor();
     m_hessian.to_rows(gradient, m_work);
-    std::vector<double> share(m_pairs.size());
-    for (std::size_t p = m_pairs.size(); p-- > 0;) {
-        const Pair& pair = m_pairs[p];
-        share[p] = dot(pair.change, m_work) / pair.product;
-        executor.each(m_work.size(), [&](std::size_t i) { m_work[i] -= share[p] * pair.bend[i]; });
-    }
-    m_preconditioner.apply(m_work, direction);
-    if (!m_pairs.empty()) {
-        const Pair& latest = m_pairs.back();
-        m_preconditioner.apply(latest.bend, m_work);
-        const double scale = latest.product / dot(latest.bend, m_work);
-        executor.each(m_work.size(), [&](std::size_t i) { direction[i] *= scale; });
-    }
-    for (std::size_t p = 0; p < m_pairs.size(); ++p) {
-        const Pair& pair = m_pairs[p];
-        const double less = share[p] - dot(pair.bend, direction) / pair.product;
-        executor.each(m_work.size(), [&](std::size_t i) { direction[i] += less * pair.change[i]; });
-    }
-    executor.each(m_work.size(), [&](std::size_t i) { direction[i] = -direction[i]; });
+    m_pairs.find_direction(
+        m_energy.executor(), m_work, direction, [this](const Rows& a, const Rows& b) { return dot(a, b); },
+        [this](const Rows& of, Rows& result) { m_preconditioner.apply(of, result); });
     change_from(direction);
 }
 
 template <class Real>
 void HostCloth<Real>::remember(double share) {
-    constexpr double least_bend = 1e-3;
-    Pair pair;
+    LearnedPairs::Pair pair;
     m_hessian.to_rows(change, pair.change);
     for (double& part : pair.change) part *= share;
     m_hessian.to_rows(trial, pair.bend);
     m_hessian.to_rows(gradient, m_work);
     for (std::size_t i = 0; i < m_work.size(); ++i) pair.bend[i] -= m_work[i];
-    pair.product = dot(pair.change, pair.bend);
-    if (!(pair.product > least_bend * std::abs(dot(pair.change, m_work)))) return;
-    m_pairs.push_back(std::move(pair));
-    if (m_pairs.size() > most_pairs) m_pairs.pop_front();
+    m_pairs.remember(std::move(pair), m_work, [this](const Rows& a, const Rows& b) { return dot(a, b); });
 }
 
 template <class Real>

@@ -4,10 +4,10 @@
 #include <weave/sim/cloth.hpp>
 #include <weave/sim/energy.hpp>
 #include <weave/sim/hessian.hpp>
+#include <weave/sim/learned_pairs.hpp>
 #include <weave/sim/multigrid.hpp>
 
 #include <cstddef>
-#include <deque>
 #include <vector>
 
 namespace weave::sim {
@@ -55,7 +55,7 @@ class HostCloth {
 
     void find_direction();
     void remember(double share);
-    void forget_pairs() { m_pairs.clear(); }
+    void forget_pairs() { m_pairs.forget(); }
 
     void start_from_gradient();
     void start_at_random();
@@ -71,16 +71,11 @@ class HostCloth {
     Rows residual, solved, direction, step, product;
 
   private:
-    struct Pair {
-        Rows change, bend;   ///< of places and of the gradient
-        double product = 0;  ///< of both
-    };
-
     Energy<Real>& m_energy;
     Hessian<Real> m_hessian;
     BlockMatrix m_matrix;
     Multigrid m_preconditioner;
-    std::deque<Pair> m_pairs;
+    LearnedPairs m_pairs;
     Rows m_work;
 };
 

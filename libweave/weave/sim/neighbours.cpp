@@ -455,7 +455,8 @@ void Neighbours<Real>::list_near(std::uint32_t sample, const Candidates& candida
     std::size_t kept = before;
     for (std::size_t i = before; i < before + found; ++i) {
         const std::uint32_t b = candidates.samples[list[i]];
-        if (b != sample && !same_stretch(sample, b) && !m_transition.parts(sample, own(b))) list[kept++] = b;
+        const bool counts = m_fabric.is_felt(m_segment_of[sample]) || m_fabric.is_felt(m_segment_of[own(b)]);
+        if (counts && b != sample && !same_stretch(sample, b) && !m_transition.parts(sample, own(b))) list[kept++] = b;
     }
     list.resize(kept);
     // Images among their own samples, so that those of one segment follow one another.

@@ -29,6 +29,13 @@ struct SimYarn {
     bool is_fed = false;          ///< at constant tension (warp); else a fixed length
     double strain = 1;            ///< target S of a fed yarn, at least 1
     double rest_mm = 0;           ///< unstretched length of a yarn of fixed length, whole
+
+    // Only of a piece of a yarn, in a part of a cloth that is relaxed in parts (weave/ranks):
+    /// Whether the yarn goes on before its first control point, and after its last: that one shapes the segments beside it,
+    /// but no segment begins or ends there.
+    std::array<bool, 2> is_cut{};
+    std::vector<std::uint8_t> guests;  ///< per control point: it moves with another part; empty: none
+    std::size_t whole_segments = 0;    ///< segments of the whole yarn, of which `planned_mm` and `rest_mm` are; 0: its own
 };
 
 /// A crossing whose two yarns are being led past one another (paper, 5.2 and A.4). Both `at` and `reach` count segments
@@ -61,6 +68,7 @@ struct SimScene {
     std::optional<SlipStart> slip_from;
     /// Greatest distance of contact samples, as a share of the smallest sum of two radii (1/4: see the accuracy notes).
     double sample_spacing = 0.25;
+    double least_radius_mm = 0;  ///< of all yarns of the cloth, where these are a part of it; 0: of these
 };
 
 }  // namespace weave::sim
