@@ -6,8 +6,11 @@
 #include <chrono>
 #include <csignal>
 #include <cstdio>
+#include <mutex>
+#include <string>
 #include <thread>
 #include <unistd.h>
+#include <utility>
 
 namespace weave::program {
 
@@ -15,6 +18,18 @@ namespace {
 
 std::atomic<bool> held{false}, came{false};
 std::atomic<const char*> what_follows{""};
+std::atomic<bool> wished{false};
+
+/// The line for the end, and the lock that its readers take.
+struct LastLine {
+    std::mutex mutex;
+    std::string text;
+};
+
+LastLine& last_line() {
+    static auto* const one = new LastLine;  // outlives every thread
+    return *one;
+}
 
 /// Decides signal by signal whether the program ends at once. A key that bounces, or a caller that signals
 /// twice, is not a second wish.
@@ -53,10 +68,29 @@ void tidy_up_when_ended() {
             if (sigwait(&ending, &signal) != 0) return;
         } while (!judge.ends_at_once());
         drop_unfinished_writes();
+        {
+            const std::lock_guard lock(last_line().mutex);
+            if (!last_line().text.empty()) std::fprintf(stderr, "weave: %s\n", last_line().text.c_str());
+        }
         std::signal(signal, SIG_DFL);
         pthread_sigmask(SIG_UNBLOCK, &ending, nullptr);
         std::raise(signal);  // so that the caller learns what ended us
     }).detach();
+}
+
+void tell_when_ended(std::string line) {
+    const std::lock_guard lock(last_line().mutex);
+    last_line().text = std::move(line);
+}
+
+void stop_on_user_signal() {
+    struct sigaction action {};
+    action.sa_handler = [](int) { wished = true; };
+    sigaction(SIGUSR1, &action, nullptr);
+}
+
+bool asked_to_stop() {
+    return wished;
 }
 
 HeldInterrupt::HeldInterrupt(const char* follows) {

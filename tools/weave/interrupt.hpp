@@ -1,6 +1,16 @@
 #pragma once
 
+#include <string>
+
 namespace weave::program {
+
+/// A line for whoever ends the program by a signal, told just before it ends; empty: none.
+void tell_when_ended(std::string line);
+
+/// From now on SIGUSR1 is a wish to stop at the next occasion: mpirun hands it on, while it ends all at once by other signals.
+void stop_on_user_signal();
+/// Whether it came.
+bool asked_to_stop();
 
 /// Lets the program end tidily by a signal (SIGINT, SIGTERM, SIGHUP): no half-written file stays behind. Call once,
 /// before any other thread is started.

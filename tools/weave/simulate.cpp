@@ -5,6 +5,7 @@
 #include "remote_job.hpp"
 #include "simulate_ending.hpp"
 #include "simulate_on.hpp"
+#include "simulate_together.hpp"
 #include "simulate_wish.hpp"
 #include "sweep.hpp"
 #include "teller.hpp"
@@ -180,6 +181,7 @@ Status sweep(CommandOutcome& outcome, wire::Follower& server, const Cloth& cloth
 }
 
 Status run_simulation(CommandOutcome& outcome, const SimulateWish& wish) {
+    WEAVE_CHECK_OK(check_together(wish));
     WEAVE_CHECK_OK(check_wish(wish));
     std::optional<wire::Follower> server;
     if (!wish.server.host.empty()) {
@@ -200,7 +202,7 @@ Status run_simulation(CommandOutcome& outcome, const SimulateWish& wish) {
     if (!understood) return std::move(understood).error().in(wish.file);
     SimulateTask& task = *understood;
     WEAVE_TRY(sim::Plan plan, plan_of(task.design, block, task.request, wish.file));
-    if (!server) {
+    if (!server && !runs_together()) {
         const Result<sim::BackendChoice> choice = sim::choose_backend(task.options.backend, plan.scene);
         if (!choice) return Error{choice.error().code, choice.error().message, "--backend " + wish.backend};
         plan.lines.push_back({"backend", choice->device.empty() ? "cpu" : "cuda: " + choice->device, choice->reason});
@@ -217,6 +219,7 @@ Status run_simulation(CommandOutcome& outcome, const SimulateWish& wish) {
         plan = {};
         return simulate_on(outcome, *server, cloth.design, task, wish, goal);
     }
+    if (runs_together()) return simulate_together(outcome, task.design, std::move(plan), wish);
     const HeldInterrupt held("the yarns are written as they lie; again to end at once, without the state");
     WEAVE_TRY(const Yarns yarns, watched(block, task, plan, wish));
     WEAVE_TRY(const std::string bytes, write_yarns(yarns));
@@ -277,16 +280,24 @@ void add_simulate(CLI::App& app, CommandOutcome& outcome) {
     command->add_option("--steps", wish->steps, "stop after so many steps in all; each run of --starts and --symmetry has as many")->transform(whole_number())->type_name("N");
     command->add_option("--seconds", wish->seconds, "stop after so long in all; each run of --starts and --symmetry has as long")->check(positive_number())->type_name("N");
     add_threads(command, wish->threads);
+    command->add_option("--checkpoint", wish->checkpoint, "under mpirun: the folder for checkpoints, which all processes see; where it has one of this run, that is gone on "
+                                                          "from, with any number of processes")
+        ->type_name("FOLDER");
+    command->add_option("--checkpoint-every", wish->checkpoint_every, "seconds between checkpoints; 120 if nothing is said")->check(positive_number())->type_name("N");
+    command->add_option("--patience", wish->patience, "under mpirun: seconds after which processes that do not answer are lost; 600 if nothing is said")
+        ->transform(between(1, 1'000'000))
+        ->type_name("N");
     CLI::Option* on = add_server_options(command, wish->server);
     sweeping->needs(on);
     command->add_option("--evidence", wish->evidence, "the file for what the server signs of the result, for loomlink")->needs(on)->type_name("FILE");
     command->footer("Ctrl-C writes the yarns as they lie (exit 1), for --resume to go on from; again, half a second later or more, ends at "
                     "once without them.\nWith --on the file is written once, at the end; Ctrl-C cancels the job and writes its yarns as they lay. weave jobs "
-                    "lists what is on the server.\n" + command->get_footer());
+                    "lists what is on the server.\nUnder mpirun (mpirun -n 4 weave simulate …) the processes relax one cloth together (docs/scale.md); the signal USR1 to mpirun then "
+                    "writes the yarns as they lie.\n" + command->get_footer());
     on_run(command, outcome, [=, &outcome] {
         wish->no_plan_option = given_of(command, {"--out", "--sweep", "--solver", "--residual", "--flip", "--save-design", "--resume", "--start-from", "--starts",
-                                                  "--symmetry", "--seed", "--steps", "--seconds", "--threads", "--on"});
-        wish->no_server_option = given_of(command, {"--resume", "--starts", "--symmetry", "--seed", "--threads"});
+                                                  "--symmetry", "--seed", "--steps", "--seconds", "--threads", "--checkpoint", "--checkpoint-every", "--patience", "--on"});
+        wish->no_server_option = given_of(command, {"--resume", "--starts", "--symmetry", "--seed", "--threads", "--checkpoint", "--checkpoint-every", "--patience"});
         return run_simulation(outcome, *wish);
     });
 }

@@ -16,11 +16,11 @@ namespace weave::program {
 
 /// The options of `weave simulate`.
 struct SimulateWish {
-    std::string file, out, fidelity = "standard", region, solver = "relax", backend = "auto", resume, save_design, start_from;
+    std::string file, out, fidelity = "standard", region, solver = "relax", backend = "auto", resume, save_design, start_from, checkpoint;
     std::vector<std::string> set, sweep, boundaries, pins, fields, flips;
     bool wraparound = false, explain = false, whole = false, symmetry = false;
-    std::optional<double> residual, points, seconds;
-    std::optional<std::size_t> steps;
+    std::optional<double> residual, points, seconds, checkpoint_every;
+    std::optional<std::size_t> steps, patience;
     std::size_t threads = 0, starts = 0;
     std::optional<std::uint64_t> seed;
     ServerWish server;                  ///< what computes instead of this program, if anything

@@ -9,6 +9,7 @@
 #include <cstring>
 #include <fcntl.h>
 #include <mutex>
+#include <optional>
 #include <random>
 #include <sys/stat.h>
 #include <unistd.h>
@@ -72,17 +73,18 @@ fs::path temporary_beside(const fs::path& path) {
 
 constexpr mode_t usual_mode = 0666;  // less what the umask takes
 
-/// A new file with these bytes, flushed; `like` gives owner and permissions.
-Status write_new(Scaffold& scaffold, const fs::path& path, std::string_view bytes,
-                 const struct stat* like = nullptr) {
+/// A new file; `like` gives owner and permissions once it is complete.
+Result<Descriptor> create(Scaffold& scaffold, const fs::path& path, const struct stat* like) {
     const mode_t mode = like == nullptr ? usual_mode : 0600;
     int number = -1;
     const auto open = [&] {
         return (number = ::open(path.c_str(), O_WRONLY | O_CREAT | O_EXCL | O_CLOEXEC, mode)) >= 0;
     };
     if (!scaffold.make(path, open)) return file_fault(path, "create");
-    Descriptor file(number);
-    WEAVE_CHECK_OK(write_all(file, bytes, path));
+    return Descriptor(number);
+}
+
+Status complete(Descriptor& file, const fs::path& path, const struct stat* like) {
     if (like != nullptr) {
         static_cast<void>(!::fchown(file.number(), like->st_uid, like->st_gid));  // told once it is in place
         if (::fchmod(file.number(), like->st_mode & 0777) != 0) return file_fault(path, "set the permissions");
@@ -90,6 +92,14 @@ Status write_new(Scaffold& scaffold, const fs::path& path, std::string_view byte
     if (::fsync(file.number()) != 0) return file_fault(path, "flush to disk");
     if (::close(file.release()) != 0) return file_fault(path, "close");
     return {};
+}
+
+/// A new file with these bytes, flushed.
+Status write_new(Scaffold& scaffold, const fs::path& path, std::string_view bytes,
+                 const struct stat* like = nullptr) {
+    WEAVE_TRY(Descriptor file, create(scaffold, path, like));
+    WEAVE_CHECK_OK(write_all(file, bytes, path));
+    return complete(file, path, like);
 }
 
 /// Flushes the names in a folder. Some file systems cannot, and need not.
@@ -268,17 +278,67 @@ Result<std::string> read_file(const fs::path& path, std::uint64_t limit) {
     }
 }
 
+namespace {
+
+Status put_into_place(Scaffold& scaffold, const fs::path& temporary, const Destination& to, const fs::path& path) {
+    if (::rename(temporary.c_str(), to.target.c_str()) != 0) return file_fault(path, "put into place");
+    scaffold.keep();
+    flush_parent(to.target);
+    if (to.exists) tell_changes(to.target, to.old, path);
+    return {};
+}
+
+}  // namespace
+
 Status write_file(const fs::path& path, std::string_view bytes) {
     WEAVE_TRY(const Destination to, destination_of(path));
     if (to.is_through) return write_through(path, bytes);
     Scaffold scaffold;
     const fs::path temporary = temporary_beside(to.target);
     WEAVE_CHECK_OK(seen_from(write_new(scaffold, temporary, bytes, to.exists ? &to.old : nullptr), path));
-    if (::rename(temporary.c_str(), to.target.c_str()) != 0) return file_fault(path, "put into place");
-    scaffold.keep();
-    flush_parent(to.target);
-    if (to.exists) tell_changes(to.target, to.old, path);
+    return put_into_place(scaffold, temporary, to, path);
+}
+
+struct FileInPieces::Parts {
+    fs::path path;
+    Destination to;
+    fs::path temporary;
+    Scaffold scaffold;
+    std::optional<Descriptor> file;
+};
+
+FileInPieces::FileInPieces(std::unique_ptr<Parts> parts) : m_parts(std::move(parts)) {}
+FileInPieces::FileInPieces(FileInPieces&&) noexcept = default;
+FileInPieces& FileInPieces::operator=(FileInPieces&&) noexcept = default;
+FileInPieces::~FileInPieces() = default;
+
+Result<FileInPieces> FileInPieces::begin(const fs::path& path) {
+    auto parts = std::make_unique<Parts>();
+    parts->path = path;
+    WEAVE_TRY(parts->to, destination_of(path));
+    if (parts->to.is_through) return system_fault("is a device or a pipe, which is not written in pieces", path.string());
+    parts->temporary = temporary_beside(parts->to.target);
+    auto file = create(parts->scaffold, parts->temporary, parts->to.exists ? &parts->to.old : nullptr);
+    if (!file) return seen_from(std::move(file).error(), path).error();
+    parts->file.emplace(std::move(*file));
+    return FileInPieces(std::move(parts));
+}
+
+Status FileInPieces::write(std::uint64_t from, std::string_view bytes) {
+    while (!bytes.empty()) {
+        const ssize_t put = ::pwrite(m_parts->file->number(), bytes.data(), bytes.size(), static_cast<off_t>(from));
+        if (put < 0 && errno == EINTR) continue;
+        if (put < 0) return file_fault(m_parts->path, "write");
+        bytes.remove_prefix(static_cast<std::size_t>(put));
+        from += static_cast<std::uint64_t>(put);
+    }
     return {};
+}
+
+Status FileInPieces::finish() {
+    const Parts& parts = *m_parts;
+    WEAVE_CHECK_OK(seen_from(complete(*m_parts->file, parts.temporary, parts.to.exists ? &parts.to.old : nullptr), parts.path));
+    return put_into_place(m_parts->scaffold, parts.temporary, parts.to, parts.path);
 }
 
 Status check_writable(const fs::path& path) {

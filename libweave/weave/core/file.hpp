@@ -4,6 +4,7 @@
 
 #include <cstdint>
 #include <filesystem>
+#include <memory>
 #include <string>
 #include <string_view>
 #include <utility>
@@ -25,6 +26,25 @@ Result<std::string> read_file(const std::filesystem::path& path, std::uint64_t l
 /// as well). The log is told where another name (hard link) keeps the old content, or the owner could not be
 /// kept.
 Status write_file(const std::filesystem::path& path, std::string_view bytes);
+
+/// A file that is written piece by piece, for what is too long to be held at once; it is in place once finish() was called, and
+/// until then, or where anything fails, what was there stays. As write_file(), but for devices and pipes, which are refused.
+class FileInPieces {
+  public:
+    static Result<FileInPieces> begin(const std::filesystem::path& path);
+    FileInPieces(FileInPieces&&) noexcept;
+    FileInPieces& operator=(FileInPieces&&) noexcept;
+    ~FileInPieces();
+
+    /// Writes from this byte of the file on; what is never written is zero.
+    Status write(std::uint64_t from, std::string_view bytes);
+    Status finish();
+
+  private:
+    struct Parts;
+    explicit FileInPieces(std::unique_ptr<Parts> parts);
+    std::unique_ptr<Parts> m_parts;
+};
 
 /// Whether write_file() could write there, as far as that shows beforehand: for what is written only after long work.
 Status check_writable(const std::filesystem::path& path);

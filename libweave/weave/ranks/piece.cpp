@@ -14,13 +14,13 @@ Vec3 moved_by(const Cut& cut, const Met& met) {
 }
 
 /// The yarns of a piece, each a run of points that follow one another.
-struct Piece::Strands {
+struct Piece::Yarns {
     sim::SimScene scene;
     /// Strand and place along it of each own point, and of each guest.
     std::vector<std::array<std::uint32_t, 2>> own, guests;
-    std::vector<std::uint32_t> yarns;  ///< of each strand
+    std::vector<Strand> strands;
 
-    Strands(const Cut& cut, const Part& part, const std::vector<Met>& met) : scene(cut.terms), own(part.own.size()), guests(met.size()) {
+    Yarns(const Cut& cut, const Part& part, const std::vector<Met>& met) : scene(cut.terms), own(part.own.size()), guests(met.size()) {
         scene.is_periodic = {false, false};  // whatever repeats is here as a guest
         std::vector<Entry> entries;
         for (std::uint32_t i = 0; i < part.own.size(); ++i)
@@ -66,15 +66,15 @@ struct Piece::Strands {
             (run[at].is_guest ? guests : own)[run[at].number] = {static_cast<std::uint32_t>(scene.yarns.size()), at};
         }
         scene.yarns.push_back(std::move(yarn));
-        yarns.push_back(of);
+        strands.push_back({of, run.front().image, run.front().along});
     }
 };
 
 Piece::Piece(const Cut& cut, const Part& part, std::vector<Met> guests, const sim::Executor& executor)
-    : Piece(cut, guests, executor, Strands(cut, part, guests)) {}
+    : Piece(cut, guests, executor, Yarns(cut, part, guests)) {}
 
-Piece::Piece(const Cut& cut, std::vector<Met> guests, const sim::Executor& executor, const Strands& strands)
-    : m_guests(std::move(guests)), m_yarn_of_strand(strands.yarns), m_fabric(strands.scene), m_energy(m_fabric, executor), m_hessian(m_fabric) {
+Piece::Piece(const Cut& cut, std::vector<Met> guests, const sim::Executor& executor, const Yarns& yarns)
+    : m_guests(std::move(guests)), m_strands(yarns.strands), m_fabric(yarns.scene), m_energy(m_fabric, executor), m_hessian(m_fabric) {
     for (const Met& guest : m_guests) m_moved.push_back(moved_by(cut, guest));
     std::vector<std::uint32_t> row_of_slot(m_fabric.slots(), none);
     const std::vector<std::uint32_t>& slot_of_row = m_hessian.slot_of_row();
@@ -85,8 +85,8 @@ Piece::Piece(const Cut& cut, std::vector<Met> guests, const sim::Executor& execu
             rows.push_back(row_of_slot[slots.back()]);
         }
     };
-    find(strands.own, m_slot_of_own, m_row_of_own);
-    find(strands.guests, m_slot_of_guest, m_row_of_guest);
+    find(yarns.own, m_slot_of_own, m_row_of_own);
+    find(yarns.guests, m_slot_of_guest, m_row_of_guest);
     // Which samples lie on one stretch of a yarn is decided where they are planned: the same whenever a piece is made anew.
     m_energy.first_weights(m_fabric.state());
 }

@@ -5,6 +5,7 @@
 #include <weave/sim/energy.hpp>
 #include <weave/sim/hessian.hpp>
 
+#include <array>
 #include <cstddef>
 #include <cstdint>
 #include <memory>
@@ -38,19 +39,26 @@ class Piece {
     [[nodiscard]] const std::vector<std::uint32_t>& row_of_own() const { return m_row_of_own; }
     [[nodiscard]] const std::vector<std::uint32_t>& row_of_guest() const { return m_row_of_guest; }
 
-    /// Yarn of the cloth that each yarn of fabric() is a run of.
-    [[nodiscard]] const std::vector<std::uint32_t>& yarn_of_strand() const { return m_yarn_of_strand; }
+    /// What each yarn of fabric() is a run of: its yarn in the cloth, seen so many periods away, from this point along it on.
+    struct Strand {
+        std::uint32_t yarn = 0;
+        std::array<std::int16_t, 2> image{};
+        std::int64_t first = 0;
+    };
+    [[nodiscard]] const std::vector<Strand>& strands() const { return m_strands; }
+    [[nodiscard]] const std::vector<std::uint32_t>& slot_of_own() const { return m_slot_of_own; }
 
     std::vector<double> state;  ///< by slot, as evaluated last
     sim::BlockMatrix matrix;    ///< of all rows; those of guests are not whole
 
   private:
-    struct Strands;
-    Piece(const Cut& cut, std::vector<Met> guests, const sim::Executor& executor, const Strands& strands);
+    struct Yarns;
+    Piece(const Cut& cut, std::vector<Met> guests, const sim::Executor& executor, const Yarns& yarns);
 
     std::vector<Met> m_guests;
     std::vector<Vec3> m_moved;  ///< of each guest, from where it lies in its own block
-    std::vector<std::uint32_t> m_yarn_of_strand, m_slot_of_own, m_slot_of_guest, m_row_of_own, m_row_of_guest;
+    std::vector<Strand> m_strands;
+    std::vector<std::uint32_t> m_slot_of_own, m_slot_of_guest, m_row_of_own, m_row_of_guest;
     sim::Fabric<double> m_fabric;
     sim::Energy<double> m_energy;
     sim::Hessian<double> m_hessian;

@@ -406,23 +406,28 @@ void SplitCloth::move(double share) {
     });
 }
 
-double SplitCloth::greatest_strain() {
+std::vector<double> SplitCloth::lengths() {
     lay_slots(state, true);
     std::vector<double> told;
     for (const auto& piece : m_lay->pieces) {
         const sim::Fabric<double>& fabric = piece->fabric();
-        std::map<std::uint32_t, double> lengths;
+        std::map<std::uint32_t, double> of_yarn;
         for (std::size_t s = 0; s < fabric.segments(); ++s) {
             const sim::SegmentPlace& segment = fabric.segment_places()[s];
             if (!fabric.is_own(s)) continue;
-            lengths[piece->yarn_of_strand()[segment.yarn]] += sim::Speeds<double>(fabric.gauss(), &piece->state[3 * std::size_t(segment.slot)]).length;
+            of_yarn[piece->strands()[segment.yarn].yarn] += sim::Speeds<double>(fabric.gauss(), &piece->state[3 * std::size_t(segment.slot)]).length;
         }
-        for (const auto& [yarn, length] : lengths) told.insert(told.end(), {static_cast<double>(yarn), length});
+        for (const auto& [yarn, length] : of_yarn) told.insert(told.end(), {static_cast<double>(yarn), length});
     }
     std::vector<double> whole(m_cut.yarns.size(), 0);
     for (const Comm::Packet& packet : m_comm.gather(told)) {
         for (std::size_t at = 0; at < packet.size(); at += 2) whole[static_cast<std::size_t>(packet[at])] += packet[at + 1];
     }
+    return whole;
+}
+
+double SplitCloth::greatest_strain() {
+    const std::vector<double> whole = lengths();
     double greatest = 0;
     for (std::size_t y = 0; y < whole.size(); ++y) {
         if (!m_cut.yarns[y].is_fed && m_cut.yarns[y].rest_mm > 0) greatest = std::max(greatest, whole[y] / m_cut.yarns[y].rest_mm - 1);

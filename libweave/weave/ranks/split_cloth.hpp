@@ -70,7 +70,9 @@ class SplitCloth {
     Slots gradient, trial, before, change, cut;
     Rows residual, solved, direction, step, product;
 
-    /// Greatest strain of yarns of fixed length at the start, each taken as a whole.
+    /// Length of each yarn of the cloth at the state, mm.
+    std::vector<double> lengths();
+    /// Greatest strain of yarns of fixed length at the state, each taken as a whole.
     double greatest_strain();
     /// The pieces as they were evaluated last, one for each block of this rank.
     [[nodiscard]] const std::vector<std::unique_ptr<Piece>>& pieces() const { return m_lay->pieces; }

@@ -120,8 +120,7 @@ bool lies_as_planned(const Thread& weft, const Thread& warp, const Crossing& cro
     if (spot && shows(across_both(weft, warp, *spot, weft_way)))
         return (spot->height_mm > 0) == crossing.weft_over;
     const CrossingSpot nearest =
-        nearest_spot(weft, warp, weft.per_key * static_cast<double>(crossing.weft_key),
-                     warp.per_key * static_cast<double>(crossing.warp_key));
+        nearest_spot(weft, warp, weft.at(crossing.weft_key), warp.at(crossing.warp_key));
     const Vec3 up = across_both(weft, warp, nearest, weft_way);
     if (!spot && shows(up)) return false;
     const Vec3 apart = weft.spline.place(nearest.weft_at) - warp.spline.place(nearest.warp_at);
@@ -132,8 +131,7 @@ bool lies_as_planned(const Thread& weft, const Thread& warp, const Crossing& cro
 
 std::optional<CrossingSpot> find_crossing(const Thread& weft, const Thread& warp, std::size_t weft_key,
                                           std::size_t warp_key) {
-    const double t = weft.per_key * static_cast<double>(weft_key),
-                 s = warp.per_key * static_cast<double>(warp_key);
+    const double t = weft.at(weft_key), s = warp.at(warp_key);
     const std::optional<CrossingSpot> spot = spot_by_newton(weft, warp, t, s);
     return spot ? spot : spot_by_search(weft, warp, t, s);
 }
@@ -154,9 +152,8 @@ std::vector<LostCrossing> doubtful_crossings(const std::vector<Crossing>& crossi
     for (const Crossing& crossing : crossings) {
         if (subject.now[crossing.weft].control.empty() || subject.now[crossing.warp].control.empty())
             continue;
-        const Thread weft{subject.now[crossing.weft], subject.per_key[crossing.weft]},
-            warp{subject.now[crossing.warp], subject.per_key[crossing.warp]};
-        const double t = weft.per_key * static_cast<double>(crossing.weft_key);
+        const Thread weft = subject.thread(subject.now, crossing.weft), warp = subject.thread(subject.now, crossing.warp);
+        const double t = weft.at(crossing.weft_key);
         const Spline& planned = subject.planned[crossing.weft];
         const double weft_way =
             planned.tangent(std::min(t, static_cast<double>(planned.segments()))).y() < 0 ? -1 : 1;
@@ -180,8 +177,7 @@ namespace {
 
 /// Whether the plan itself has a crossing as the card says; a card that changed since has not.
 bool planned_so(const Crossing& crossing, const OrderSubject& subject) {
-    const auto spot = find_crossing({subject.planned[crossing.weft], subject.per_key[crossing.weft]},
-                                    {subject.planned[crossing.warp], subject.per_key[crossing.warp]},
+    const auto spot = find_crossing(subject.thread(subject.planned, crossing.weft), subject.thread(subject.planned, crossing.warp),
                                     crossing.weft_key, crossing.warp_key);
     return spot && (spot->height_mm > 0) == crossing.weft_over;
 }
@@ -203,7 +199,7 @@ CrossingOrder crossing_order(const std::vector<Crossing>& crossings, const Order
 }
 
 CrossingOrder crossing_order(const ClothCurves& curves, const std::vector<Spline>& splines) {
-    OrderSubject subject{{}, splines, {}, {}};
+    OrderSubject subject{{}, splines, {}, {}, {}};
     for (std::size_t y = 0; y < splines.size(); ++y) {
         subject.per_key.push_back(thread_of(splines[y], curves.yarns[y]).per_key);
         Spline& planned = subject.planned.emplace_back();

@@ -13,6 +13,9 @@ namespace weave::sim {
 struct Thread {
     const Spline& spline;
     double per_key = 1;  ///< parameter from one key point to the next
+    double begin = 0;    ///< of a piece of a yarn: the parameter of the whole at which it begins
+
+    [[nodiscard]] double at(std::size_t key) const { return per_key * static_cast<double>(key) - begin; }
 };
 
 /// Where two yarns cross, seen from above.
@@ -50,6 +53,12 @@ struct OrderSubject {
     std::vector<Spline> planned, now;
     std::vector<double> per_key;        ///< parameter from one key point of a yarn to the next
     std::array<double, 2> period_mm{};  ///< 0 in directions that do not repeat
+    std::vector<double> begin = {};     ///< Thread::begin, of each; empty: all are whole
+
+    /// One of `planned` or `now`.
+    [[nodiscard]] Thread thread(const std::vector<Spline>& splines, std::size_t yarn) const {
+        return {splines[yarn], per_key[yarn], begin.empty() ? 0 : begin[yarn]};
+    }
 };
 
 /// Looks every crossing up in the relaxed yarns: where the projections of its two yarns cross, from the

@@ -72,7 +72,7 @@ Yarns PlanRun::measured(Energy<double>& energy, std::vector<double>& state) cons
     yarns.report = report(plan, fabric);
     yarns.report.update({{"design_sha256", yarns.design_sha256},
                          {"scene_sha256", yarns.scene_sha256},
-                         {"contacts", contacts.touching},
+                         {"contacts", contacts.seen / 2},
                          {"smallest_curvature", smallest_curvature(energy, state)},
                          {"strain_deviation", deviation},
                          {"order_kept", order.lost.empty()},

@@ -27,6 +27,7 @@ Contacts contacts_of(Energy<double>& energy, const std::vector<double>& state) {
     std::size_t from_both = 0;
     for (std::uint32_t a = 0; a < energy.fabric().samples(); ++a) {
         const std::uint32_t mine = neighbours.segment_of(a);
+        if (!energy.fabric().is_own(mine)) continue;
         for (std::uint32_t e = fabric.first_neighbour[a]; e < fabric.first_neighbour[a + 1]; ++e) {
             const std::uint32_t b = fabric.neighbours[e];
             const double dx = fabric.samples.x[a] - fabric.samples.x[b], dy = fabric.samples.y[a] - fabric.samples.y[b],
@@ -39,7 +40,7 @@ Contacts contacts_of(Energy<double>& energy, const std::vector<double>& state) {
             last = mine;
         }
     }
-    contacts.touching = from_both / 2;
+    contacts.seen = from_both;
     return contacts;
 }
 

@@ -24,7 +24,7 @@ Yarns copied_back(Yarns yarns, const Plan& plan, const Design& design);
 Json coverage_of(const Plan& plan);
 
 struct Contacts {
-    std::size_t touching = 0;  ///< pairs of segments
+    std::size_t seen = 0;  ///< segments that touch one, by each segment: every pair twice
     double overlap = 0;        ///< greatest 1 - d/D
 };
 Contacts contacts_of(Energy<double>& energy, const std::vector<double>& state);

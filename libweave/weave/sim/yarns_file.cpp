@@ -10,6 +10,7 @@
 #include <cstring>
 #include <limits>
 #include <map>
+#include <numeric>
 
 namespace weave {
 
@@ -186,13 +187,13 @@ Json vector_json(const Vec3& vector) {
     return Json::array({vector.x(), vector.y(), vector.z()});
 }
 
-Json yarn_json(const SimulatedYarn& yarn) {
+Json yarn_json(const SimulatedYarn& yarn, std::size_t points) {
     Json json{{"system", system_names[yarn.system == System::warp ? 1 : 0]},
               {"number", yarn.number},
               {"beam", yarn.beam},
               {"radius_mm", yarn.radius_mm},
               {"colour", to_text(yarn.colour)},
-              {"points", yarn.spline.control.size()},
+              {"points", points},
               {"periodic", yarn.spline.is_periodic}};
     if (yarn.spline.is_periodic) json["shift_mm"] = vector_json(yarn.spline.shift);
     json["planned_length_mm"] = yarn.planned_length_mm;
@@ -231,13 +232,14 @@ Json table_json(std::size_t points, std::size_t crossings) {
     return table;
 }
 
-std::size_t points_of(const Yarns& yarns) {
-    std::size_t points = 0;
-    for (const SimulatedYarn& yarn : yarns.yarns) points += yarn.spline.control.size();
+std::vector<std::size_t> points_of(const Yarns& yarns) {
+    std::vector<std::size_t> points;
+    for (const SimulatedYarn& yarn : yarns.yarns) points.push_back(yarn.spline.control.size());
     return points;
 }
 
-Json header_json(const Yarns& yarns) {
+/// `points` of each yarn, whatever it has.
+Json header_json(const Yarns& yarns, const std::vector<std::size_t>& points, std::size_t crossings) {
     Json json{{"title", yarns.title},
               {"design_sha256", yarns.design_sha256},
               {"scene_sha256", yarns.scene_sha256},
@@ -251,10 +253,10 @@ Json header_json(const Yarns& yarns) {
               {"cloth_rows", yarns.cloth_rows},
               {"cloth_columns", yarns.cloth_columns}};
     Json list = Json::array();
-    for (const SimulatedYarn& yarn : yarns.yarns) list.push_back(yarn_json(yarn));
+    for (std::size_t i = 0; i < yarns.yarns.size(); ++i) list.push_back(yarn_json(yarns.yarns[i], points[i]));
     json["yarns"] = std::move(list);
     json["report"] = yarns.report;
-    json["arrays"] = table_json(points_of(yarns), yarns.crossings.size());
+    json["arrays"] = table_json(std::accumulate(points.begin(), points.end(), std::size_t{0}), crossings);
     return json;
 }
 
@@ -496,9 +498,9 @@ Result<std::size_t> read_front(std::string_view& bytes) {
 }
 
 /// The header as text, padded so that the arrays begin at a multiple of 8 bytes.
-Result<std::string> front_and_header(const Yarns& yarns) {
+Result<std::string> front_and_header(const Yarns& yarns, const std::vector<std::size_t>& points, std::size_t crossings) {
     try {
-        const Json json = header_json(yarns);
+        const Json json = header_json(yarns, points, crossings);
         std::string text = json.dump();
         // What the reader would not give back, such as an infinite number in the report, is found by reading.
         WEAVE_TRY(const Header again, read_header(text));
@@ -515,6 +517,39 @@ Result<std::string> front_and_header(const Yarns& yarns) {
 
 }  // namespace
 
+std::string file_bytes(std::span<const double> numbers) {
+    std::string bytes;
+    bytes.reserve(8 * numbers.size());
+    for (const double number : numbers) append_number(bytes, number);
+    return bytes;
+}
+
+std::string file_bytes(std::span<const Crossing> crossings) {
+    std::string bytes;
+    bytes.reserve(crossing_bytes * crossings.size());
+    for (const Crossing& crossing : crossings) {
+        for (const std::size_t index : {crossing.weft, crossing.weft_key, crossing.warp, crossing.warp_key,
+                                        crossing.pick, crossing.end, std::size_t{crossing.weft_over}}) {
+            append_word(bytes, static_cast<std::uint32_t>(index));
+        }
+    }
+    return bytes;
+}
+
+Result<YarnsLayout> lay_out_yarns(const Yarns& bare, const std::vector<std::size_t>& points, std::size_t crossings) {
+    YarnsLayout layout;
+    WEAVE_TRY(layout.front, front_and_header(bare, points, crossings));
+    const std::size_t all = std::accumulate(points.begin(), points.end(), std::size_t{0});
+    std::uint64_t at = layout.front.size();
+    std::array<std::uint64_t*, 5> places{&layout.control, &layout.planned, &layout.strain, &layout.contact_N, &layout.crossings};
+    const std::vector<ArrayPlace> arrays = array_table(all, crossings);
+    for (std::size_t k = 0; k < places.size(); ++k) {
+        *places[k] = at;
+        at += arrays[k].bytes();
+    }
+    return layout;
+}
+
 Result<std::string> write_yarns(const Yarns& yarns) {
     for (std::size_t i = 0; i < yarns.yarns.size(); ++i) {
         Status status = check_sizes(yarns.yarns[i]);
@@ -523,8 +558,9 @@ Result<std::string> write_yarns(const Yarns& yarns) {
     }
     if (yarns.crossings.size() > most_file_crossings) return bad_input("are too many", "crossings");
     WEAVE_CHECK_OK(check_crossings(yarns));
-    WEAVE_TRY(std::string bytes, front_and_header(yarns));
-    bytes.reserve(bytes.size() + points_of(yarns) * (2 * point_bytes + 2 * number_bytes) +
+    const std::vector<std::size_t> points = points_of(yarns);
+    WEAVE_TRY(std::string bytes, front_and_header(yarns, points, yarns.crossings.size()));
+    bytes.reserve(bytes.size() + std::accumulate(points.begin(), points.end(), std::size_t{0}) * (2 * point_bytes + 2 * number_bytes) +
                   yarns.crossings.size() * crossing_bytes);
     for (const SimulatedYarn& yarn : yarns.yarns) append_points(bytes, yarn.spline.control);
     for (const SimulatedYarn& yarn : yarns.yarns) append_points(bytes, yarn.planned);
@@ -534,12 +570,7 @@ Result<std::string> write_yarns(const Yarns& yarns) {
     for (const SimulatedYarn& yarn : yarns.yarns) {
         for (const double contact : yarn.contact_N) append_number(bytes, contact);
     }
-    for (const Crossing& crossing : yarns.crossings) {
-        for (const std::size_t index : {crossing.weft, crossing.weft_key, crossing.warp, crossing.warp_key,
-                                        crossing.pick, crossing.end, std::size_t{crossing.weft_over}}) {
-            append_word(bytes, static_cast<std::uint32_t>(index));
-        }
-    }
+    bytes += file_bytes(yarns.crossings);
     return bytes;
 }
 

@@ -1,0 +1,216 @@
+#include <weave/ranks/split_run.hpp>
+
+#include <weave/core/text.hpp>
+#include <weave/design/document.hpp>
+#include <weave/ranks/split_cloth.hpp>
+#include <weave/ranks/split_yarns.hpp>
+#include <weave/sim/relaxing.hpp>
+#include <weave/sim/result.hpp>
+
+#include <algorithm>
+#include <chrono>
+#include <utility>
+
+namespace weave::ranks {
+
+namespace {
+
+/// Steps between which the solver forgets: so that whoever goes on from a checkpoint comes to the same bits.
+constexpr std::size_t leg_steps = 200;
+
+/// A relaxation by all ranks, leg by leg.
+class SplitRun {
+  public:
+    SplitRun(Comm& comm, const Cut& cut, const std::vector<Part>& parts, const SplitOptions& options, double goal, Stand stand)
+        : m_comm(comm), m_cut(cut), m_parts(parts), m_options(options), m_goal(goal), m_stand(std::move(stand)), m_executor(options.threads),
+          m_cloth(comm, cut, parts, m_executor, m_stand.state) {}
+
+    /// Legs to the end. `checkpoints`: null where none are written.
+    void relax(const Checkpoints* checkpoints) {
+        m_saved = seconds();
+        do {
+            leg();
+            if (checkpoints != nullptr && (!m_end || m_end == sim::Ending::stopped || m_end == sim::Ending::time)) save(*checkpoints);
+        } while (!m_end);
+    }
+
+    [[nodiscard]] SplitCloth& cloth() { return m_cloth; }
+    [[nodiscard]] sim::Ending ending() const { return m_end.value_or(sim::Ending::stopped); }
+    [[nodiscard]] const sim::Relaxing<SplitCloth>& relaxed() const { return m_relaxing; }
+    [[nodiscard]] std::size_t iterations() const { return m_stand.iterations; }
+    [[nodiscard]] std::size_t evaluations() const { return m_stand.evaluations + m_cloth.evaluations(); }
+    [[nodiscard]] double seconds() const {
+        return m_stand.seconds + std::chrono::duration<double>(std::chrono::steady_clock::now() - m_start).count();
+    }
+
+    /// Sign of the least second derivative at rest, as a report tells it.
+    std::string smallest_curvature() {
+        if (ending() != sim::Ending::converged) return "not looked";
+        if (m_relaxing.is_looked_at && !m_relaxing.curves_down) return "positive";
+        m_cloth.evaluate();
+        const sim::Bend bend = sim::Newton<SplitCloth>().bend(m_cloth, m_goal * m_relaxing.reference_N);
+        return bend == sim::Bend::up ? "positive" : bend == sim::Bend::down ? "negative" : "unclear";
+    }
+
+  private:
+    void leg() {
+        m_relaxing = {};
+        m_relaxing.goal = m_goal;
+        m_cloth.forget_pairs();
+        m_relaxing.begin(m_cloth, m_cloth.greatest_strain());
+        for (std::size_t step = 0; step < leg_steps && !m_end; ++step) {
+            m_relaxing.judge(m_cloth);
+            m_end = ends();
+            if (m_end) break;
+            if (m_relaxing.is_at_goal() && m_relaxing.leave_saddle(m_cloth) != sim::Step::done)
+                m_end = sim::Ending::converged;
+            else if (m_stand.iterations >= m_options.most_iterations)
+                m_end = sim::Ending::iterations;
+            else if (m_relaxing.step(m_cloth) != sim::Step::done)
+                m_end = sim::Ending::stuck;
+            else
+                ++m_stand.iterations;
+        }
+        if (m_end) m_relaxing.finish(m_cloth);
+    }
+
+    /// Whether a rank's caller wants to end, or by the first rank's clock the time is up: the same on all.
+    std::optional<sim::Ending> ends() {
+        const sim::Progress progress{m_stand.iterations, m_relaxing.residual, m_relaxing.energy, seconds()};
+        double wish = m_options.watch && !m_options.watch(progress) ? 1 : 0;
+        if (wish == 0 && m_comm.is_first() && seconds() > m_options.most_seconds) wish = 2;
+        const std::vector<double> wishes = m_comm.gather(wish);
+        const auto first = std::ranges::find_if(wishes, [](double one) { return one != 0; });
+        if (first == wishes.end()) return {};
+        return *first == 1 ? sim::Ending::stopped : sim::Ending::time;
+    }
+
+    /// A checkpoint between two legs, where the first rank's clock says that one is due, or that it is the last.
+    void save(const Checkpoints& checkpoints) {
+        const bool is_due = m_end || seconds() - m_saved >= m_options.checkpoint_every_s;
+        if (m_comm.gather(is_due ? 1.0 : 0.0).front() == 0) return;
+        m_saved = seconds();
+        Stand now = m_stand;
+        now.evaluations = evaluations();
+        now.seconds = seconds();
+        const Status written = checkpoints.write(m_comm, m_cut, m_parts, now);
+        if (!m_comm.is_first() || !m_options.note) return;
+        m_options.note(written ? "checkpoint of step " + std::to_string(now.iterations) + " in " + m_options.checkpoints.string()
+                               : "no checkpoint of step " + std::to_string(now.iterations) + ", the one before stays: " + written.error().text());
+    }
+
+    Comm& m_comm;
+    const Cut& m_cut;
+    const std::vector<Part>& m_parts;
+    const SplitOptions& m_options;
+    double m_goal;
+    Stand m_stand;
+    sim::Executor m_executor;
+    SplitCloth m_cloth;
+    sim::Relaxing<SplitCloth> m_relaxing;
+    std::optional<sim::Ending> m_end;
+    double m_saved = 0;
+    std::chrono::steady_clock::time_point m_start = std::chrono::steady_clock::now();
+};
+
+Json run_key(const Design& design, const sim::Plan& plan, const Cut& cut) {
+    std::size_t points = 0;
+    for (const std::uint32_t of_yarn : cut.points) points += of_yarn;
+    return {{"design_sha256", design_sha256(design)}, {"scene_sha256", scene_sha256(design)}, {"points_per_key", plan.points_per_key},
+            {"sample_spacing", plan.scene.sample_spacing}, {"points", points}, {"blocks", cut.blocks}, {"yarns", cut.points.size()}};
+}
+
+Stand as_planned(const std::vector<Part>& parts) {
+    Stand stand;
+    for (const Part& part : parts) {
+        for (const Point& point : part.own) stand.state.insert(stand.state.end(), point.planned.data(), point.planned.data() + 3);
+    }
+    return stand;
+}
+
+/// What each rank has: the balance of the work, and what it told others.
+Json ranks_json(Comm& comm, const Cut& cut, const std::vector<Part>& parts, const SplitCloth& cloth) {
+    const auto [first, last] = cut.blocks_of(comm.rank(), comm.size());
+    double points = 0, guests = 0;
+    for (const Part& part : parts) points += static_cast<double>(part.own.size());
+    for (const auto& piece : cloth.pieces()) guests += static_cast<double>(piece->guests().size());
+    const Comm::Traffic traffic = comm.traffic();
+    const Comm::Packet own{static_cast<double>(last - first), points, guests, static_cast<double>(traffic.messages), static_cast<double>(traffic.bytes),
+                           static_cast<double>(traffic.gatherings), static_cast<double>(traffic.gathered_bytes), static_cast<double>(sim::peak_bytes())};
+    Json list = Json::array();
+    for (const Comm::Packet& of_rank : comm.gather(own)) {
+        Json rank;
+        const char* names[]{"blocks", "points", "guests", "messages", "bytes", "gatherings", "gathered_bytes", "peak_bytes"};
+        for (std::size_t k = 0; k < std::size(names); ++k) rank[names[k]] = static_cast<std::uint64_t>(of_rank[k]);
+        list.push_back(std::move(rank));
+    }
+    return list;
+}
+
+Json report_of(Comm& comm, const Cut& cut, const std::vector<Part>& parts, const Outline& outline, const Measured& measured, SplitRun& run, double goal) {
+    std::size_t points = 0;
+    for (const std::uint32_t of_yarn : cut.points) points += of_yarn;
+    const sim::Relaxing<SplitCloth> relaxed = run.relaxed();
+    const sim::Ending ending = run.ending();
+    const std::string curvature = run.smallest_curvature();
+    Json report{{"design_sha256", outline.bare.design_sha256},
+                {"scene_sha256", outline.bare.scene_sha256},
+                {"coverage", outline.coverage},
+                {"solver", "relax"},
+                {"backend", "cpu"},
+                {"fidelity", std::string(sim::name_of(outline.fidelity))},
+                {"points_per_key", outline.points_per_key},
+                {"converged", ending == sim::Ending::converged},
+                {"ending", std::string(sim::name_of(ending))},
+                {"goal", goal},
+                {"residual", relaxed.residual},
+                {"reference_N", relaxed.reference_N},
+                {"energy_N_mm", relaxed.energy},
+                {"points", points},
+                {"contacts", measured.contacts},
+                {"iterations", run.iterations()},
+                {"evaluations", run.evaluations()},
+                {"seconds", run.seconds()},
+                {"smallest_curvature", curvature},
+                {"strain_deviation", {{"warp", measured.strain_deviation[0]}, {"weft", measured.strain_deviation[1]}}},
+                {"order_kept", measured.lost == 0},
+                {"crossings", outline.all_crossings},
+                {"lost_crossings", measured.lost},
+                {"slid_crossings", measured.slid},
+                {"max_overlap", measured.max_overlap},
+                {"plan", outline.lines},
+                {"peak_bytes", 0}};
+    const Json ranks = ranks_json(comm, cut, parts, run.cloth());
+    for (const Json& rank : ranks) report["peak_bytes"] = std::max(report["peak_bytes"].get<std::uint64_t>(), rank.at("peak_bytes").get<std::uint64_t>());
+    report["blocks"] = {{"rows", cut.blocks[0]}, {"columns", cut.blocks[1]}, {"laid_out", run.cloth().lays()}};
+    report["ranks"] = ranks;
+    return report;
+}
+
+}  // namespace
+
+Result<Json> simulate_split(Comm& comm, const Design& design, sim::Plan plan, const SplitOptions& options, const std::filesystem::path& out) {
+    WEAVE_TRY(const CutPlan dealt, cut_plan(plan, comm.rank(), comm.size(), options.points_a_block));
+    const Cut& cut = dealt.cut;
+    const Outline outline = outline_of(design, plan, dealt.parts);
+    const double goal = options.residual.value_or(plan.goal);
+    std::optional<Checkpoints> checkpoints;
+    if (!options.checkpoints.empty()) checkpoints.emplace(options.checkpoints, run_key(design, plan, cut));
+    plan = {};
+    Stand stand = as_planned(dealt.parts);
+    if (checkpoints) {
+        WEAVE_TRY(std::optional<Stand> newest, checkpoints->newest(comm, cut, dealt.parts));
+        if (newest) {
+            stand = *std::move(newest);
+            if (comm.is_first() && options.note) options.note("going on from the checkpoint of step " + std::to_string(stand.iterations));
+        }
+    }
+    SplitRun run(comm, cut, dealt.parts, options, goal, std::move(stand));
+    run.relax(checkpoints ? &*checkpoints : nullptr);
+    const Measured measured = measure(comm, cut, dealt.parts, outline, run.cloth());
+    Json report = report_of(comm, cut, dealt.parts, outline, measured, run, goal);
+    WEAVE_CHECK_OK(write_split(comm, cut, dealt.parts, outline, measured, run.cloth(), report, out));
+    return report;
+}
+
+}  // namespace weave::ranks

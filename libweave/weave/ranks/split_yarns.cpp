@@ -1,0 +1,317 @@
+#include <weave/ranks/split_yarns.hpp>
+
+#include <weave/core/file.hpp>
+#include <weave/design/document.hpp>
+#include <weave/sim/order.hpp>
+#include <weave/sim/planned_yarns.hpp>
+#include <weave/sim/result.hpp>
+#include <weave/sim/yarns_file.hpp>
+
+#include <algorithm>
+#include <cmath>
+#include <utility>
+
+namespace weave::ranks {
+
+namespace {
+
+/// Whether one of these parts has a point; which.
+std::optional<std::size_t> part_with(const std::vector<Part>& parts, std::uint32_t yarn, std::uint32_t index) {
+    for (std::size_t b = 0; b < parts.size(); ++b) {
+        const auto at = std::lower_bound(parts[b].own.begin(), parts[b].own.end(), std::pair(yarn, index), [](const Point& point, const auto& wanted) {
+            return std::pair(point.yarn, point.index) < wanted;
+        });
+        if (at != parts[b].own.end() && at->yarn == yarn && at->index == index) return b;
+    }
+    return {};
+}
+
+double points_per_key_of(const YarnCurve& curve, std::size_t points) {
+    const std::size_t keys = curve.keys.size() - (curve.is_periodic ? 0 : 1), segments = points - (curve.is_periodic ? 0 : 1);
+    return keys > 0 ? static_cast<double>(segments) / static_cast<double>(keys) : 0;
+}
+
+/// The strand of a piece that holds a yarn at a parameter, as it lies in the cloth itself.
+std::optional<std::size_t> strand_at(const Piece& piece, std::uint32_t yarn, double at) {
+    for (std::size_t s = 0; s < piece.strands().size(); ++s) {
+        const Piece::Strand& strand = piece.strands()[s];
+        const double first = static_cast<double>(strand.first);
+        if (strand.yarn == yarn && strand.image == std::array<std::int16_t, 2>{} && at >= first &&
+            at <= first + piece.fabric().yarns()[s].points - 1)
+            return s;
+    }
+    return {};
+}
+
+sim::OrderSubject subject_of(const Piece& piece, const Outline& outline) {
+    sim::OrderSubject subject;
+    const std::vector<std::vector<Vec3>> now = piece.fabric().control(piece.state);
+    for (std::size_t s = 0; s < now.size(); ++s) {
+        subject.now.push_back({now[s], false, Vec3(0, 0, 0)});
+        subject.planned.push_back({piece.fabric().scene().yarns[s].control, false, Vec3(0, 0, 0)});
+        subject.per_key.push_back(outline.per_key[piece.strands()[s].yarn]);
+        subject.begin.push_back(static_cast<double>(piece.strands()[s].first));
+    }
+    return subject;
+}
+
+/// Crossings of this rank that are lost, and that slid.
+std::array<double, 2> order_of(const Outline& outline, const SplitCloth& cloth) {
+    std::array<double, 2> found{};
+    for (std::size_t b = 0; b < cloth.pieces().size(); ++b) {
+        const Piece& piece = *cloth.pieces()[b];
+        std::vector<Crossing> crossings;
+        for (const Outline::Own& own : outline.crossings) {
+            if (own.block != b) continue;
+            Crossing crossing = own.crossing;
+            const auto place = [&](std::size_t yarn, std::size_t key) {
+                return strand_at(piece, static_cast<std::uint32_t>(yarn), outline.per_key[yarn] * static_cast<double>(key));
+            };
+            const auto weft = place(crossing.weft, crossing.weft_key), warp = place(crossing.warp, crossing.warp_key);
+            if (!weft || !warp) {
+                ++found[0];
+                continue;
+            }
+            crossing.weft = *weft;
+            crossing.warp = *warp;
+            crossings.push_back(crossing);
+        }
+        const sim::CrossingOrder order = sim::crossing_order(crossings, subject_of(piece, outline));
+        found[0] += static_cast<double>(order.lost.size());
+        found[1] += static_cast<double>(order.slid.size());
+    }
+    return found;
+}
+
+/// Strain at a control point, against the rest length of the segment that begins there; at the end of a yarn, that ends there.
+double strain_at(const Piece& piece, std::uint32_t slot) {
+    const sim::Fabric<double>& fabric = piece.fabric();
+    const std::uint32_t strand = fabric.yarn_of_slot()[slot];
+    const sim::YarnPlace& place = fabric.yarns()[strand];
+    const sim::SimYarn& yarn = fabric.scene().yarns[strand];
+    const std::uint32_t within = slot - place.first_slot - 1 - place.skipped, segment = place.first_segment + std::min(within, place.segments - 1);
+    double rest = static_cast<double>(fabric.constants()[strand].rest_mm);
+    if (yarn.is_fed) rest = sim::Speeds<double>(fabric.gauss(), &piece.state[3 * std::size_t(fabric.segment_places()[segment].slot)]).length / yarn.strain;
+    const double speed = (sim::load(&piece.state[3 * std::size_t(slot + 1)]) - sim::load(&piece.state[3 * std::size_t(slot - 1)])).norm() / 2;
+    return speed / rest - 1;
+}
+
+constexpr std::size_t numbers_a_point = 10;
+
+/// Yarn, index, place, planned place, strain and contact force of each of a block's own points.
+Comm::Packet packet_of(const Part& part, const Piece& piece, std::span<const double> contact) {
+    Comm::Packet packet;
+    for (std::size_t i = 0; i < part.own.size(); ++i) {
+        const Point& point = part.own[i];
+        const std::uint32_t slot = piece.slot_of_own()[i];
+        const double* at = &piece.state[3 * std::size_t(slot)];
+        packet.insert(packet.end(), {static_cast<double>(point.yarn), static_cast<double>(point.index), at[0], at[1], at[2],
+                                     point.planned.x(), point.planned.y(), point.planned.z(), strain_at(piece, slot),
+                                     std::hypot(contact[3 * i], contact[3 * i + 1], contact[3 * i + 2])});
+    }
+    return packet;
+}
+
+/// The first rank's end of a file that all fill.
+class Filing {
+  public:
+    Filing(FileInPieces& file, const YarnsLayout& layout, const Cut& cut) : m_file(file), m_layout(layout), m_first{0} {
+        for (const std::uint32_t points : cut.points) m_first.push_back(m_first.back() + points);
+    }
+
+    /// Points that follow one another along a yarn are written at once.
+    Status file_points(const Comm::Packet& packet) {
+        std::vector<double> control, planned, strain, contact;
+        std::size_t begin = 0;
+        const auto place = [&](std::size_t at) { return m_first[static_cast<std::size_t>(packet[at])] + static_cast<std::size_t>(packet[at + 1]); };
+        for (std::size_t at = 0; at < packet.size(); at += numbers_a_point) {
+            const double* from = &packet[at];
+            if (control.empty()) begin = place(at);
+            control.insert(control.end(), from + 2, from + 5);
+            planned.insert(planned.end(), from + 5, from + 8);
+            strain.push_back(from[8]);
+            contact.push_back(from[9]);
+            const std::size_t next = at + numbers_a_point;
+            if (next < packet.size() && place(next) == begin + strain.size()) continue;
+            WEAVE_CHECK_OK(m_file.write(m_layout.control + 24 * begin, file_bytes(control)));
+            WEAVE_CHECK_OK(m_file.write(m_layout.planned + 24 * begin, file_bytes(planned)));
+            WEAVE_CHECK_OK(m_file.write(m_layout.strain + 8 * begin, file_bytes(strain)));
+            WEAVE_CHECK_OK(m_file.write(m_layout.contact_N + 8 * begin, file_bytes(contact)));
+            for (std::vector<double>* list : {&control, &planned, &strain, &contact}) list->clear();
+        }
+        return {};
+    }
+
+    Status file_crossings(const Comm::Packet& packet) {
+        std::vector<Crossing> run;
+        std::uint64_t begin = 0;
+        for (std::size_t at = 0; at < packet.size(); at += 8) {
+            const auto whole = [&](std::size_t k) { return static_cast<std::size_t>(packet[at + k]); };
+            if (run.empty()) begin = whole(0);
+            run.push_back({whole(1), whole(2), whole(3), whole(4), whole(5), whole(6), whole(7) != 0});
+            if (at + 8 < packet.size() && static_cast<std::uint64_t>(packet[at + 8]) == begin + run.size()) continue;
+            WEAVE_CHECK_OK(m_file.write(m_layout.crossings + 28 * begin, file_bytes(run)));
+            run.clear();
+        }
+        return {};
+    }
+
+  private:
+    FileInPieces& m_file;
+    const YarnsLayout& m_layout;
+    std::vector<std::size_t> m_first;
+};
+
+Comm::Packet crossings_packet(const Outline& outline, std::size_t block) {
+    Comm::Packet packet;
+    for (const Outline::Own& own : outline.crossings) {
+        if (own.block != block) continue;
+        const Crossing& c = own.crossing;
+        for (const std::size_t part : {std::size_t(own.number), c.weft, c.weft_key, c.warp, c.warp_key, c.pick, c.end, std::size_t(c.weft_over)})
+            packet.push_back(static_cast<double>(part));
+    }
+    return packet;
+}
+
+/// What is known of the yarns once they lie at rest.
+Yarns labelled(const Cut& cut, const Outline& outline, const Measured& measured, Json report) {
+    Yarns yarns = outline.bare;
+    for (std::size_t y = 0; y < yarns.yarns.size(); ++y) {
+        SimulatedYarn& yarn = yarns.yarns[y];
+        yarn.length_mm = measured.length_mm[y];
+        yarn.rest_length_mm = cut.yarns[y].is_fed ? yarn.length_mm / cut.yarns[y].strain : cut.yarns[y].rest_mm;
+    }
+    yarns.report = std::move(report);
+    return yarns;
+}
+
+/// To the first rank, from whichever has them; the others get nothing.
+Comm::Packet to_first(Comm& comm, std::size_t from, Comm::Packet own, std::size_t size) {
+    if (comm.rank() == from && comm.is_first()) return own;
+    std::vector<Comm::Letter> out, in;
+    if (size == 0) return {};
+    if (comm.rank() == from) out.push_back({0, std::move(own)});
+    if (comm.is_first()) in.push_back({from, Comm::Packet(size)});
+    comm.exchange(out, in);
+    return in.empty() ? Comm::Packet() : std::move(in.front().numbers);
+}
+
+}  // namespace
+
+Outline outline_of(const Design& design, const sim::Plan& plan, const std::vector<Part>& parts) {
+    Outline outline;
+    Yarns& yarns = outline.bare;
+    yarns.title = design.title;
+    yarns.design_sha256 = design_sha256(design);
+    yarns.scene_sha256 = scene_sha256(design);
+    yarns.size_mm = plan.curves.size_mm;
+    yarns.is_periodic = plan.curves.is_periodic;
+    yarns.region = plan.curves.region;
+    yarns.cloth_rows = plan.cloth_rows;
+    yarns.cloth_columns = plan.cloth_columns;
+    std::vector<std::size_t> index_of_curve(plan.curves.yarns.size(), plan.curve_of.size());
+    for (std::size_t y = 0; y < plan.curve_of.size(); ++y) {
+        index_of_curve[plan.curve_of[y]] = y;
+        const YarnCurve& curve = plan.curves.yarns[plan.curve_of[y]];
+        const sim::SimYarn& from = plan.scene.yarns[y];
+        SimulatedYarn yarn = sim::labelled_yarn(design, curve);
+        yarn.radius_mm = from.radius_mm;
+        yarn.spline.is_periodic = from.is_periodic;
+        yarn.spline.shift = from.shift;
+        yarn.planned_length_mm = from.is_periodic ? from.shift.norm() : (from.control.back() - from.control.front()).norm();
+        yarns.yarns.push_back(std::move(yarn));
+        outline.per_key.push_back(points_per_key_of(curve, from.control.size()));
+    }
+    for (Crossing crossing : plan.curves.crossings) {
+        crossing.weft = index_of_curve[crossing.weft];
+        crossing.warp = index_of_curve[crossing.warp];
+        if (crossing.weft == plan.curve_of.size() || crossing.warp == plan.curve_of.size()) continue;
+        const std::size_t points = plan.scene.yarns[crossing.weft].control.size();
+        const auto index = static_cast<std::size_t>(std::lround(outline.per_key[crossing.weft] * static_cast<double>(crossing.weft_key))) % points;
+        const auto block = part_with(parts, static_cast<std::uint32_t>(crossing.weft), static_cast<std::uint32_t>(index));
+        if (block) outline.crossings.push_back({crossing, outline.all_crossings, *block});
+        ++outline.all_crossings;
+    }
+    outline.coverage = sim::coverage_of(plan);
+    outline.lines = sim::lines_json(plan);
+    outline.fidelity = plan.fidelity;
+    outline.points_per_key = plan.points_per_key;
+    outline.goal = plan.goal;
+    return outline;
+}
+
+Measured measure(Comm& comm, const Cut& cut, const std::vector<Part>& parts, const Outline& outline, SplitCloth& cloth) {
+    Measured measured;
+    measured.length_mm = cloth.lengths();
+    const std::array<double, 2> order = order_of(outline, cloth);
+    std::array<double, 4> greatest{};  // overlap, strain of warps and of wefts
+    double seen = 0;
+    for (std::size_t b = 0; b < parts.size(); ++b) {
+        Piece& piece = *cloth.pieces()[b];
+        const sim::Contacts contacts = sim::contacts_of(piece.energy(), piece.state);
+        seen += static_cast<double>(contacts.seen);
+        greatest[0] = std::max(greatest[0], contacts.overlap);
+        for (std::size_t i = 0; i < parts[b].own.size(); ++i) {
+            const std::uint32_t y = parts[b].own[i].yarn;
+            double& most = greatest[outline.bare.yarns[y].system == System::warp ? 1 : 2];
+            most = std::max(most, std::abs(strain_at(piece, piece.slot_of_own()[i]) - (cut.yarns[y].is_fed ? cut.yarns[y].strain - 1 : 0)));
+        }
+    }
+    double lost = 0, slid = 0, all_seen = 0;
+    for (const Comm::Packet& of_rank : comm.gather(Comm::Packet{order[0], order[1], seen, greatest[0], greatest[1], greatest[2]})) {
+        lost += of_rank[0];
+        slid += of_rank[1];
+        all_seen += of_rank[2];
+        measured.max_overlap = std::max(measured.max_overlap, of_rank[3]);
+        for (std::size_t k = 0; k < 2; ++k) measured.strain_deviation[k] = std::max(measured.strain_deviation[k], of_rank[4 + k]);
+    }
+    measured.lost = static_cast<std::size_t>(lost);
+    measured.slid = static_cast<std::size_t>(slid);
+    measured.contacts = static_cast<std::size_t>(all_seen) / 2;
+    return measured;
+}
+
+Status write_split(Comm& comm, const Cut& cut, const std::vector<Part>& parts, const Outline& outline, const Measured& measured,
+                   SplitCloth& cloth, Json report, const std::filesystem::path& out) {
+    std::vector<double> contact;
+    cloth.contact_forces(contact);
+    Comm::Packet sizes;  // of both packets of each block
+    for (std::size_t b = 0; b < parts.size(); ++b) {
+        sizes.push_back(static_cast<double>(numbers_a_point * parts[b].own.size()));
+        sizes.push_back(static_cast<double>(crossings_packet(outline, b).size()));
+    }
+    const std::vector<Comm::Packet> all_sizes = comm.gather(sizes);
+    std::optional<FileInPieces> file;
+    YarnsLayout layout;
+    const auto begin = [&]() -> Status {
+        const std::vector<std::size_t> points(cut.points.begin(), cut.points.end());
+        WEAVE_TRY(layout, lay_out_yarns(labelled(cut, outline, measured, std::move(report)), points, outline.all_crossings));
+        WEAVE_TRY(FileInPieces begun, FileInPieces::begin(out));
+        file.emplace(std::move(begun));
+        return file->write(0, layout.front);
+    };
+    Status status = comm.is_first() ? begin() : Status();
+    for (std::size_t rank = 0; rank < comm.size(); ++rank) {
+        for (std::size_t b = 0; 2 * b < all_sizes[rank].size(); ++b) {
+            const auto size = [&](std::size_t k) { return static_cast<std::size_t>(all_sizes[rank][2 * b + k]); };
+            const bool is_mine = rank == comm.rank();
+            Comm::Packet points, crossings;
+            if (is_mine) {
+                const auto& first = cloth.first_slots();
+                points = packet_of(parts[b], *cloth.pieces()[b], std::span(contact).subspan(first[b], first[b + 1] - first[b]));
+                crossings = crossings_packet(outline, b);
+            }
+            points = to_first(comm, rank, std::move(points), size(0));
+            crossings = to_first(comm, rank, std::move(crossings), size(1));
+            if (!comm.is_first() || !status) continue;
+            Filing filing(*file, layout, cut);
+            status = filing.file_points(points);
+            if (status) status = filing.file_crossings(crossings);
+        }
+    }
+    if (comm.is_first() && status) status = file->finish();
+    if (comm.gather(status ? 0.0 : 1.0).front() == 0) return {};
+    return comm.is_first() ? status : Status(system_fault("the first rank could not write the yarns; it tells why"));
+}
+
+}  // namespace weave::ranks
