@@ -122,9 +122,14 @@ class Workshop {
 
     /// Starts `weave` with these words, as run() does.
     [[nodiscard]] Running start(const std::vector<std::string>& words, rlim_t largest_file = 0) const {
+        return start_program(WEAVE_PROGRAM, "weave", words, largest_file);
+    }
+
+    /// The same of any program; `name` is what it is called by.
+    [[nodiscard]] Running start_program(const char* program, const char* name, const std::vector<std::string>& words, rlim_t largest_file = 0) const {
         int out[2], err[2];
         if (::pipe2(out, O_CLOEXEC) != 0 || ::pipe2(err, O_CLOEXEC) != 0) throw std::runtime_error("no pipe");
-        std::vector<std::string> all{"weave"};
+        std::vector<std::string> all{name};
         all.insert(all.end(), words.begin(), words.end());
         std::vector<char*> arguments;
         for (std::string& word : all) arguments.push_back(word.data());
@@ -140,7 +145,7 @@ class Workshop {
             const rlimit limit{largest_file, largest_file};
             if (largest_file > 0 && ::setrlimit(RLIMIT_FSIZE, &limit) != 0) ::_exit(126);
             if (::chdir(m_folder.c_str()) != 0) ::_exit(126);
-            ::execv(WEAVE_PROGRAM, arguments.data());
+            ::execv(program, arguments.data());
             ::_exit(127);
         }
         ::close(out[1]);

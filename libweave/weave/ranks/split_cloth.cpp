@@ -109,6 +109,12 @@ void SplitCloth::lay_anew() {
     ++m_lays;
 }
 
+void SplitCloth::begin_anew() {
+    m_give = std::numeric_limits<double>::infinity();
+    m_pairs.forget();
+    lay_anew();
+}
+
 std::span<const double> SplitCloth::of_block(const Slots& slots, std::size_t block) const {
     return std::span(slots).subspan(m_first_slot[block], m_first_slot[block + 1] - m_first_slot[block]);
 }

@@ -70,6 +70,8 @@ class SplitCloth {
     Slots gradient, trial, before, change, cut;
     Rows residual, solved, direction, step, product;
 
+    /// Forgets all that earlier states have left: what follows has the same bits as if it began here.
+    void begin_anew();
     /// Length of each yarn of the cloth at the state, mm.
     std::vector<double> lengths();
     /// Greatest strain of yarns of fixed length at the state, each taken as a whole.

@@ -56,7 +56,7 @@ class SplitRun {
     void leg() {
         m_relaxing = {};
         m_relaxing.goal = m_goal;
-        m_cloth.forget_pairs();
+        m_cloth.begin_anew();
         m_relaxing.begin(m_cloth, m_cloth.greatest_strain());
         for (std::size_t step = 0; step < leg_steps && !m_end; ++step) {
             m_relaxing.judge(m_cloth);

@@ -187,7 +187,7 @@ Yarns labelled(const Cut& cut, const Outline& outline, const Measured& measured,
 
 /// To the first rank, from whichever has them; the others get nothing.
 Comm::Packet to_first(Comm& comm, std::size_t from, Comm::Packet own, std::size_t size) {
-    if (comm.rank() == from && comm.is_first()) return own;
+    if (from == 0) return comm.is_first() ? std::move(own) : Comm::Packet();
     std::vector<Comm::Letter> out, in;
     if (size == 0) return {};
     if (comm.rank() == from) out.push_back({0, std::move(own)});

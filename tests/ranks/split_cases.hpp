@@ -1,0 +1,60 @@
+#pragma once
+
+#include <weave/design/evaluate.hpp>
+#include <weave/ranks/split_cloth.hpp>
+#include <weave/samples/samples.hpp>
+#include <weave/sim/energy.hpp>
+#include <weave/sim/plan.hpp>
+
+#include <catch2/catch.hpp>
+
+#include <string>
+#include <vector>
+
+namespace weave::ranks::testing {
+
+/// A cloth that is cut into blocks of so many points.
+struct Case {
+    std::string sample;
+    std::size_t points_a_block;
+    bool is_whole = false;
+    std::optional<WeftMode> weft_mode = {};
+    std::optional<Region> region = {};
+};
+
+inline sim::Plan plan_of(const Case& of, sim::Fidelity fidelity = sim::Fidelity::draft) {
+    const Design design = find_sample(of.sample)->make();
+    sim::SimulationRequest request;
+    request.fidelity = fidelity;
+    request.reduce = !of.is_whole;
+    request.weft_mode = of.weft_mode;
+    request.region = of.region;
+    auto plan = sim::make_plan(design, *evaluate(design)->block, request);
+    REQUIRE(plan);
+    return *std::move(plan);
+}
+
+inline CutPlan cut_of(const sim::Plan& plan, const Comm& comm, std::size_t points_a_block) {
+    auto cut = cut_plan(plan, comm.rank(), comm.size(), points_a_block);
+    if (!cut) throw std::runtime_error(cut.error().text());
+    return *std::move(cut);
+}
+
+inline std::vector<double> planned(const std::vector<Part>& parts) {
+    std::vector<double> places;
+    for (const Part& part : parts) {
+        for (const Point& point : part.own) places.insert(places.end(), point.planned.data(), point.planned.data() + 3);
+    }
+    return places;
+}
+
+/// Where the numbers of a part's points lie in a vector of the slots of the whole.
+inline std::vector<std::size_t> slots_of(const std::vector<Part>& parts, const sim::Fabric<double>& fabric) {
+    std::vector<std::size_t> slots;
+    for (const Part& part : parts) {
+        for (const Point& point : part.own) slots.push_back(3 * (std::size_t(fabric.yarns()[point.yarn].first_slot) + 1 + point.index));
+    }
+    return slots;
+}
+
+}  // namespace weave::ranks::testing
