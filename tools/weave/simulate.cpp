@@ -181,7 +181,8 @@ Status sweep(CommandOutcome& outcome, wire::Follower& server, const Cloth& cloth
 }
 
 Status run_simulation(CommandOutcome& outcome, const SimulateWish& wish) {
-    WEAVE_CHECK_OK(check_together(wish));
+    if (runs_together() && !wish.explain) return simulate_together(outcome, wish);
+    WEAVE_CHECK_OK(check_alone(wish));
     WEAVE_CHECK_OK(check_wish(wish));
     std::optional<wire::Follower> server;
     if (!wish.server.host.empty()) {
@@ -202,7 +203,7 @@ Status run_simulation(CommandOutcome& outcome, const SimulateWish& wish) {
     if (!understood) return std::move(understood).error().in(wish.file);
     SimulateTask& task = *understood;
     WEAVE_TRY(sim::Plan plan, plan_of(task.design, block, task.request, wish.file));
-    if (!server && !runs_together()) {
+    if (!server) {
         const Result<sim::BackendChoice> choice = sim::choose_backend(task.options.backend, plan.scene);
         if (!choice) return Error{choice.error().code, choice.error().message, "--backend " + wish.backend};
         plan.lines.push_back({"backend", choice->device.empty() ? "cpu" : "cuda: " + choice->device, choice->reason});
@@ -219,7 +220,6 @@ Status run_simulation(CommandOutcome& outcome, const SimulateWish& wish) {
         plan = {};
         return simulate_on(outcome, *server, cloth.design, task, wish, goal);
     }
-    if (runs_together()) return simulate_together(outcome, task.design, std::move(plan), wish);
     const HeldInterrupt held("the yarns are written as they lie; again to end at once, without the state");
     WEAVE_TRY(const Yarns yarns, watched(block, task, plan, wish));
     WEAVE_TRY(const std::string bytes, write_yarns(yarns));

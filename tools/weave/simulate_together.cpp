@@ -10,6 +10,7 @@
 #include <weave/ranks/mpi/mpi_comm.hpp>
 #include <weave/ranks/split_run.hpp>
 
+#include <algorithm>
 #include <chrono>
 #include <cstdio>
 #include <cstdlib>
@@ -70,12 +71,17 @@ bool runs_together() {
     return true;
 }
 
+Status check_alone(const SimulateWish& wish) {
+    if (!wish.checkpoint.empty()) return usage_error("is of processes that relax one cloth together: mpirun -n 1 weave simulate … writes them too", "--checkpoint");
+    if (wish.checkpoint_every) return usage_error("is of processes that relax one cloth together, by mpirun", "--checkpoint-every");
+    if (wish.patience) return usage_error("is of processes that relax one cloth together, by mpirun", "--patience");
+    return {};
+}
+
+namespace {
+
+/// What several processes do not do.
 Status check_together(const SimulateWish& wish) {
-    if (!runs_together()) {
-        if (!wish.checkpoint.empty()) return usage_error("is of processes that relax one cloth together: mpirun -n 1 weave simulate … writes them too", "--checkpoint");
-        if (wish.patience) return usage_error("is of processes that relax one cloth together, by mpirun", "--patience");
-        return {};
-    }
     for (const auto& [is_given, name] : {std::pair{!wish.server.host.empty(), "--on"}, std::pair{!wish.flips.empty(), "--flip"}, std::pair{!wish.resume.empty(), "--resume"},
                                          std::pair{!wish.start_from.empty() && wish.start_from != "plan", "--start-from"}, std::pair{wish.starts > 0, "--starts"},
                                          std::pair{wish.symmetry, "--symmetry"}, std::pair{wish.solver != "relax", "--solver"}, std::pair{wish.backend == "cuda", "--backend cuda"}})
@@ -83,11 +89,35 @@ Status check_together(const SimulateWish& wish) {
     return {};
 }
 
-Status simulate_together(CommandOutcome& outcome, const Design& design, sim::Plan plan, const SimulateWish& wish) {
-    tell_when_ended(is_first_process() ? last_words(wish.checkpoint, "") : "");
-    WEAVE_TRY(const std::unique_ptr<ranks::Comm> comm, ranks::join_others(std::chrono::seconds(wish.patience.value_or(usual_patience_s)), say));
-    stop_on_user_signal();
-    Teller teller(wish.residual.value_or(plan.goal));
+struct Prepared {
+    Design design;
+    sim::Plan plan;
+};
+
+Result<Prepared> prepare(CommandOutcome& outcome, const SimulateWish& wish) {
+    WEAVE_CHECK_OK(check_together(wish));
+    WEAVE_CHECK_OK(check_wish(wish));
+    WEAVE_TRY(const Cloth cloth, load_cloth(outcome, wish.file));
+    auto task = understand(cloth, wish);
+    if (!task) return std::move(task).error().in(wish.file);
+    WEAVE_TRY(sim::Plan plan, plan_of(task->design, *cloth.evaluation.block, task->request, wish.file));
+    return Prepared{std::move(task->design), std::move(plan)};
+}
+
+/// The processes, until the program ends: mpirun ends all once one of them has, and the first shall have told what is wrong.
+Result<ranks::Comm*> others(const SimulateWish& wish) {
+    static std::unique_ptr<ranks::Comm> comm;
+    WEAVE_TRY(comm, ranks::join_others(std::chrono::seconds(wish.patience.value_or(usual_patience_s)), say));
+    return comm.get();
+}
+
+/// An error that only this process has is told by it, the first's by the program as any.
+Error told(const ranks::Comm& comm, const Error& error, bool is_alone_with_it) {
+    if (!comm.is_first() && is_alone_with_it) say("rank " + std::to_string(comm.rank()) + ": " + error.text());
+    return error;
+}
+
+ranks::SplitOptions options_of(const ranks::Comm& comm, const SimulateWish& wish, Teller& teller) {
     ranks::SplitOptions options;
     options.residual = wish.residual;
     options.most_iterations = wish.steps.value_or(options.most_iterations);
@@ -95,28 +125,42 @@ Status simulate_together(CommandOutcome& outcome, const Design& design, sim::Pla
     options.threads = wish.threads > 0 ? wish.threads : 1;
     options.checkpoints = wish.checkpoint;
     options.checkpoint_every_s = wish.checkpoint_every.value_or(options.checkpoint_every_s);
-    options.watch = [&](const sim::Progress& progress) { return (!comm->is_first() || teller(progress)) && !asked_to_stop(); };
+    options.watch = [&](const sim::Progress& progress) { return (!comm.is_first() || teller(progress)) && !asked_to_stop(); };
     options.note = [&](const std::string& line) {
         teller.note(line);
         tell_when_ended(last_words(wish.checkpoint, "the newest: " + line));
     };
-    const Result<Json> report = ranks::simulate_split(*comm, design, std::move(plan), options, wish.out);
-    tell_when_ended("");
-    if (!report) {
-        if (!comm->is_first() && report.error().message.find("it tells why") == std::string::npos) say("rank " + std::to_string(comm->rank()) + ": " + report.error().text());
-        return report.error();
-    }
-    teller.end();
-    Json told = *report;
-    const std::vector<std::string> undone = left_undone(told, {0, 0, false});
-    if (!undone.empty()) told["left_undone"] = undone;
-    if (!undone.empty() && asked_to_stop()) told["interrupted"] = true;
-    Json answer = told;
+    return options;
+}
+
+Status tell(CommandOutcome& outcome, const ranks::Comm& comm, const Design& design, Json report, const SimulateWish& wish) {
+    const std::vector<std::string> undone = left_undone(report, {0, 0, false});
+    if (!undone.empty()) report["left_undone"] = undone;
+    if (!undone.empty() && asked_to_stop()) report["interrupted"] = true;
+    Json answer = report;
     answer["file"] = wish.out;
-    if (comm->is_first()) {
+    if (comm.is_first()) {
         WEAVE_TRY(answer["yarns_sha256"], hash_of_file(wish.out));
     }
-    return tell_ending(outcome, told, std::move(answer), {design, {}, {}});
+    return tell_ending(outcome, report, std::move(answer), {design, {}, {}});
+}
+
+}  // namespace
+
+Status simulate_together(CommandOutcome& outcome, const SimulateWish& wish) {
+    WEAVE_TRY(ranks::Comm* const comm, others(wish));
+    Result<Prepared> prepared = prepare(outcome, wish);
+    const std::vector<double> failed = comm->gather(prepared ? 0.0 : 1.0);
+    if (!prepared) return told(*comm, prepared.error(), failed.front() == 0);
+    if (std::ranges::count(failed, 1.0) > 0) return system_fault("another process could not begin; it tells why");
+    tell_when_ended(comm->is_first() ? last_words(wish.checkpoint, "") : "");
+    stop_on_user_signal();
+    Teller teller(wish.residual.value_or(prepared->plan.goal));
+    const Result<Json> report = ranks::simulate_split(*comm, prepared->design, std::move(prepared->plan), options_of(*comm, wish, teller), wish.out);
+    tell_when_ended("");
+    if (!report) return told(*comm, report.error(), report.error().message.find("it tells why") == std::string::npos);
+    teller.end();
+    return tell(outcome, *comm, prepared->design, *report, wish);
 }
 
 }  // namespace weave::program

@@ -9,10 +9,10 @@ namespace weave::program {
 /// Whether they did; then all but the first are silent from now on.
 bool runs_together();
 
-/// What several processes do not do, and what one alone does not.
-Status check_together(const SimulateWish& wish);
+/// What only several processes do.
+Status check_alone(const SimulateWish& wish);
 
-/// Relaxes and tells; the first process writes the file.
-Status simulate_together(CommandOutcome& outcome, const Design& design, sim::Plan plan, const SimulateWish& wish);
+/// Plans, relaxes and tells; the first process writes the file. What is wrong for all of them, one tells.
+Status simulate_together(CommandOutcome& outcome, const SimulateWish& wish);
 
 }  // namespace weave::program
