@@ -210,7 +210,7 @@ std::filesystem::path PostgresServer::move_log_to_small_disk() {
     fs::create_directories(disk);
     const passwd* const user = servant();
     const std::string options = "size=80m,mode=0700" + (user == nullptr ? "" : ",uid=" + std::to_string(user->pw_uid) + ",gid=" + std::to_string(user->pw_gid));
-    if (::unshare(CLONE_NEWNS) != 0 || ::mount("none", "/", nullptr, MS_REC | MS_PRIVATE, nullptr) != 0 ||
+    if (::unshare(CLONE_NEWNS) != 0 || ::mount("none", "/", "none", MS_REC | MS_PRIVATE, nullptr) != 0 ||
         ::mount("none", disk.c_str(), "tmpfs", 0, options.c_str()) != 0)
         return {};
     m_log_disk = disk;
