@@ -36,15 +36,22 @@ Result<LogFacts> log_facts(const std::string& store) {
     return facts;
 }
 
-/// The file that was the store until now stays, under a name by which nothing opens it.
-Status set_aside(const fs::path& file) {
-    fs::path aside = file;
-    aside += ".moved";
+/// The name by which the file that was the store until now stays, and nothing opens it.
+fs::path aside_of(const std::string& file) {
+    return file + ".moved";
+}
+
+/// Told before anything is done.
+Status can_be_set_aside(const std::string& file) {
     std::error_code trouble;
-    if (fs::exists(aside, trouble))
-        return Error{ErrorCode::refused, "is in the way: put it elsewhere, it is the store of an earlier move", aside.string()};
-    fs::rename(file, aside, trouble);
-    return trouble ? Status(system_fault("cannot be set aside: " + trouble.message(), file.string())) : Status();
+    if (is_database(file) || !fs::exists(aside_of(file), trouble)) return {};
+    return Error{ErrorCode::refused, "is in the way: put it elsewhere, it is the store of an earlier move", aside_of(file).string()};
+}
+
+Status set_aside(const std::string& file) {
+    std::error_code trouble;
+    fs::rename(file, aside_of(file), trouble);
+    return trouble ? Status(system_fault("cannot be set aside: " + trouble.message(), file)) : Status();
 }
 
 /// From here on the folder names the new place. `store.url` wins over a file, so that no order of these steps leaves two.
@@ -56,6 +63,14 @@ Status switch_over(const SiteFolder& site, const std::string& from, const std::s
     std::error_code trouble;
     fs::remove(site.store_place(), trouble);
     return trouble ? Status(system_fault("cannot be removed: " + trouble.message(), site.store_place().string())) : Status();
+}
+
+/// A program on another machine may have begun to serve a database meanwhile, whose writing would be left behind.
+Status refuse_written_to(const std::string& from, const LogFacts& told) {
+    WEAVE_CHECK_OK(refuse_in_use(from));
+    WEAVE_TRY(const LogFacts now, log_facts(from));
+    if (now == told) return {};
+    return Error{ErrorCode::refused, "was written to meanwhile; stop every program that serves it. The site was left where it is", from};
 }
 
 Error not_as_written(const std::string& what, const AuditFinding& finding) {
@@ -71,6 +86,7 @@ Status move_store(const SiteFolder& site, const std::string& wish, CommandOutcom
         return bad_input("must be a connection string (postgresql://HOST/DATABASE), or the word file", "TO");
     if (from == to) return Error{ErrorCode::refused, "is where the store of this site is already", to};
     WEAVE_CHECK_OK(refuse_in_use(from));
+    WEAVE_CHECK_OK(can_be_set_aside(from));
     WEAVE_TRY(const auto before, verify_site(site, {}));
     if (!before.empty()) return not_as_written(site.path.string(), before.front());
     WEAVE_TRY(const LogFacts told, log_facts(from));
@@ -79,6 +95,7 @@ Status move_store(const SiteFolder& site, const std::string& wish, CommandOutcom
     if (!after.empty()) return not_as_written(to, after.front());
     WEAVE_TRY(const LogFacts kept, log_facts(to));
     if (!(kept == told)) return system_fault("has another log than " + from + "; the site was left where it is", to);
+    WEAVE_CHECK_OK(refuse_written_to(from, told));
     WEAVE_CHECK_OK(switch_over(site, from, to));
     outcome.answer({{"from", from}, {"to", to}, {"records", told.size}, {"root", told.root}},
                    on_one_line(site.path.string()) + ": the store is in " + to + " now, every row as it was: " +

@@ -47,15 +47,13 @@ Status SlurmArrays::add(const std::string& person, const std::set<std::string>& 
     Array array;
     array.person = person;
     array.avoided = avoided;
-    std::vector<std::pair<std::uint64_t, std::uint64_t>> by_place;
     for (std::uint64_t place = 0; place < jobs.size(); ++place) {
         if (m_places.contains(jobs[place])) drop(jobs[place]);  // an earlier array's
-        by_place.emplace_back(place, jobs[place]);
         array.jobs[place] = jobs[place];
         m_places[jobs[place]] = {number, place};
     }
     m_arrays[number] = std::move(array);
-    return write_array(m_rules.shared.array(number), by_place);
+    return {};
 }
 
 void SlurmArrays::drop(std::uint64_t job) {
@@ -93,6 +91,7 @@ Result<SlurmArrays::Look> SlurmArrays::look() {
     Look look;
     std::vector<std::string> unwanted;
     m_dropped_alive.clear();
+    recognise(lines);
     for (const QueuedJob& line : lines) {
         if (const auto array = array_named(line.name)) sort_in(line, *array, look, unwanted);
     }
@@ -116,13 +115,29 @@ Result<SlurmArrays::Look> SlurmArrays::look() {
         m_gone.push_back(entry.second);
         return true;
     });
+    // Taken after all, or no longer wanted.
+    if (std::ranges::none_of(m_arrays, [](const auto& entry) { return entry.second.refused.has_value(); })) m_refusal = {};
     return look;
+}
+
+/// Arrays that Slurm took without our hearing of it. One of which it has several, for a call that seemed to fail was only slow, is the one
+/// that lives: those that ended, and above all those that we had cancelled, say nothing of its jobs.
+void SlurmArrays::recognise(const std::vector<QueuedJob>& lines) {
+    const auto rank = [](const QueuedJob& line) { return line.is_alive() ? 2 : line.state == "CANCELLED" ? 0 : 1; };
+    std::map<std::uint64_t, const QueuedJob*> best;
+    for (const QueuedJob& line : lines) {
+        const auto number = array_named(line.name);
+        const auto array = number ? m_arrays.find(*number) : m_arrays.end();
+        if (array == m_arrays.end() || array->second.slurm_id) continue;
+        const QueuedJob*& known = best[*number];
+        if (known == nullptr || rank(line) > rank(*known)) known = &line;
+    }
+    for (const auto& [number, line] : best) name(number, m_arrays.at(number), line->array);
 }
 
 /// A line is of a job that is wanted where it is, or is to go away: of a job that is over, or of an array that was submitted twice.
 void SlurmArrays::sort_in(const QueuedJob& line, std::uint64_t number, Look& look, std::vector<std::string>& unwanted) {
     const auto array = m_arrays.find(number);
-    if (array != m_arrays.end() && !array->second.slurm_id) name(number, array->second, line.array);
     if (array != m_arrays.end() && array->second.slurm_id == line.array) {
         const auto job = array->second.jobs.find(line.place);
         if (job != array->second.jobs.end()) {
@@ -144,6 +159,17 @@ void SlurmArrays::name(std::uint64_t number, Array& array, std::uint64_t slurm_i
 
 void SlurmArrays::submit(std::uint64_t number, Array& array) {
     if (array.refused && Clock::now() - *array.refused < until_another_try) return;
+    const auto made = try_to_submit(number, array);
+    if (made) return name(number, array, *made);
+    m_refusal = made.error();
+    array.refused = Clock::now();
+    array.avoided.clear();  // there may be no other node
+    log(LogLevel::warning, counted(array.jobs.size(), "job") + " not taken by Slurm, tried again in " + std::to_string(until_another_try.count()) + " s: " + made.error().text());
+}
+
+/// Its file is written each time: a daemon that died may have left the array in the store alone.
+Result<std::uint64_t> SlurmArrays::try_to_submit(std::uint64_t number, const Array& array) const {
+    WEAVE_CHECK_OK(write_array(m_rules.shared.array(number), {array.jobs.begin(), array.jobs.end()}));
     SlurmArray wanted;
     wanted.name = name_of(number);
     wanted.person = array.person;
@@ -152,12 +178,7 @@ void SlurmArrays::submit(std::uint64_t number, Array& array) {
     wanted.command = {m_rules.program.string(), "job", m_rules.shared.array(number).string()};
     wanted.script = m_rules.shared.script();
     wanted.log = m_rules.shared.arrays() / (std::to_string(number) + "-%a.log");
-    const auto made = m_slurm.submit(wanted, m_rules.wishes);
-    m_refusal = made ? Status() : Status(made.error());
-    if (made) return name(number, array, *made);
-    array.refused = Clock::now();
-    array.avoided.clear();  // there may be no other node
-    log(LogLevel::warning, counted(array.jobs.size(), "job") + " not taken by Slurm, tried again in " + std::to_string(until_another_try.count()) + " s: " + made.error().text());
+    return m_slurm.submit(wanted, m_rules.wishes);
 }
 
 /// A job that was put back waits for two minutes unless it is told otherwise; one whose node could not start it is held until somebody

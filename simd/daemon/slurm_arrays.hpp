@@ -29,7 +29,7 @@ class SlurmArrays {
 
     /// Takes up what the store has of earlier lives. Errors: the store's.
     Status take_up();
-    /// Gives jobs of a person, whose folders are there, a place in a new array; the next look submits it. Errors: the disk's.
+    /// Gives jobs of a person, whose folders are there, a place in a new array; the next look submits it. Errors: the store's.
     Status add(const std::string& person, const std::set<std::string>& avoided, const std::vector<std::uint64_t>& jobs);
     /// What of a job is in Slurm is no longer wanted.
     void drop(std::uint64_t job);
@@ -43,7 +43,7 @@ class SlurmArrays {
     Result<Look> look();
     /// Jobs that were dropped, and of which the last look saw nothing alive any more; told once.
     std::vector<std::uint64_t> take_gone();
-    /// What kept the last submission from being made.
+    /// What keeps arrays from being submitted; nothing once they are, or nobody wants them any more.
     [[nodiscard]] const Status& refusal() const { return m_refusal; }
 
   private:
@@ -60,8 +60,10 @@ class SlurmArrays {
 
     [[nodiscard]] std::string name_of(std::uint64_t array) const { return "simd-" + m_id + "-" + std::to_string(array); }
     [[nodiscard]] std::optional<std::uint64_t> array_named(const std::string& name) const;
+    void recognise(const std::vector<QueuedJob>& lines);
     void sort_in(const QueuedJob& line, std::uint64_t array, Look& look, std::vector<std::string>& unwanted);
     void submit(std::uint64_t number, Array& array);
+    [[nodiscard]] Result<std::uint64_t> try_to_submit(std::uint64_t number, const Array& array) const;
     void clear_away() const;
     void let_go_on(const QueuedJob& job);
     void try_to(Status status);

@@ -96,7 +96,7 @@ void SlurmCrew::work() {
 // ---- What its owner asks for ----
 
 void SlurmCrew::hand_over(Task& task, std::uint64_t job, const std::string& person) {
-    const bool is_first = std::ranges::none_of(m_entries, [](const auto& entry) { return entry.second.task != nullptr && !entry.second.is_in_array; });
+    const bool is_first = std::ranges::none_of(m_entries, [](const auto& entry) { return entry.second.waits_here(); });
     Entry& entry = m_entries[job];
     entry.task = &task;
     entry.person = person;
@@ -161,7 +161,10 @@ std::string SlurmCrew::place_of(std::uint64_t job) const {
 
 Status SlurmCrew::trouble() const {
     const std::lock_guard lock(m_trouble_lock);
-    return m_queue_trouble ? m_disk_trouble : m_queue_trouble;
+    for (const Status* trouble : {&m_queue_trouble, &m_handing_trouble}) {
+        if (!*trouble) return *trouble;
+    }
+    return m_disk_trouble;
 }
 
 /// What goes on going wrong is told once.
@@ -194,7 +197,7 @@ void SlurmCrew::watch() {
 
 bool SlurmCrew::has_new_jobs(Clock::time_point now) const {
     if (now < m_not_before) return false;
-    const bool any = std::ranges::any_of(m_entries, [](const auto& entry) { return entry.second.task != nullptr && !entry.second.is_in_array; });
+    const bool any = std::ranges::any_of(m_entries, [](const auto& entry) { return entry.second.waits_here(); });
     return any && (now - m_last_new >= quiet_before_array || now - m_first_new >= longest_before_array);
 }
 
@@ -204,7 +207,7 @@ void SlurmCrew::hand_in() {
     {
         const std::lock_guard lock(m_lock);
         for (const auto& [job, entry] : m_entries) {
-            if (entry.task != nullptr && !entry.is_in_array) groups[{entry.person, entry.avoided}].push_back(job);
+            if (entry.waits_here()) groups[{entry.person, entry.avoided}].push_back(job);
         }
     }
     Status all = has_room();
@@ -214,7 +217,7 @@ void SlurmCrew::hand_in() {
         if (!given) all = std::move(given);
     }
     const bool is_well = static_cast<bool>(all);
-    note(m_disk_trouble, std::move(all));
+    note(m_handing_trouble, std::move(all));
     const std::lock_guard lock(m_lock);
     if (!is_well) m_not_before = Clock::now() + until_another_try;
 }
@@ -275,10 +278,13 @@ void SlurmCrew::look() {
         note(m_queue_trouble, seen.error());
     }
     std::vector<Found> all;
+    bool any_waits = false;
     {
         const std::lock_guard lock(m_lock);
         all = to_look_at(queue);
+        any_waits = std::ranges::any_of(m_entries, [](const auto& entry) { return entry.second.waits_here(); });
     }
+    if (!any_waits) note(m_handing_trouble, {});  // whoever could not be handed over has left
     Status disk;
     for (Found& found : all) {
         Status looked = look_at_folder(found);
@@ -286,7 +292,7 @@ void SlurmCrew::look() {
         const std::lock_guard lock(m_lock);
         apply(found, queue);
     }
-    if (!all.empty()) note(m_disk_trouble, std::move(disk));
+    note(m_disk_trouble, std::move(disk));
     clear_away();
 }
 

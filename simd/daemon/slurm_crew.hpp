@@ -68,7 +68,7 @@ class SlurmCrew {
     [[nodiscard]] std::size_t size() const;
     /// Where a job is, for people: `Slurm 4711_3: running on n1`; empty where it is not here.
     [[nodiscard]] std::string place_of(std::uint64_t job) const;
-    /// What kept the last look, or the last handing over, from going well. Without the lock.
+    /// What keeps looks, or the handing over of those that wait, from going well. Without the lock.
     [[nodiscard]] Status trouble() const;
 
   private:
@@ -84,6 +84,8 @@ class SlurmCrew {
         std::optional<Clock::time_point> stopped;
         std::set<std::string> avoided;    ///< nodes whose fault an end was
         std::set<std::uint64_t> refused;  ///< stale attempts whose results were turned down
+        /// To be handed over.
+        [[nodiscard]] bool waits_here() const { return task != nullptr && !is_in_array; }
     };
     /// What a look at its folder finds out of a job.
     struct Found {
@@ -129,7 +131,7 @@ class SlurmCrew {
     bool m_hurries = false;                    ///< to the next look
     std::condition_variable m_news;
     mutable std::mutex m_trouble_lock;
-    Status m_queue_trouble, m_disk_trouble;
+    Status m_queue_trouble, m_handing_trouble, m_disk_trouble;
     std::thread m_thread;  ///< last, when all else is there
 };
 

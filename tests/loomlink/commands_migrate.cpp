@@ -45,7 +45,7 @@ TEST_CASE("a site goes from its file into a database and back, and people and lo
     mill.stop();
 
     {
-        const Store other = got(Store::open(database));  // as a program on another machine does
+        const Store other = got(Store::open(database + "&application_name=theirs"));  // as a program on another machine does
         CHECK_THAT(migrate("file").err, Catch::Contains("in use"));
     }
     const Ended back = migrate("file");
@@ -80,6 +80,12 @@ TEST_CASE("a move that cannot be leaves the site where it is", "[commands][serve
     const Ended forged = migrate(place_of_new(server));
     CHECK(forged.code == 4);
     CHECK_THAT(forged.err, Catch::Contains("person dora"));
+    REQUIRE(write_file(mill.site_folder / "loomlink.db.moved", "of an earlier move"));
+    const std::string unused = server.make_database();
+    const Ended in_the_way = migrate(server.place(unused));
+    CHECK(in_the_way.code == 4);
+    CHECK_THAT(in_the_way.err, Catch::Contains("loomlink.db.moved: is in the way"));
+    CHECK(server.number("SELECT count(*) FROM pg_tables WHERE schemaname = 'public'", unused) == 0);
     CHECK(fs::exists(mill.site_folder / "loomlink.db"));
     CHECK_FALSE(fs::exists(mill.site_folder / "store.url"));
 }

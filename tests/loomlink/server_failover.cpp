@@ -3,6 +3,7 @@
 #include "server_case.hpp"
 
 #include <algorithm>
+#include <fstream>
 #include <mutex>
 #include <support/random.hpp>
 #include <thread>
@@ -21,14 +22,15 @@ struct Told {
     std::atomic<std::size_t> count = 0, doubtful = 0;
 };
 
-/// One request: a record and its answer, done once however often it is repeated.
-Status request(Store& store, const std::string& id) {
+/// One request: a record and its answer, and an object where there are bytes; done once however often it is repeated.
+Status request(Store& store, const std::string& id, const std::string& bytes = {}) {
     return store.commit([&](Writer& writer) -> Status {
         WEAVE_TRY(const auto known, writer.answer(id, 1));
         if (known) return {};
         Statement statement = statement_of(1);
         statement.request = id;
         WEAVE_CHECK_OK(writer.append(statement));
+        if (!bytes.empty()) WEAVE_CHECK_OK(writer.put_object(bytes));
         return writer.record_answer(id, 1, "done");
     });
 }
@@ -160,6 +162,19 @@ void fail_over_times(int rounds) {
                 told.acknowledged.size(), told.doubtful.load());
 }
 
+std::string random_bytes(Random& random, std::size_t size) {
+    std::string bytes(size, ' ');
+    for (char& byte : bytes) byte = static_cast<char>(random.between(0, 255));
+    return bytes;
+}
+
+/// Takes all the room that is left on the disk of a file.
+void fill_disk(const std::filesystem::path& file) {
+    std::ofstream filler(file, std::ios::binary);
+    const std::string block(65536, 'x');
+    while (filler.write(block.data(), static_cast<std::streamsize>(block.size())).flush()) continue;
+}
+
 /// Milliseconds of one request after the other, and of requests that eight ask for at once.
 void measure(const std::string& name, Store& store) {
     constexpr int requests = 1000, together = 8;
@@ -247,6 +262,46 @@ TEST_CASE("a promoted standby that waits for nobody's standby is told, and goes 
     pair.standby->reload();
     wait_for([&] { return static_cast<bool>(request(store, "round-hang")); });
     CHECK(requests_in(pair.standby->place(pair.database)).at("round-hang") == 1);
+}
+
+TEST_CASE("a full disk of the server's write-ahead log is told and loses nothing that was acknowledged, and once there is room the store goes on", "[server]") {
+    if (there_is_no_server()) return;
+    PostgresServer server;
+    const std::filesystem::path disk = server.move_log_to_small_disk();
+    if (disk.empty()) WARN("skipped: no file system can be mounted here");
+    if (disk.empty()) return;
+    const std::string place = server.place(server.make_database());
+    Store store = got(Store::create(place, "mill"));
+    got(store.write([](Writer& writer) -> Result<Id> {
+        WEAVE_TRY(const Seq event, note(writer));
+        return writer.add_person({0, "anna", "Anna", true, "hash", {}, event});
+    }));
+    fill_disk(disk / "filler");
+    std::vector<std::string> acknowledged;
+    Status last;
+    Random random(weave::testing::run_seed());
+    for (int k = 0; last && k < 2000; ++k) {  // 200 MB, more than there is room for
+        const std::string id = "full-" + std::to_string(k);
+        last = request(store, id, random_bytes(random, 100'000));
+        if (last) acknowledged.push_back(id);
+    }
+    REQUIRE_FALSE(last);
+    CHECK(!acknowledged.empty());
+    CHECK_THAT(text_of(last), Catch::Contains("the disk of the server's write-ahead log is full") && Catch::Contains("No space left on device") &&
+                                  Catch::Contains("make room there"));
+    CHECK_FALSE(store.last_write());
+    // The server stays down, or comes back and goes down again, for its recovery has to write as well.
+    wait_for([&] { return text_of(request(store, "later")).find("no connection to the server") != std::string::npos; });
+
+    std::filesystem::remove(disk / "filler");
+    server.stop();  // where it has not ended by itself
+    server.start();
+    CHECK(text_of(request(store, "later")) == "");
+    acknowledged.emplace_back("later");
+    const auto found = requests_in(place);
+    CHECK(lost_of(acknowledged, found) == 0);
+    for (const std::string& id : acknowledged) CHECK(found.at(id) == 1);
+    CHECK(all_text(got(verify_store(place))) == "");
 }
 
 }  // namespace weave::loomlink::testing

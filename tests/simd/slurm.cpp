@@ -7,8 +7,10 @@
 #include <weave/samples/samples.hpp>
 
 #include <atomic>
+#include <cstdlib>
 #include <set>
 #include <simd/commands/config.hpp>
+#include <simd/daemon/slurm_arrays.hpp>
 #include <simd/daemon/slurm_crew.hpp>
 #include <simd/slurm/job_folder.hpp>
 #include <simd/slurm/process.hpp>
@@ -214,6 +216,124 @@ TEST_CASE("the store knows of each job in which array it is and which attempt co
     REQUIRE(store->forget_job(3));
     CHECK(store->submissions().value().at(0).jobs.size() == 1);
     CHECK(opened(folder / "other.db")->cluster_id().value() != id);
+}
+
+namespace {
+
+/// Programs in the place of Slurm's, as long as it lives: the queue is the file `queue`, sbatch tells what is in `made` (where that is
+/// missing it fails), and scancel notes in `cancelled` what it is given.
+class ScriptedSlurm {
+  public:
+    ScriptedSlurm() : m_path(std::getenv("PATH")) {
+        program("squeue", "cat \"${0%/*}/queue\"");
+        program("sbatch", "echo asked >>\"${0%/*}/asked\"; cat \"${0%/*}/made\"");
+        program("scancel", "echo \"$@\" >>\"${0%/*}/cancelled\"");
+        write("queue", "");
+        ::setenv("PATH", ((m_folder / "").string() + ":" + m_path).c_str(), 1);
+    }
+    ~ScriptedSlurm() { ::setenv("PATH", m_path.c_str(), 1); }
+    ScriptedSlurm(const ScriptedSlurm&) = delete;
+    ScriptedSlurm& operator=(const ScriptedSlurm&) = delete;
+    void write(const char* name, const std::string& text) const { REQUIRE(write_file(m_folder / name, text)); }
+    [[nodiscard]] std::string told(const char* name) const {
+        const auto text = read_file(m_folder / name);
+        return text ? *text : std::string();
+    }
+
+  private:
+    void program(const char* name, const std::string& text) const {
+        write(name, "#!/bin/sh\n" + text + "\n");
+        std::filesystem::permissions(m_folder / name, std::filesystem::perms::owner_all);
+    }
+    const Folder m_folder;
+    const std::string m_path;
+};
+
+}  // namespace
+
+TEST_CASE("of an array that Slurm has twice because a call that failed was only slow the copy that lives counts and the other is cancelled") {
+    const Folder folder;
+    const ScriptedSlurm scripted;
+    const auto store = opened(folder / "s.db");
+    const Number job = a_job(*store, "request-1");
+    const Slurm slurm(goes_on);
+    const std::string name = "|0|simd-" + store->cluster_id().value() + "-1|";
+    const auto arrays = [&] { return std::make_unique<SlurmArrays>(*store, slurm, SlurmArrays::Rules{{}, {folder / "shared"}, "/bin/simd"}); };
+    auto before = arrays();
+    REQUIRE(before->take_up());
+    REQUIRE(before->add("dora", {}, {job}));
+    REQUIRE(before->look());
+    CHECK_FALSE(before->refusal());
+    CHECK(scripted.told("asked") == "asked\n");
+    before.reset();  // dies before it can note what the queue shows, in which the older copy was cancelled
+    scripted.write("queue", "4711" + name + "CANCELLED||None\n4712" + name + "RUNNING|n1|None\n4713" + name + "COMPLETED|n1|None\n");
+    const auto after = arrays();
+    REQUIRE(after->take_up());
+    const auto seen = after->look();
+    REQUIRE(seen);
+    CHECK((seen->jobs.at(job).array == 4712 && seen->missing.empty()));
+    CHECK(store->submissions().value().at(0).slurm_id == Number{4712});
+    scripted.write("queue", "4711" + name + "RUNNING|n2|None\n4712" + name + "RUNNING|n1|None\n");  // it comes late
+    const auto later = after->look();
+    REQUIRE(later);
+    CHECK((later->jobs.at(job).array == 4712 && later->missing.empty()));
+    CHECK(scripted.told("cancelled") == "4711_0\n");
+    CHECK(scripted.told("asked") == "asked\n");
+}
+
+TEST_CASE("what Slurm refused is no trouble any more once it was taken after all or nobody wants it") {
+    const Folder folder;
+    const ScriptedSlurm scripted;
+    const auto store = opened(folder / "s.db");
+    const Number first = a_job(*store, "request-1"), second = a_job(*store, "request-2");
+    const Slurm slurm(goes_on);
+    SlurmArrays arrays(*store, slurm, {{}, {folder / "shared"}, "/bin/simd"});
+    REQUIRE(arrays.take_up());
+    REQUIRE(arrays.add("dora", {}, {first}));
+    REQUIRE(arrays.look());
+    CHECK_FALSE(arrays.refusal());
+    scripted.write("made", "4712\n");
+    REQUIRE(arrays.add("emil", {}, {second}));
+    REQUIRE(arrays.look());
+    CHECK_FALSE(arrays.refusal());  // another's success is none of the first
+    scripted.write("queue", "4711|0|simd-" + store->cluster_id().value() + "-1|PENDING||Priority\n");
+    REQUIRE(arrays.look());
+    CHECK(arrays.refusal());
+    scripted.write("made", "nonsense\n");
+    const Number third = a_job(*store, "request-3");
+    REQUIRE(arrays.add("dora", {}, {third}));
+    REQUIRE(arrays.look());
+    CHECK_FALSE(arrays.refusal());
+    arrays.drop(third);
+    REQUIRE(arrays.look());
+    CHECK(arrays.refusal());
+}
+
+TEST_CASE("no array is handed over whose file cannot be written and one that a daemon left without gets it") {
+    const Folder folder;
+    const ScriptedSlurm scripted;
+    scripted.write("made", "4711\n");
+    const auto store = opened(folder / "s.db");
+    const Number job = a_job(*store, "request-1");
+    const Slurm slurm(goes_on);
+    const SharedFolder shared{folder / "shared"};
+    std::filesystem::create_directories(shared.path);
+    REQUIRE(write_file(shared.arrays(), "in the way"));
+    {
+        SlurmArrays arrays(*store, slurm, {{}, shared, "/bin/simd"});
+        REQUIRE(arrays.take_up());
+        REQUIRE(arrays.add("dora", {}, {job}));
+        REQUIRE(arrays.look());
+        CHECK_FALSE(arrays.refusal());
+        CHECK(scripted.told("asked").empty());
+    }
+    std::filesystem::remove(shared.arrays());
+    SlurmArrays arrays(*store, slurm, {{}, shared, "/bin/simd"});
+    REQUIRE(arrays.take_up());
+    REQUIRE(arrays.look());
+    CHECK(arrays.refusal());
+    CHECK(scripted.told("asked") == "asked\n");
+    CHECK(job_at(shared.array(1), 0).value() == job);
 }
 
 TEST_CASE("a shared folder is one daemon's and nobody else can write there") {

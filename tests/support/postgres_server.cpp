@@ -8,7 +8,9 @@
 #include <fcntl.h>
 #include <fstream>
 #include <pwd.h>
+#include <sched.h>
 #include <stdexcept>
+#include <sys/mount.h>
 #include <sys/prctl.h>
 #include <sys/wait.h>
 #include <thread>
@@ -104,6 +106,7 @@ PostgresServer::PostgresServer(const PostgresServer& primary, const std::string&
 
 PostgresServer::~PostgresServer() {
     kill();
+    if (!m_log_disk.empty()) ::umount2(m_log_disk.c_str(), MNT_DETACH);
     std::error_code ignored;
     fs::remove_all(m_folder, ignored);
 }
@@ -199,6 +202,23 @@ void PostgresServer::stop() {
     ::kill(m_process, SIGINT);
     ::waitpid(m_process, nullptr, 0);
     m_process = 0;
+}
+
+/// What is mounted is seen by this thread and what it starts alone, and is gone with them, however they end.
+std::filesystem::path PostgresServer::move_log_to_small_disk() {
+    const fs::path disk = m_folder / "wal", log = m_folder / "data" / "pg_wal";
+    fs::create_directories(disk);
+    const passwd* const user = servant();
+    const std::string options = "size=80m,mode=0700" + (user == nullptr ? "" : ",uid=" + std::to_string(user->pw_uid) + ",gid=" + std::to_string(user->pw_gid));
+    if (::unshare(CLONE_NEWNS) != 0 || ::mount("none", "/", "none", MS_REC | MS_PRIVATE, nullptr) != 0 ||
+        ::mount("none", disk.c_str(), "tmpfs", 0, options.c_str()) != 0)
+        return {};
+    m_log_disk = disk;
+    stop();
+    run_to_end({"/bin/sh", "-c", "mv \"$0\" \"$1/log\" && ln -s \"$1/log\" \"$0\"", log, disk}, m_folder / "log");
+    configure("wal_keep_size = 0\nmin_wal_size = 32MB\nmax_wal_size = 32MB");
+    start();
+    return disk;
 }
 
 void PostgresServer::cut_off() const {

@@ -45,6 +45,8 @@ class PostgresServer {
     void stop();
     /// Its disk is full whenever this file is there (tests/support/full_disk.cpp).
     [[nodiscard]] std::filesystem::path full_disk() const { return m_folder / "full"; }
+    /// Puts its write-ahead log on a small disk of its own, and starts it again. Its folder; empty where this process may mount nothing.
+    std::filesystem::path move_log_to_small_disk();
     /// Stops what a standby receives, as a line that is cut would: it lags from then on.
     void cut_off() const;
     /// Makes a standby a primary, and answers once it is.
@@ -58,7 +60,7 @@ class PostgresServer {
     void write_settings() const;
     void wait_until(const std::string& question) const;
 
-    std::filesystem::path m_folder;
+    std::filesystem::path m_folder, m_log_disk;
     pid_t m_process = 0;
     int m_databases = 0;
 };

@@ -107,6 +107,18 @@ std::string numbered(std::string_view text) {
     return words;
 }
 
+/// What libpq tells in several lines.
+std::string in_one_line(std::string_view text) {
+    std::string words;
+    for (const char c : text) {
+        const bool is_space = c == '\n' || c == '\t' || c == ' ';
+        if (!is_space) words += c;
+        else if (!words.empty() && words.back() != ' ') words += ' ';
+    }
+    if (words.ends_with(' ')) words.pop_back();
+    return on_one_line(words);
+}
+
 std::string field(const PGresult* answer, int code) {
     const char* const text = PQresultErrorField(answer, code);
     return text == nullptr ? "" : text;
@@ -135,7 +147,7 @@ Status PostgresConnection::configure(Access access) {
 }
 
 Error PostgresConnection::lost() const {
-    return system_fault("no connection to the server: " + on_one_line(PQerrorMessage(m_handle)), m_label);
+    return system_fault("no connection to the server: " + in_one_line(PQerrorMessage(m_handle)), m_label);
 }
 
 /// What the server warns of. Where it stopped waiting for a standby, a warning of no kind of its own is all that tells it.
@@ -156,7 +168,7 @@ Result<PostgresConnection::Answer> PostgresConnection::next(const Deadline& dead
                                 "gone (synchronous_standby_names); it may have been stored: repeat the request with its id",
                                 m_label);
         }
-        if (PQconsumeInput(m_handle) == 0) return lost();
+        if (PQconsumeInput(m_handle) == 0) break;  // what came before it went is an answer still
     }
     return Answer(PQgetResult(m_handle));
 }
@@ -171,7 +183,9 @@ Status PostgresConnection::finish(const std::function<void(const Row&)>* take, c
     const Drain drain{this};
     Status outcome;
     while (true) {
-        WEAVE_TRY(const Answer answer, next(deadline));
+        const auto got = next(deadline);
+        if (!got) return outcome ? Status(got.error()) : outcome;
+        const Answer& answer = *got;
         if (!answer) return outcome;
         const ExecStatusType status = PQresultStatus(answer.get());
         if (status == PGRES_SINGLE_TUPLE) {
@@ -181,7 +195,7 @@ Status PostgresConnection::finish(const std::function<void(const Row&)>* take, c
             m_changes = 0;
             std::from_chars(count.data(), count.data() + count.size(), m_changes);
             m_last_command = PQcmdStatus(answer.get());
-        } else if (outcome) {
+        } else if (outcome) {  // the first says why: what follows is that the server went
             outcome = trouble(answer.get());
         }
     }
@@ -267,6 +281,8 @@ Error PostgresConnection::trouble(const PGresult* answer) {
     if (is_of("23")) return {ErrorCode::refused, "the store does not take it (" + message + ")", {}};
     if (is_of("22")) return bad_input("the store cannot keep it (" + message + ")");
     if (code == "42501") return system_fault("its role may not do that (" + message + ")", m_label);
+    if (code == "53100" && field(answer, PG_DIAG_SEVERITY_NONLOCALIZED) == "PANIC")
+        return system_fault("the disk of the server's write-ahead log is full (" + message + "), and the server went down: make room there, start it", m_label);
     if (code == "53100") return system_fault("the disk of the server is full; nothing was stored", m_label);
     if (code == "55P03") return system_fault("is in use by another program", m_label);
     if (code == "25006") return system_fault("may not be written: it is a standby, or was made read-only", m_label);

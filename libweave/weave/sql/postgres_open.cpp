@@ -51,11 +51,12 @@ std::string in_percents(const std::string& text) {
 Result<std::unique_ptr<Connection>> open_postgres(const std::string& place, Access access, std::chrono::milliseconds patience) {
     WEAVE_CHECK_OK(options_of(place));
     const char* const kind = access == Access::standby ? "prefer-standby" : "read-write";
-    // What stands before `dbname` the place may say otherwise, what stands behind it may not. A way that is dead is to be
+    // What stands before `dbname` the place may say otherwise, what stands behind it may not: by its name a program is known to one
+    // that asks whether the database is in use. A way that is dead is to be
     // noticed in seconds, not when TCP gives up.
-    const std::array keywords{"application_name", "connect_timeout",     "keepalives_idle", "keepalives_interval", "keepalives_count",
-                              "tcp_user_timeout", "dbname", "client_encoding", "target_session_attrs", static_cast<const char*>(nullptr)};
-    const std::array values{"weave", "5", "5", "2", "3", "10000", place.c_str(), "UTF8", kind, static_cast<const char*>(nullptr)};
+    const std::array keywords{"connect_timeout",     "keepalives_idle", "keepalives_interval", "keepalives_count",
+                              "tcp_user_timeout", "dbname", "application_name", "client_encoding", "target_session_attrs", static_cast<const char*>(nullptr)};
+    const std::array values{"5", "5", "2", "3", "10000", place.c_str(), "weave", "UTF8", kind, static_cast<const char*>(nullptr)};
     auto connection = std::make_unique<PostgresConnection>(PQconnectdbParams(keywords.data(), values.data(), 1), place, patience);
     if (!connection->is_usable()) return connection->lost();
     WEAVE_CHECK_OK(connection->configure(access));

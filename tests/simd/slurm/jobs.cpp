@@ -46,6 +46,17 @@ std::set<std::string> arrays(const Cluster& cluster) {
     return found;
 }
 
+/// Has a daemon that starts from now on run this in the place of sbatch. The PATH that was.
+std::string put_before_sbatch(const Cluster& cluster, const std::string& script) {
+    const std::filesystem::path folder = cluster.folder() / "bin";
+    std::filesystem::create_directories(folder);
+    std::ofstream(folder / "sbatch") << "#!/bin/sh\nhere=${0%/*}\nPATH=/usr/bin:/bin\n[ \"$1\" = --version ] && exec sbatch \"$@\"\n" + script;
+    ::chmod((folder / "sbatch").c_str(), 0755);
+    const std::string path = std::getenv("PATH");
+    ::setenv("PATH", (folder.string() + ":" + path).c_str(), 1);
+    return path;
+}
+
 }  // namespace
 
 TEST_CASE("jobs run in Slurm as they do on this machine with a GPU of their own each and leave nothing behind") {
@@ -153,12 +164,7 @@ TEST_CASE("a daemon that is killed finds its jobs in Slurm again and hands none 
 TEST_CASE("a daemon that dies while Slurm takes its jobs finds them by their name and does not hand them over again") {
     const Cluster cluster;
     // Slurm has them, and the daemon never hears of it.
-    const std::filesystem::path folder = cluster.folder() / "bin";
-    std::filesystem::create_directories(folder);
-    std::ofstream(folder / "sbatch") << "#!/bin/sh\nPATH=/usr/bin:/bin\n[ \"$1\" = --version ] && exec sbatch \"$@\"\nsbatch \"$@\" >/dev/null\nkill -9 $PPID\n";
-    ::chmod((folder / "sbatch").c_str(), 0755);
-    const std::string path = std::getenv("PATH");
-    ::setenv("PATH", (folder.string() + ":" + path).c_str(), 1);
+    const std::string path = put_before_sbatch(cluster, "sbatch \"$@\" >/dev/null\nkill -9 $PPID\n");
     Box box(cluster.config());
     wire::Follower follower = box.follower();
     const std::uint64_t job = submit(follower, document_of(long_cloth), long_run());
@@ -168,6 +174,39 @@ TEST_CASE("a daemon that dies while Slurm takes its jobs finds them by their nam
     box.start();
     CHECK(end_of(follower, job).phase == wire::JobPhase::done);
     CHECK(arrays(cluster).size() == 1);
+}
+
+TEST_CASE("jobs that Slurm has twice because a call that failed was only slow end once with the same bits") {
+    std::string wanted;
+    {
+        const Box here;
+        wire::Follower follower = here.follower();
+        const std::uint64_t job = submit(follower, document_of(long_cloth), long_run());
+        REQUIRE(end_of(follower, job).phase == wire::JobPhase::done);
+        wanted = yarns_of(follower, job);
+    }
+    const Cluster cluster;
+    // What the first call asks for comes to pass after the second was answered.
+    const std::string path = put_before_sbatch(cluster, R"(if mkdir "$here/first"; then
+    (until [ -e "$here/second" ]; do sleep 0.1; done; sbatch "$@" >"$here/late") </dev/null >/dev/null 2>&1 &
+    echo "sbatch: error: Batch job submission failed: Socket timed out on send/recv operation" >&2
+    exit 1
+fi
+sbatch "$@" && : >"$here/second"
+)");
+    Box box(cluster.config());
+    ::setenv("PATH", path.c_str(), 1);
+    wire::Follower follower = box.follower();
+    const std::uint64_t first = submit(follower, document_of(long_cloth), long_run()), second = submit(follower, document_of(long_cloth), long_run());
+    CHECK(end_of(follower, first).phase == wire::JobPhase::done);
+    wire::Follower another = box.follower();  // which is told of what ended meanwhile
+    CHECK(end_of(another, second).phase == wire::JobPhase::done);
+    for (const std::uint64_t job : {first, second}) check_same_yarns(yarns_of(follower, job), wanted);
+    INFO(box.told());
+    CHECK(box.told().find("Socket timed out") != std::string::npos);
+    REQUIRE(until([&] { return arrays(cluster).size() >= 2; }));
+    CHECK(until([&] { return cluster.queued("|RUNNING|") + cluster.queued("|PENDING|") == 0; }, 90s));
+    CHECK(until([&] { return cluster.copies().empty(); }));
 }
 
 TEST_CASE("names and titles reach no shell and the site sees whose a job is") {
