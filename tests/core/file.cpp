@@ -55,6 +55,29 @@ TEST_CASE("a file is written whole, read back and replaced") {
     REQUIRE(folder.entries() == 1);  // no temporary file stays behind
 }
 
+TEST_CASE("a file written in pieces is there once it is finished, and leaves the old one until then") {
+    const Folder folder;
+    const fs::path file = folder.path / "cloth.yarns";
+    REQUIRE(write_file(file, "old"));
+    {
+        auto given_up = FileInPieces::begin(file);
+        REQUIRE(given_up);
+        REQUIRE(given_up->write(0, "never finished"));
+        CHECK(read_file(file).value() == "old");
+    }
+    CHECK(read_file(file).value() == "old");
+    CHECK(folder.entries() == 1);
+    auto pieces = FileInPieces::begin(file);
+    REQUIRE(pieces);
+    REQUIRE(pieces->write(5, "end"));
+    REQUIRE(pieces->write(0, "be"));
+    REQUIRE(pieces->finish());
+    CHECK(read_file(file).value() == std::string("be\0\0\0end", 8));
+    CHECK(folder.entries() == 1);
+    CHECK_FALSE(FileInPieces::begin("/dev/null"));
+    CHECK_THAT(FileInPieces::begin(folder.path / "no" / "cloth.yarns").error().text(), Catch::Contains("cloth.yarns"));
+}
+
 TEST_CASE("a write that fails leaves the old file and nothing else, and names the file") {
     const Folder folder;
     const fs::path missing = folder.path / "no" / "such" / "design.weave";

@@ -23,7 +23,6 @@ class CoarseGrid {
     /// Makes the grid's matrix of those of the pieces, one for each block of this rank. All ranks call it at once, as apply().
     void factor(const std::vector<std::unique_ptr<Piece>>& pieces, const std::vector<Part>& parts);
     /// Adds what the grid makes of the residual of own points that move (three numbers each, block after block) to the step.
-    /// `moving`: these points, counted block after block.
     void apply(std::span<const double> residual, std::span<double> step);
 
     [[nodiscard]] std::size_t nodes() const { return m_nodes[0] * m_nodes[1]; }

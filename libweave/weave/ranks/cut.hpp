@@ -55,7 +55,7 @@ struct Cut {
 /// Points of a block if nothing else is said: few enough for many ranks, many enough for little rim.
 inline constexpr std::size_t usual_points = 4096;
 
-/// Cuts a plan, and gives those of its parts that lie from block `first` on, before `last` of them all.
+/// Cuts a plan, and gives the parts of the blocks of a rank.
 /// Errors: what is not relaxed in parts: friction, periods that relax, a crossing that is led to its other side.
 struct CutPlan {
     Cut cut;

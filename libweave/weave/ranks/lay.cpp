@@ -90,13 +90,13 @@ std::array<std::array<int, 2>, 2> images_near(const Cut& cut, const Box& box, co
     return images;
 }
 
-constexpr std::size_t numbers_a_point = 12;
+constexpr std::size_t numbers_a_point = 11;
 
 void write(Comm::Packet& packet, std::size_t to_block, const Met& met) {
     const Point& p = met.point;
     packet.insert(packet.end(), {static_cast<double>(to_block), static_cast<double>(p.yarn), static_cast<double>(p.index),
                                  static_cast<double>(p.block), p.is_frozen ? 1.0 : 0.0, p.planned.x(), p.planned.y(), p.planned.z(),
-                                 static_cast<double>(met.turns), static_cast<double>(met.image[0]), static_cast<double>(met.image[1]), 0.0});
+                                 static_cast<double>(met.turns), static_cast<double>(met.image[0]), static_cast<double>(met.image[1])});
 }
 
 Met read(const double* at) {
