@@ -342,6 +342,5 @@ TEST_CASE("daemon and workers are killed at random moments under several session
 }
 
 TEST_CASE("the same 200 times under 16 sessions", "[.][long]") {
-    // A cloth whose legs are short: one that lasts longer than 24 s, as it may among sixteen, ends early, and its run is another one.
-    kill_under(16, 200, "layer-to-layer", at(sim::Fidelity::standard));
+    kill_under(16, 200, long_cloth, long_run());
 }
