@@ -40,7 +40,6 @@ struct Ended {
 /// Runs by so many ranks; `stop_after`: a rank's caller ends it then.
 Ended run(const Folder& folder, std::size_t ranks, std::size_t stop_after = SIZE_MAX, const std::string& sample = "angle-interlock-b") {
     Ended ended;
-    const Design design = find_sample(sample)->make();
     by_ranks(ranks, [&](Comm& comm) {
         SplitOptions options;
         options.residual = 1e-6;
@@ -49,7 +48,8 @@ Ended run(const Folder& folder, std::size_t ranks, std::size_t stop_after = SIZE
         options.checkpoint_every_s = 0;
         options.watch = [&](const sim::Progress& progress) { return comm.rank() != comm.size() - 1 || progress.iteration < stop_after; };
         if (comm.is_first()) options.note = [&](const std::string& line) { ended.notes.push_back(line); };
-        const auto report = simulate_split(comm, design, plan_of({sample, 0}), options, folder.path / "cloth.yarns");
+        Stretched stretched({sample, 60});
+        const auto report = simulate_split(comm, stretched.design, std::move(stretched.plan), options, folder.path / "cloth.yarns");
         if (comm.is_first()) {
             if (report) ended.report = *report;
             if (!report) ended.trouble = report.error().text();

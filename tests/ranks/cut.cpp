@@ -15,7 +15,7 @@ TEST_CASE("every point belongs to one block, the same whatever the number of ran
         std::map<std::pair<std::uint32_t, std::uint32_t>, std::uint32_t> found;
         std::mutex mutex;
         by_ranks(ranks, [&](Comm& comm) {
-            const CutPlan cut = cut_of(plan, comm, 60);
+            const CutPlan cut = cut_of({"angle-interlock-b", 60}, comm);
             const auto [first, last] = cut.cut.blocks_of(comm.rank(), comm.size());
             const std::lock_guard lock(mutex);
             REQUIRE(cut.parts.size() == last - first);
@@ -39,7 +39,7 @@ TEST_CASE("blocks have about as many points each") {
     for (const char* sample : {"angle-interlock-b", "pocket", "hexagon-tubes"}) {
         INFO(sample);
         SerialComm comm;
-        const CutPlan cut = cut_of(plan_of({sample, 0}), comm, 100);
+        const CutPlan cut = cut_of({sample, 100}, comm);
         std::size_t least = SIZE_MAX, most = 0;
         for (const Part& part : cut.parts) {
             least = std::min(least, part.own.size());
@@ -51,16 +51,18 @@ TEST_CASE("blocks have about as many points each") {
 }
 
 TEST_CASE("what is not computed by several processes is refused, by name") {
-    sim::Plan plan = plan_of({"satin-5", 0});
-    const auto refused = [&] { return cut_plan(plan, 0, 1).error().text(); };
-    plan.scene.friction = 0.2;
-    CHECK_THAT(refused(), Catch::Contains("friction") && Catch::Contains("without mpirun"));
-    plan.scene.friction = 0;
-    plan.rim_force_N[0] = 1;
-    CHECK_THAT(refused(), Catch::Contains("period"));
-    plan.rim_force_N[0].reset();
-    plan.scene.transition.emplace();
-    CHECK_THAT(refused(), Catch::Contains("flip"));
+    Design design = find_sample("satin-5")->make();
+    const auto refused = [&](const sim::SimulationRequest& request) {
+        const BlockPtr block = evaluate(design)->block;
+        const auto plan = sim::PlanInStretches::make(design, *block, request);
+        REQUIRE(plan);
+        return cut_plan(*plan, 0, 1).error().text();
+    };
+    sim::SimulationRequest relaxing;
+    relaxing.relaxing_N_per_mm[0] = 1;
+    CHECK_THAT(refused(relaxing), Catch::Contains("period") && Catch::Contains("without mpirun"));
+    design.scene.friction = 0.2;
+    CHECK_THAT(refused({}), Catch::Contains("friction") && Catch::Contains("without mpirun"));
 }
 
 }  // namespace weave::ranks::testing

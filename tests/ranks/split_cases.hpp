@@ -22,20 +22,40 @@ struct Case {
     std::optional<Region> region = {};
 };
 
-inline sim::Plan plan_of(const Case& of, sim::Fidelity fidelity = sim::Fidelity::draft) {
-    const Design design = find_sample(of.sample)->make();
+inline sim::SimulationRequest request_of(const Case& of) {
     sim::SimulationRequest request;
-    request.fidelity = fidelity;
+    request.fidelity = sim::Fidelity::draft;
     request.reduce = !of.is_whole;
     request.weft_mode = of.weft_mode;
     request.region = of.region;
-    auto plan = sim::make_plan(design, *evaluate(design)->block, request);
+    return request;
+}
+
+inline sim::Plan plan_of(const Case& of) {
+    const Design design = find_sample(of.sample)->make();
+    auto plan = sim::make_plan(design, *evaluate(design)->block, request_of(of));
     REQUIRE(plan);
     return *std::move(plan);
 }
 
-inline CutPlan cut_of(const sim::Plan& plan, const Comm& comm, std::size_t points_a_block) {
-    auto cut = cut_plan(plan, comm.rank(), comm.size(), points_a_block);
+/// A plan in stretches with what it looks at.
+struct Stretched {
+    Design design;
+    BlockPtr block;
+    sim::PlanInStretches plan;
+
+    explicit Stretched(const Case& of) : design(find_sample(of.sample)->make()), block(evaluate(design)->block) {
+        auto made = sim::PlanInStretches::make(design, *block, request_of(of), 64);
+        if (!made) throw std::runtime_error(made.error().text());
+        plan = *std::move(made);
+    }
+    Stretched(const Stretched&) = delete;
+    Stretched& operator=(const Stretched&) = delete;
+};
+
+inline CutPlan cut_of(const Case& of, const Comm& comm) {
+    const Stretched stretched(of);
+    auto cut = cut_plan(stretched.plan, comm.rank(), comm.size(), of.points_a_block);
     if (!cut) throw std::runtime_error(cut.error().text());
     return *std::move(cut);
 }

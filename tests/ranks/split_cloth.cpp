@@ -62,7 +62,7 @@ TEST_CASE("energy, forces and what they are measured by are those of the whole, 
         const double value = energy.evaluate(state, gradient);
 
         SerialComm comm;
-        const CutPlan cut = cut_of(plan, comm, of.points_a_block);
+        const CutPlan cut = cut_of(of, comm);
         REQUIRE(cut.cut.count() > 1);
         std::vector<double> own = planned(cut.parts);
         SplitCloth cloth(comm, cut.cut, cut.parts, executor, own);
@@ -90,7 +90,7 @@ TEST_CASE("second derivatives and safe steps are those of the whole") {
         std::vector<double> state = fabric.state();
         sim::HostCloth<double> whole(energy, state);
         SerialComm comm;
-        const CutPlan cut = cut_of(plan, comm, of.points_a_block);
+        const CutPlan cut = cut_of(of, comm);
         std::vector<double> own = planned(cut.parts);
         SplitCloth parts(comm, cut.cut, cut.parts, executor, own);
         whole.evaluate();
@@ -116,10 +116,9 @@ TEST_CASE("second derivatives and safe steps are those of the whole") {
 }
 
 TEST_CASE("the preconditioner of blocks is symmetric and leads downhill") {
-    const sim::Plan plan = plan_of({"hexagon-tubes", 200});
     const sim::Executor executor(1);
     SerialComm comm;
-    const CutPlan cut = cut_of(plan, comm, 200);
+    const CutPlan cut = cut_of({"hexagon-tubes", 200}, comm);
     std::vector<double> own = planned(cut.parts);
     SplitCloth cloth(comm, cut.cut, cut.parts, executor, own);
     cloth.evaluate();
@@ -139,11 +138,11 @@ TEST_CASE("the preconditioner of blocks is symmetric and leads downhill") {
 namespace {
 
 /// The state after so many steps, of all ranks in their order, with what was decided by.
-std::vector<double> after_steps(const sim::Plan& plan, std::size_t points_a_block, std::size_t ranks, int steps) {
+std::vector<double> after_steps(const Case& of, std::size_t ranks, int steps) {
     std::vector<std::vector<double>> of_rank(ranks);
     by_ranks(ranks, [&](Comm& comm) {
         const sim::Executor executor(1);
-        const CutPlan cut = cut_of(plan, comm, points_a_block);
+        const CutPlan cut = cut_of(of, comm);
         std::vector<double> own = planned(cut.parts);
         SplitCloth cloth(comm, cut.cut, cut.parts, executor, own);
         sim::Relaxing<SplitCloth> relaxing;
@@ -166,10 +165,9 @@ std::vector<double> after_steps(const sim::Plan& plan, std::size_t points_a_bloc
 TEST_CASE("any number of ranks comes to the same bits") {
     for (const Case& of : {Case{"angle-interlock-b", 60}, Case{"twill-g", 40, true}, Case{"hexagon-tubes", 120}}) {
         INFO(of.sample);
-        const sim::Plan plan = plan_of(of);
-        const std::vector<double> alone = after_steps(plan, of.points_a_block, 1, 25);
+        const std::vector<double> alone = after_steps(of, 1, 25);
         REQUIRE(alone[2] > 20);
-        for (const std::size_t ranks : {2, 3, 8}) CHECK(after_steps(plan, of.points_a_block, ranks, 25) == alone);
+        for (const std::size_t ranks : {2, 3, 8}) CHECK(after_steps(of, ranks, 25) == alone);
     }
 }
 
@@ -188,7 +186,7 @@ TEST_CASE("near a rest of the whole the blocks come to that rest") {
         REQUIRE(sim::relax(energy, state, options).ending == sim::Ending::converged);
 
         SerialComm comm;
-        const CutPlan cut = cut_of(plan, comm, of.points_a_block);
+        const CutPlan cut = cut_of(of, comm);
         std::vector<double> own = planned(cut.parts);
         SplitCloth cloth(comm, cut.cut, cut.parts, executor, own);
         const std::vector<double> rest = taken(state, slots_of(cut.parts, fabric));

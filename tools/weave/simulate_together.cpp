@@ -89,9 +89,11 @@ Status check_together(const SimulateWish& wish) {
     return {};
 }
 
+/// The plan looks at the design and its block, which therefore stay where they are.
 struct Prepared {
-    Design design;
-    sim::Plan plan;
+    std::unique_ptr<const Design> design;
+    BlockPtr block;
+    sim::PlanInStretches plan;
 };
 
 Result<Prepared> prepare(CommandOutcome& outcome, const SimulateWish& wish) {
@@ -100,8 +102,12 @@ Result<Prepared> prepare(CommandOutcome& outcome, const SimulateWish& wish) {
     WEAVE_TRY(const Cloth cloth, load_cloth(outcome, wish.file));
     auto task = understand(cloth, wish);
     if (!task) return std::move(task).error().in(wish.file);
-    WEAVE_TRY(sim::Plan plan, plan_of(task->design, *cloth.evaluation.block, task->request, wish.file));
-    return Prepared{std::move(task->design), std::move(plan)};
+    Prepared prepared{std::make_unique<const Design>(std::move(task->design)), cloth.evaluation.block, {}};
+    const Progress progress("planning " + wish.file);
+    auto plan = sim::PlanInStretches::make(*prepared.design, *prepared.block, task->request);
+    if (!plan) return std::move(plan).error().in(wish.file);
+    prepared.plan = *std::move(plan);
+    return prepared;
 }
 
 /// The processes, until the program ends: mpirun ends all once one of them has, and the first shall have told what is wrong.
@@ -155,12 +161,12 @@ Status simulate_together(CommandOutcome& outcome, const SimulateWish& wish) {
     if (std::ranges::count(failed, 1.0) > 0) return system_fault("another process could not begin; it tells why");
     tell_when_ended(comm->is_first() ? last_words(wish.checkpoint, "") : "");
     stop_on_user_signal();
-    Teller teller(wish.residual.value_or(prepared->plan.goal));
-    const Result<Json> report = ranks::simulate_split(*comm, prepared->design, std::move(prepared->plan), options_of(*comm, wish, teller), wish.out);
+    Teller teller(wish.residual.value_or(prepared->plan.plan().goal));
+    const Result<Json> report = ranks::simulate_split(*comm, *prepared->design, std::move(prepared->plan), options_of(*comm, wish, teller), wish.out);
     tell_when_ended("");
     if (!report) return told(*comm, report.error(), report.error().message.find("it tells why") == std::string::npos);
     teller.end();
-    return tell(outcome, *comm, prepared->design, *report, wish);
+    return tell(outcome, *comm, *prepared->design, *report, wish);
 }
 
 }  // namespace weave::program

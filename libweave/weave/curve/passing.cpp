@@ -38,15 +38,24 @@ CubicPiece difference(const CubicPiece& a, const CubicPiece& b) {
 
 class Line {
   public:
-    Line(const std::vector<LineYarn>& yarns, const LineSpacing& spacing)
-        : m_yarns(yarns), m_spacing(spacing) {
+    Line(const std::vector<LineYarn>& yarns, const LineSpacing& spacing, LineWay way = {})
+        : m_yarns(yarns), m_spacing(spacing), m_way(std::move(way)) {
         for (const LineYarn& yarn : yarns) m_heights.push_back(heights(yarn));
-        find_passes();
-        set_aside();
     }
 
-    std::vector<Lead> leads(std::size_t effort) {
-        if (m_passes.empty() && effort < most_effort) return all_leads(1);
+    LineWay find_way(std::size_t effort) && {
+        find_passes();
+        set_aside();
+        m_way.keys = enough_keys(effort);
+        return std::move(m_way);
+    }
+
+    std::vector<Lead> leads() const { return all_leads(m_way.keys); }
+
+  private:
+    /// Key points from stack to stack that keep all apart, led as far aside as it takes.
+    std::size_t enough_keys(std::size_t effort) {
+        if (m_passes.empty() && effort < most_effort) return 1;
         for (std::size_t keys = 2; keys <= most_keys; keys *= 2) {
             for (const bool wider : {false, true}) {
                 if (wider) widen();
@@ -54,15 +63,13 @@ class Line {
                     --effort;
                     continue;
                 }
-                std::vector<Lead> found = all_leads(keys);
-                if (keep_apart(found)) return found;
+                if (keep_apart(all_leads(keys))) return keys;
             }
         }
-        m_is_level_in_stacks = true;
-        return all_leads(most_keys);
+        m_way.is_level_in_stacks = true;
+        return most_keys;
     }
 
-  private:
     Spline heights(const LineYarn& yarn) const {
         std::vector<Vec3> keys;
         for (std::size_t k = 0; k < yarn.levels.size(); ++k) {
@@ -79,7 +86,7 @@ class Line {
     void find_passes() {
         std::vector<std::vector<CubicPiece>> pieces(m_yarns.size());
         for (std::size_t a = 0; a < m_yarns.size(); ++a) {
-            m_led.emplace_back(m_heights[a].segments(), std::uint8_t{0});
+            m_way.led.emplace_back(m_heights[a].segments(), false);
             for (std::size_t s = 0; s < m_heights[a].segments(); ++s)
                 pieces[a].push_back(bezier(m_heights[a], s));
             for (std::size_t b = 0; b < a; ++b) find_passes(a, b, pieces[a], pieces[b]);
@@ -95,33 +102,33 @@ class Line {
             for (Vec3& point : apart) point.y() = 0;
             if (stays_off_axis(apart, near_levels * m_spacing.level_mm)) continue;
             m_passes.push_back({a, b, s});
-            m_led[a][s - first_a] = m_led[b][s - first_b] = 1;
+            m_way.led[a][s - first_a] = m_way.led[b][s - first_b] = true;
         }
     }
 
     /// Every yarn that is led aside anywhere gets its own distance from the line.
     void set_aside() {
-        m_aside.assign(m_yarns.size(), 0);
+        m_way.aside_mm.assign(m_yarns.size(), 0);
         std::vector<std::size_t> led;
         for (std::size_t a = 0; a < m_yarns.size(); ++a) {
-            if (std::find(m_led[a].begin(), m_led[a].end(), 1) != m_led[a].end()) led.push_back(a);
+            if (std::ranges::find(m_way.led[a], true) != m_way.led[a].end()) led.push_back(a);
         }
         if (led.size() < 2) return;
         const double gaps = static_cast<double>(led.size()) - 1,
                      step = std::min(m_spacing.wish_aside_mm, 2 * m_spacing.most_aside_mm / gaps);
         for (std::size_t k = 0; k < led.size(); ++k)
-            m_aside[led[k]] = (static_cast<double>(k) - gaps / 2) * step;
+            m_way.aside_mm[led[k]] = (static_cast<double>(k) - gaps / 2) * step;
     }
 
     /// Leads every yarn aside one segment further both ways.
     void widen() {
-        for (std::vector<std::uint8_t>& led : m_led) {
-            const std::vector<std::uint8_t> before = led;
+        for (std::vector<bool>& led : m_way.led) {
+            const std::vector<bool> before = led;
             const std::size_t n = led.size();
             for (std::size_t s = 0; s < n; ++s) {
-                if (before[s] == 0) continue;
-                if (s + 1 < n || m_spacing.is_periodic) led[(s + 1) % n] = 1;
-                if (s > 0 || m_spacing.is_periodic) led[(s + n - 1) % n] = 1;
+                if (!before[s]) continue;
+                if (s + 1 < n || m_spacing.is_periodic) led[(s + 1) % n] = true;
+                if (s > 0 || m_spacing.is_periodic) led[(s + n - 1) % n] = true;
             }
         }
     }
@@ -129,7 +136,7 @@ class Line {
     std::vector<Lead> all_leads(std::size_t keys) const {
         std::vector<Lead> leads;
         for (std::size_t a = 0; a < m_yarns.size(); ++a) {
-            const bool goes_plainly = m_aside[a] == 0 && !m_is_level_in_stacks;
+            const bool goes_plainly = m_way.aside_mm[a] == 0 && !m_way.is_level_in_stacks;
             leads.push_back(lead(a, goes_plainly ? 1 : keys));
         }
         return leads;
@@ -142,15 +149,15 @@ class Line {
             const std::size_t s = k / keys, part = k % keys;
             const double way = static_cast<double>(part) / static_cast<double>(keys);
             lead.level.push_back(part == 0 ? m_yarns[yarn].levels[s] : level_between(yarn, s, way));
-            const bool aside = part != 0 && m_led[yarn][s] != 0;
-            lead.aside_mm.push_back(aside ? m_aside[yarn] * std::sin(std::numbers::pi * way) : 0);
+            const bool aside = part != 0 && m_way.led[yarn][s];
+            lead.aside_mm.push_back(aside ? m_way.aside_mm[yarn] * std::sin(std::numbers::pi * way) : 0);
         }
         return lead;
     }
 
     /// The level at which a yarn runs at `way`, 0 to 1, from stack `s` of its line to the next.
     double level_between(std::size_t yarn, std::size_t s, double way) const {
-        if (!m_is_level_in_stacks)
+        if (!m_way.is_level_in_stacks)
             return m_heights[yarn].place(static_cast<double>(s) + way).z() / m_spacing.level_mm;
         const std::vector<double>& levels = m_yarns[yarn].levels;
         const double from = levels[s], to = levels[(s + 1) % levels.size()];
@@ -178,7 +185,7 @@ class Line {
             curves.push_back(curve(a, leads[a].keys == keys ? leads[a] : lead(a, keys)));
         }
         return std::all_of(m_passes.begin(), m_passes.end(), [&](const Pass& pass) {
-            const double least = share_kept * std::abs(m_aside[pass.yarn] - m_aside[pass.other]);
+            const double least = share_kept * std::abs(m_way.aside_mm[pass.yarn] - m_way.aside_mm[pass.other]);
             for (std::size_t part = 0; part < keys; ++part) {
                 const auto piece = [&](std::size_t yarn) {
                     return bezier(curves[yarn], (pass.segment - m_yarns[yarn].first) * keys + part);
@@ -193,16 +200,17 @@ class Line {
     const LineSpacing& m_spacing;
     std::vector<Spline> m_heights;
     std::vector<Pass> m_passes;
-    std::vector<std::vector<std::uint8_t>> m_led;  ///< per yarn and segment: led aside there
-    std::vector<double> m_aside;
-    bool m_is_level_in_stacks = false;  ///< and climbs between them as half a cosine does
+    LineWay m_way;
 };
 
 }  // namespace
 
-std::vector<Lead> lead_past(const std::vector<LineYarn>& yarns, const LineSpacing& spacing,
-                            std::size_t effort) {
-    return Line(yarns, spacing).leads(effort);
+LineWay find_way(const std::vector<LineYarn>& yarns, const LineSpacing& spacing, std::size_t effort) {
+    return Line(yarns, spacing).find_way(effort);
+}
+
+std::vector<Lead> leads_along(const std::vector<LineYarn>& yarns, const LineSpacing& spacing, const LineWay& way) {
+    return Line(yarns, spacing, way).leads();
 }
 
 }  // namespace weave

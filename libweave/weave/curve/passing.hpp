@@ -27,7 +27,15 @@ struct Lead {
     std::vector<double> level, aside_mm;  ///< per key point
 };
 
-/// The furthest that lead_past can start on.
+/// How the yarns of a line are led past one another, in little memory: their ways follow from it.
+struct LineWay {
+    std::size_t keys = 1;               ///< from stack to stack, of a yarn that is led aside anywhere
+    bool is_level_in_stacks = false;    ///< and climbs between them as half a cosine does
+    std::vector<double> aside_mm;       ///< of each yarn
+    std::vector<std::vector<bool>> led; ///< of each yarn and segment: led aside there
+};
+
+/// The furthest that find_way can start on.
 inline constexpr std::size_t most_effort = 6;
 
 /// Leads the yarns of a line past one another (paper, A.3). Where the curves of two of them come within a
@@ -38,7 +46,9 @@ inline constexpr std::size_t most_effort = 6;
 /// tried; `effort`, to most_effort, leaves out so many of the six tries. Where none helps, as when two change
 /// places right beside a stack, every yarn of the line runs level in the stacks and changes its level midway
 /// between them, so that no two pass near a stack; with most_effort that is done even where none pass.
-std::vector<Lead> lead_past(const std::vector<LineYarn>& yarns, const LineSpacing& spacing,
-                            std::size_t effort = 0);
+LineWay find_way(const std::vector<LineYarn>& yarns, const LineSpacing& spacing, std::size_t effort = 0);
+
+/// The ways of all yarns of a line that are led so.
+std::vector<Lead> leads_along(const std::vector<LineYarn>& yarns, const LineSpacing& spacing, const LineWay& way);
 
 }  // namespace weave

@@ -1,6 +1,6 @@
 #pragma once
 
-#include <weave/sim/plan.hpp>
+#include <weave/sim/plan_in_stretches.hpp>
 
 #include <array>
 #include <cstddef>
@@ -55,12 +55,13 @@ struct Cut {
 /// Points of a block if nothing else is said: few enough for many ranks, many enough for little rim.
 inline constexpr std::size_t usual_points = 4096;
 
-/// Cuts a plan, and gives the parts of the blocks of a rank.
-/// Errors: what is not relaxed in parts: friction, periods that relax, a crossing that is led to its other side.
+/// Cuts a plan, and gives the parts of the blocks of a rank, which never holds other points than these. It makes all stretches of the
+/// plan three times: no rank waits for another.
+/// Errors: what is not relaxed in parts: friction, periods that relax.
 struct CutPlan {
     Cut cut;
     std::vector<Part> parts;  ///< of the blocks of this rank
 };
-Result<CutPlan> cut_plan(const sim::Plan& plan, std::size_t rank, std::size_t ranks, std::size_t points_a_block = usual_points);
+Result<CutPlan> cut_plan(const sim::PlanInStretches& plan, std::size_t rank, std::size_t ranks, std::size_t points_a_block = usual_points);
 
 }  // namespace weave::ranks

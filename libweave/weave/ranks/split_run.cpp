@@ -189,13 +189,13 @@ Json report_of(Comm& comm, const Cut& cut, const std::vector<Part>& parts, const
 
 }  // namespace
 
-Result<Json> simulate_split(Comm& comm, const Design& design, sim::Plan plan, const SplitOptions& options, const std::filesystem::path& out) {
+Result<Json> simulate_split(Comm& comm, const Design& design, sim::PlanInStretches plan, const SplitOptions& options, const std::filesystem::path& out) {
     WEAVE_TRY(const CutPlan dealt, cut_plan(plan, comm.rank(), comm.size(), options.points_a_block));
     const Cut& cut = dealt.cut;
     const Outline outline = outline_of(design, plan, dealt.parts);
-    const double goal = options.residual.value_or(plan.goal);
+    const double goal = options.residual.value_or(outline.goal);
     std::optional<Checkpoints> checkpoints;
-    if (!options.checkpoints.empty()) checkpoints.emplace(options.checkpoints, run_key(design, plan, cut));
+    if (!options.checkpoints.empty()) checkpoints.emplace(options.checkpoints, run_key(design, plan.plan(), cut));
     plan = {};
     Stand stand = as_planned(dealt.parts);
     if (checkpoints) {

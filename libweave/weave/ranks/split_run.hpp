@@ -3,7 +3,7 @@
 #include <weave/ranks/checkpoint.hpp>
 #include <weave/ranks/comm.hpp>
 #include <weave/ranks/cut.hpp>
-#include <weave/sim/plan.hpp>
+#include <weave/sim/plan_in_stretches.hpp>
 #include <weave/sim/relax.hpp>
 #include <weave/sim/yarns.hpp>
 
@@ -32,8 +32,8 @@ struct SplitOptions {
 /// Relaxes a plan by all ranks together, as simulate() does by one, and writes its yarns to `out`, on the first rank. Gives the
 /// report, on all ranks the same. Between legs, of a fixed number of steps, the solver remembers nothing, so that a run that goes
 /// on from a checkpoint comes to the bits of one that was left alone, by whatever number of ranks. No rank holds the points of
-/// more than its blocks and their guests once the plan is dealt out. Errors: what is not computed so (cut_plan()), a checkpoint
+/// more than its blocks and their guests. Errors: what is not computed so (cut_plan()), a checkpoint
 /// of another run, `out` that cannot be written.
-Result<Json> simulate_split(Comm& comm, const Design& design, sim::Plan plan, const SplitOptions& options, const std::filesystem::path& out);
+Result<Json> simulate_split(Comm& comm, const Design& design, sim::PlanInStretches plan, const SplitOptions& options, const std::filesystem::path& out);
 
 }  // namespace weave::ranks

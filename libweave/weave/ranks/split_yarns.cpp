@@ -26,8 +26,8 @@ std::optional<std::size_t> part_with(const std::vector<Part>& parts, std::uint32
     return {};
 }
 
-double points_per_key_of(const YarnCurve& curve, std::size_t points) {
-    const std::size_t keys = curve.keys.size() - (curve.is_periodic ? 0 : 1), segments = points - (curve.is_periodic ? 0 : 1);
+double points_per_key_of(const sim::PlanInStretches& plan, std::size_t yarn) {
+    const std::size_t open = plan.plan().scene.yarns[yarn].is_periodic ? 0 : 1, keys = plan.keys(yarn) - open, segments = plan.points(yarn) - open;
     return keys > 0 ? static_cast<double>(segments) / static_cast<double>(keys) : 0;
 }
 
@@ -198,7 +198,8 @@ Comm::Packet to_first(Comm& comm, std::size_t from, Comm::Packet own, std::size_
 
 }  // namespace
 
-Outline outline_of(const Design& design, const sim::Plan& plan, const std::vector<Part>& parts) {
+Outline outline_of(const Design& design, const sim::PlanInStretches& stretches, const std::vector<Part>& parts) {
+    const sim::Plan& plan = stretches.plan();
     Outline outline;
     Yarns& yarns = outline.bare;
     yarns.title = design.title;
@@ -209,30 +210,26 @@ Outline outline_of(const Design& design, const sim::Plan& plan, const std::vecto
     yarns.region = plan.curves.region;
     yarns.cloth_rows = plan.cloth_rows;
     yarns.cloth_columns = plan.cloth_columns;
-    std::vector<std::size_t> index_of_curve(plan.curves.yarns.size(), plan.curve_of.size());
     for (std::size_t y = 0; y < plan.curve_of.size(); ++y) {
-        index_of_curve[plan.curve_of[y]] = y;
-        const YarnCurve& curve = plan.curves.yarns[plan.curve_of[y]];
         const sim::SimYarn& from = plan.scene.yarns[y];
-        SimulatedYarn yarn = sim::labelled_yarn(design, curve);
+        SimulatedYarn yarn = sim::labelled_yarn(design, plan.curves.yarns[plan.curve_of[y]]);
         yarn.radius_mm = from.radius_mm;
         yarn.spline.is_periodic = from.is_periodic;
         yarn.spline.shift = from.shift;
-        yarn.planned_length_mm = from.is_periodic ? from.shift.norm() : (from.control.back() - from.control.front()).norm();
+        yarn.planned_length_mm = from.is_periodic ? from.shift.norm() : (stretches.point(y, stretches.points(y) - 1) - stretches.point(y, 0)).norm();
         yarns.yarns.push_back(std::move(yarn));
-        outline.per_key.push_back(points_per_key_of(curve, from.control.size()));
+        outline.per_key.push_back(points_per_key_of(stretches, y));
     }
-    for (Crossing crossing : plan.curves.crossings) {
-        crossing.weft = index_of_curve[crossing.weft];
-        crossing.warp = index_of_curve[crossing.warp];
-        if (crossing.weft == plan.curve_of.size() || crossing.warp == plan.curve_of.size()) continue;
-        const std::size_t points = plan.scene.yarns[crossing.weft].control.size();
-        const auto index = static_cast<std::size_t>(std::lround(outline.per_key[crossing.weft] * static_cast<double>(crossing.weft_key))) % points;
+    sim::CrossedYarns crossed;
+    stretches.each_crossing([&](const Crossing& crossing) {
+        crossed.add(crossing);
+        if (crossing.weft == sim::PlanInStretches::none || crossing.warp == sim::PlanInStretches::none) return;
+        const auto index = static_cast<std::size_t>(std::lround(outline.per_key[crossing.weft] * static_cast<double>(crossing.weft_key))) % stretches.points(crossing.weft);
         const auto block = part_with(parts, static_cast<std::uint32_t>(crossing.weft), static_cast<std::uint32_t>(index));
         if (block) outline.crossings.push_back({crossing, outline.all_crossings, *block});
         ++outline.all_crossings;
-    }
-    outline.coverage = sim::coverage_of(plan);
+    });
+    outline.coverage = sim::coverage_of(plan, crossed);
     outline.lines = sim::lines_json(plan);
     outline.fidelity = plan.fidelity;
     outline.points_per_key = plan.points_per_key;

@@ -1,7 +1,7 @@
 #pragma once
 
 #include <weave/ranks/split_cloth.hpp>
-#include <weave/sim/plan.hpp>
+#include <weave/sim/plan_in_stretches.hpp>
 #include <weave/sim/yarns.hpp>
 
 #include <cstddef>
@@ -27,7 +27,7 @@ struct Outline {
     sim::Fidelity fidelity = sim::Fidelity::standard;
     double points_per_key = 0, goal = 0;
 };
-Outline outline_of(const Design& design, const sim::Plan& plan, const std::vector<Part>& parts);
+Outline outline_of(const Design& design, const sim::PlanInStretches& plan, const std::vector<Part>& parts);
 
 /// What is measured on yarns at rest, the same on all ranks.
 struct Measured {

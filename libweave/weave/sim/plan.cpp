@@ -1,17 +1,16 @@
 #include <weave/sim/plan.hpp>
 
+#include <weave/sim/plan_in_stretches.hpp>
+
 #include <weave/core/text.hpp>
 #include <weave/core/units.hpp>
-#include <weave/curve/spline.hpp>
 #include <weave/design/pins.hpp>
 #include <weave/loom/pick_table.hpp>
-#include <weave/sim/fabric.hpp>
-
-#include <Eigen/Geometry>
 
 #include <algorithm>
 #include <cmath>
 #include <cstdio>
+#include <limits>
 #include <set>
 
 namespace weave::sim {
@@ -21,7 +20,6 @@ namespace {
 /// Wefts are inserted a little longer than the cloth is wide.
 constexpr double weft_excess = 0.01;
 constexpr double most_neighbours = 1e4;  ///< of one contact sample, as a rough bound from above tells
-constexpr std::size_t rim_points = 2;  ///< control points held at a frozen end
 
 struct Resolution {
     double points_per_key, sample_spacing, goal;
@@ -100,28 +98,55 @@ Result<Block> first_repeat(const Block& block, std::size_t rows, std::size_t col
 }
 
 /// Length that a weft is cut to: as it lies on the loom, straight along each pick and round each turn.
-double inserted_length(const YarnCurve& curve) {
-    if (curve.is_periodic && curve.shift.y() != 0) return curve.shift.norm();
-    const auto between = [](const KeyPoint& from, const KeyPoint& to, const Vec3& shift) {
+class InsertedLength {
+  public:
+    explicit InsertedLength(const YarnCurve& curve) : m_curve(curve) {}
+    void add(const KeyPoint& key) {
+        if (m_before) m_mm += between(*m_before, key, Vec3(0, 0, 0));
+        if (!m_first) m_first = key;
+        m_before = key;
+    }
+    [[nodiscard]] double mm() const {
+        if (m_curve.is_periodic && m_curve.shift.y() != 0) return m_curve.shift.norm();
+        return m_mm + (m_curve.is_periodic ? between(*m_before, *m_first, m_curve.shift) : 0);
+    }
+
+  private:
+    static double between(const KeyPoint& from, const KeyPoint& to, const Vec3& shift) {
         Vec3 way = to.place + shift - from.place;
         // What a pick climbs within the cloth it does only later, when the warps press it there.
         if (from.row != KeyPoint::none && to.row != KeyPoint::none) way.z() = 0;
         return way.norm();
-    };
-    double length = 0;
-    for (std::size_t k = 0; k + 1 < curve.keys.size(); ++k)
-        length += between(curve.keys[k], curve.keys[k + 1], Vec3(0, 0, 0));
-    if (curve.is_periodic) length += between(curve.keys.back(), curve.keys.front(), curve.shift);
-    return length;
-}
+    }
+    const YarnCurve& m_curve;
+    std::optional<KeyPoint> m_first, m_before;
+    double m_mm = 0;
+};
+
+}  // namespace
 
 /// Makes a plan step by step; each step tells what it chose.
 class Planner {
   public:
-    Planner(const Design& design, const Block& block, const SimulationRequest& request)
-        : m_design(design), m_block(block), m_request(request) {}
+    /// `most_at_once`: points of a yarn that may be looked at together.
+    Planner(const Design& design, const Block& block, const SimulationRequest& request, std::size_t most_at_once)
+        : m_design(design), m_block(block), m_request(request), m_most_at_once(most_at_once) {}
 
-    Result<Plan> run() {
+    /// Without points.
+    Result<PlanInStretches> in_stretches() {
+        WEAVE_CHECK_OK(run());
+        return std::move(m_made);
+    }
+
+    Result<Plan> whole() {
+        m_keeps_points = true;
+        WEAVE_CHECK_OK(run());
+        m_plan.curves = all_curves(*m_made.m_layout);
+        return std::move(m_plan);
+    }
+
+  private:
+    Status run() {
         const Resolution resolution = resolution_of(m_request.fidelity);
         m_plan.fidelity = m_request.fidelity;
         m_plan.goal = resolution.goal;
@@ -133,19 +158,20 @@ class Planner {
         m_plan.scene.sample_spacing = m_request.sample_spacing.value_or(resolution.sample_spacing);
         WEAVE_CHECK_OK(check_request());
         WEAVE_CHECK_OK(check_pins(m_design.scene, m_block));
-        WEAVE_CHECK_OK(lay_curves());
+        WEAVE_CHECK_OK(lay_out());
+        m_plan.curves = m_made.m_layout->bare();
         WEAVE_CHECK_OK(set_boundaries());
         WEAVE_CHECK_OK(find_held());
+        make_points();
         for (std::size_t c = 0; c < m_plan.curves.yarns.size(); ++c) add_yarn(c);
         if (m_plan.scene.yarns.empty()) return invalid("no yarn touches another, so there is nothing to simulate");
         WEAVE_CHECK_OK(check_balance());
         WEAVE_CHECK_OK(check_freedom());
         WEAVE_CHECK_OK(check_thickness());
         set_terms();
-        return std::move(m_plan);
+        return {};
     }
 
-  private:
     void tell(std::string term, std::string choice, std::string reason) {
         m_plan.lines.push_back({std::move(term), std::move(choice), std::move(reason)});
     }
@@ -158,7 +184,7 @@ class Planner {
         return {};
     }
 
-    Status lay_curves() {
+    Status lay_out() {
         const CurveOptions options{m_request.region, m_request.weft_mode};
         const bool periodic = m_design.scene.boundary_x == Boundary::periodic &&
                               m_design.scene.boundary_y == Boundary::periodic && !m_request.region &&
@@ -169,19 +195,21 @@ class Planner {
         if (periodic && m_request.reduce && !local) repeat = smallest_repeat(m_design, m_block);
         m_plan.repeats = {m_block.rows() / repeat[0], m_block.columns() / repeat[1]};
         const std::size_t cells = m_plan.repeats[0] * m_plan.repeats[1];
-        if (cells == 1) {
-            WEAVE_TRY(m_plan.curves, cloth_curves(m_design, m_block, options));
+        if (cells > 1) {
+            WEAVE_TRY(Block small, first_repeat(m_block, repeat[0], repeat[1]));
+            m_made.m_repeat = std::make_unique<const Block>(std::move(small));
+        }
+        WEAVE_TRY(ClothLayout layout, ClothLayout::make(m_design, cells > 1 ? *m_made.m_repeat : m_block, options));
+        m_made.m_layout = std::make_unique<const ClothLayout>(std::move(layout));
+        if (cells > 1)
+            tell("repeat", "1 of " + std::to_string(cells) + " cells",
+                 "rows repeat after " + std::to_string(repeat[0]) + " and columns after " + std::to_string(repeat[1]));
+        else
             tell("repeat", "whole",
                  !periodic            ? "only a periodic cloth is its repeat"
                  : local              ? "a field or a held crossing acts at one place of the cloth"
                  : !m_request.reduce  ? "as asked for"
                                       : "the cloth has no smaller repeat");
-            return {};
-        }
-        WEAVE_TRY(const Block small, first_repeat(m_block, repeat[0], repeat[1]));
-        WEAVE_TRY(m_plan.curves, cloth_curves(m_design, small, options));
-        tell("repeat", "1 of " + std::to_string(cells) + " cells",
-             "rows repeat after " + std::to_string(repeat[0]) + " and columns after " + std::to_string(repeat[1]));
         return {};
     }
 
@@ -224,15 +252,13 @@ class Planner {
     /// The key points of held crossings, by curve.
     Status find_held() {
         m_held.resize(m_plan.curves.yarns.size());
-        for (const auto& [pick, end] : m_request.held) {
-            bool found = false;
-            for (const Crossing& crossing : m_plan.curves.crossings) {
-                if (crossing.pick != pick || crossing.end != end) continue;
-                m_held[crossing.weft].push_back(crossing.weft_key);
-                m_held[crossing.warp].push_back(crossing.warp_key);
-                found = true;
-            }
-            if (!found)
+        if (m_request.held.empty()) return {};
+        std::vector<bool> found(m_request.held.size(), false);
+        for (std::size_t c = 0; c < m_plan.curves.yarns.size() && m_plan.curves.yarns[c].system == System::weft; ++c)
+            m_made.m_layout->each_crossing(c, [&](const Crossing& crossing) { hold(crossing, found); });
+        for (std::size_t h = 0; h < found.size(); ++h) {
+            const auto& [pick, end] = m_request.held[h];
+            if (!found[h])
                 return invalid("pick " + std::to_string(pick + 1) + " and end " + std::to_string(end + 1) +
                                    " do not cross in what is simulated",
                                "pins");
@@ -240,14 +266,43 @@ class Planner {
         return {};
     }
 
+    void hold(const Crossing& crossing, std::vector<bool>& found) {
+        for (std::size_t h = 0; h < found.size(); ++h) {
+            if (m_request.held[h] != std::array{crossing.pick, crossing.end}) continue;
+            m_held[crossing.weft].push_back(crossing.weft_key);
+            m_held[crossing.warp].push_back(crossing.warp_key);
+            found[h] = true;
+        }
+    }
+
+    void make_points() {
+        const ClothLayout& layout = *m_made.m_layout;
+        std::vector<std::size_t> keys;
+        for (std::size_t c = 0; c < layout.bare().yarns.size(); ++c) keys.push_back(layout.keys(c));
+        const auto keys_of = [&layout](std::size_t curve, std::size_t first, std::size_t last, std::vector<KeyPoint>& to) { layout.add_keys(curve, first, last, to); };
+        m_made.m_points = std::make_unique<const PlannedPoints>(m_design, layout.bare(), std::move(keys), keys_of, PlannedPoints::Held{m_rim, std::move(m_held)},
+                                                                m_plan.points_per_key, m_most_at_once);
+    }
+
     /// A yarn that is loose all along is only a placeholder: nothing holds it, and it would come to rest nowhere.
-    [[nodiscard]] static bool is_loose(const YarnCurve& curve) {
-        return std::ranges::all_of(curve.keys, &KeyPoint::loose);
+    [[nodiscard]] bool is_loose(std::size_t c) const {
+        bool loose = true;
+        m_made.m_points->each_key(c, [&](const KeyPoint& key) { return loose = key.loose; });
+        return loose;
+    }
+
+    [[nodiscard]] double inserted_length(std::size_t c) const {
+        InsertedLength length(m_plan.curves.yarns[c]);
+        m_made.m_points->each_key(c, [&](const KeyPoint& key) {
+            length.add(key);
+            return true;
+        });
+        return length.mm();
     }
 
     void add_yarn(std::size_t c) {
         const YarnCurve& curve = m_plan.curves.yarns[c];
-        if (is_loose(curve)) {
+        if (is_loose(c)) {
             ++m_left_out;
             return;
         }
@@ -259,8 +314,6 @@ class Planner {
         yarn.is_periodic = curve.is_periodic;
         yarn.shift = curve.shift;
         yarn.turns = {curve.is_periodic && curve.shift.x() != 0 ? 1 : 0, curve.is_periodic && curve.shift.y() != 0 ? 1 : 0};
-        yarn.control = control_points(curve);
-        yarn.planned_mm = control_length(yarn);
         yarn.radius_mm = type.radius_mm * system.radius_scale.value_or(1);
         yarn.stretch_N = type.stretch_stiffness_N * stiffness;
         yarn.bending_N_mm2 = type.bending_stiffness_N_mm2 * stiffness;
@@ -268,64 +321,35 @@ class Planner {
         yarn.gram_per_mm = units::gram_per_mm(type.linear_density_tex);
         yarn.is_fed = warp || system.strain.has_value();
         yarn.strain = system.strain.value_or(usual_strain);
-        yarn.rest_mm = inserted_length(curve) * (1 + weft_excess);
-        yarn.frozen = frozen_points(c, yarn.control.size());
+        yarn.rest_mm = inserted_length(c) * (1 + weft_excess);
+        measure_points(c, yarn);
         m_plan.scene.yarns.push_back(std::move(yarn));
         m_plan.curve_of.push_back(c);
     }
 
-    [[nodiscard]] std::vector<Vec3> control_points(const YarnCurve& curve) const {
-        std::vector<Vec3> places;
-        for (const KeyPoint& key : curve.keys) places.push_back(key.place);
-        const Spline spline = interpolate(places, curve.is_periodic, curve.shift);
-        const auto segments = static_cast<double>(spline.segments());
-        const auto wanted = static_cast<std::size_t>(std::max(1.0, std::round(segments * m_plan.points_per_key)));
-        return resample(spline, curve.is_periodic ? wanted : wanted + 1).control;
-    }
-
-    [[nodiscard]] std::vector<std::uint8_t> frozen_points(std::size_t c, std::size_t points) const {
-        const YarnCurve& curve = m_plan.curves.yarns[c];
-        const bool pinned = std::ranges::any_of(m_design.scene.pins, [&](const Pin& pin) {
-            return pin.is_pick == (curve.system == System::weft) && pin.number == curve.number;
-        });
-        if (pinned) return std::vector<std::uint8_t>(points, 1);
-        const std::size_t axis = curve.system == System::warp ? 0 : 1;
-        const bool ends = !curve.is_periodic && m_rim[axis] == Boundary::frozen;
-        std::vector<std::uint8_t> frozen(points, 0);
-        freeze_rim(curve, frozen);
-        for (std::size_t i = 0; ends && i < std::min(rim_points, points); ++i) frozen[i] = frozen[points - 1 - i] = 1;
-        for (const std::size_t key : m_held[c]) hold(curve, key, frozen);
-        if (std::ranges::none_of(frozen, [](std::uint8_t held) { return held != 0; })) return {};
-        return frozen;
-    }
-
-    /// A frozen rim holds the yarns along it too: they would slide off the cut ends of those that they cross.
-    void freeze_rim(const YarnCurve& curve, std::vector<std::uint8_t>& frozen) const {
-        const Region& region = m_plan.curves.region;
-        const bool rows = m_rim[0] == Boundary::frozen && !m_plan.curves.is_periodic[0],
-                   columns = m_rim[1] == Boundary::frozen && !m_plan.curves.is_periodic[1];
-        if (!rows && !columns) return;
-        const std::size_t pieces = curve.keys.size() - (curve.is_periodic ? 0 : 1);
-        const double per_key = double(frozen.size() - (curve.is_periodic ? 0 : 1)) / double(std::max<std::size_t>(1, pieces));
-        for (std::size_t i = 0; i < frozen.size(); ++i) {
-            const auto nearest = static_cast<std::size_t>(std::lround(static_cast<double>(i) / per_key));
-            const KeyPoint& key = curve.keys[std::min(nearest, curve.keys.size() - 1)];
-            if ((rows && (key.row == region.first_row || key.row == region.last_row)) ||
-                (columns && (key.column == region.first_column || key.column == region.last_column)))
-                frozen[i] = 1;
+    /// Length of the polygon of its control points, and what they are asked for below; keeps them where they are to be kept.
+    void measure_points(std::size_t c, SimYarn& yarn) {
+        const PlannedPoints& points = *m_made.m_points;
+        const std::size_t count = points.count(c);
+        std::size_t held = 0;
+        std::array<bool, 2> are_ends_held{};
+        for (std::size_t first = 0, last = 0; first < count; first = last) {
+            last = first + std::min(m_most_at_once, count - first);
+            const bool goes_on = yarn.is_periodic || last < count;
+            std::vector<Vec3> control = points.control(c, static_cast<std::ptrdiff_t>(first), static_cast<std::ptrdiff_t>(last + (goes_on ? 1 : 0)));
+            std::vector<std::uint8_t> frozen = points.frozen(c, static_cast<std::ptrdiff_t>(first), static_cast<std::ptrdiff_t>(last));
+            for (std::size_t i = 0; i + 1 < control.size(); ++i) yarn.planned_mm += (control[i + 1] - control[i]).norm();
+            control.resize(last - first);
+            for (const Vec3& point : control) m_box.extend(point);
+            held += static_cast<std::size_t>(std::ranges::count(frozen, std::uint8_t{1}));
+            if (first == 0) are_ends_held[0] = frozen.front() != 0;
+            if (last == count) are_ends_held[1] = frozen.back() != 0;
+            if (!m_keeps_points) continue;
+            yarn.control = std::move(control);
+            if (held > 0) yarn.frozen = std::move(frozen);
         }
-    }
-
-    /// Holds the place of a key point: three control points make it.
-    static void hold(const YarnCurve& curve, std::size_t key, std::vector<std::uint8_t>& frozen) {
-        const std::size_t points = frozen.size(), keys = curve.keys.size();
-        const double per_key = curve.is_periodic ? double(points) / double(keys) : double(points - 1) / double(keys - 1);
-        const auto at = static_cast<std::ptrdiff_t>(std::lround(per_key * static_cast<double>(key)));
-        for (std::ptrdiff_t i = at - 1; i <= at + 1; ++i) {
-            const auto n = static_cast<std::ptrdiff_t>(points);
-            if (curve.is_periodic) frozen[static_cast<std::size_t>((i + n) % n)] = 1;
-            if (!curve.is_periodic && i >= 0 && i < n) frozen[static_cast<std::size_t>(i)] = 1;
-        }
+        m_are_ends_held.push_back(are_ends_held[0] && are_ends_held[1]);
+        m_moves = m_moves || held < count;
     }
 
     /// A yarn fed at constant tension needs something to pull against.
@@ -337,8 +361,7 @@ class Planner {
             const bool warp = curve.system == System::warp;
             const std::string name = (warp ? "end " : "pick ") + std::to_string(curve.number + 1),
                               where = warp ? "scene.boundary_x" : "scene.boundary_y";
-            const bool held = !yarn.frozen.empty() && yarn.frozen.front() != 0 && yarn.frozen.back() != 0;
-            if (!yarn.is_periodic && !held)
+            if (!yarn.is_periodic && !m_are_ends_held[y])
                 return invalid(name + " is fed at constant tension but its ends are free: it would shrink for ever; make the "
                                       "boundary " + (warp ? "x" : "y") + " periodic or frozen",
                                where);
@@ -354,10 +377,7 @@ class Planner {
 
     /// Something must be able to move.
     [[nodiscard]] Status check_freedom() const {
-        const bool moves = std::ranges::any_of(m_plan.scene.yarns, [](const SimYarn& yarn) {
-            return yarn.frozen.empty() || std::ranges::count(yarn.frozen, std::uint8_t{0}) > 0;
-        });
-        if (moves) return {};
+        if (m_moves) return {};
         if (m_request.region)
             return invalid("nothing of this part can move: its rims are held, and so are the rows and columns along them; take "
                            "at least three rows and three columns",
@@ -368,17 +388,16 @@ class Planner {
     /// Yarns that are thick against their piece touch ever more of one another, and of their own images.
     [[nodiscard]] Status check_thickness() const {
         const SimScene& scene = m_plan.scene;
-        Eigen::AlignedBox3d box;
         double samples = 0, thickest = 0;
-        for (const SimYarn& yarn : scene.yarns) {
-            for (const Vec3& point : yarn.control) box.extend(point);
+        for (std::size_t y = 0; y < scene.yarns.size(); ++y) {
+            const SimYarn& yarn = scene.yarns[y];
             thickest = std::max(thickest, yarn.radius_mm);
-            samples += std::max(static_cast<double>(yarn.control.size()), yarn.planned_mm / (scene.sample_spacing * 2 * yarn.radius_mm));
+            samples += std::max(static_cast<double>(m_made.points(y)), yarn.planned_mm / (scene.sample_spacing * 2 * yarn.radius_mm));
         }
         const double reach = 2 * thickest;
         double within = samples;  // of one sample
         for (std::size_t axis = 0; axis < 3; ++axis) {
-            const double size = axis < 2 && scene.is_periodic[axis] ? scene.period_mm[axis] : std::max(box.sizes()[Eigen::Index(axis)], 1e-9),
+            const double size = axis < 2 && scene.is_periodic[axis] ? scene.period_mm[axis] : std::max(m_box.sizes()[Eigen::Index(axis)], 1e-9),
                          share = 2 * reach / size;
             within *= axis < 2 && scene.is_periodic[axis] ? share : std::min(1.0, share);
         }
@@ -411,13 +430,17 @@ class Planner {
     const Design& m_design;
     const Block& m_block;
     const SimulationRequest& m_request;
+    std::size_t m_most_at_once;
+    bool m_keeps_points = false;  ///< then yarns are looked at as wholes
     std::array<Boundary, 2> m_rim{};
     std::vector<std::vector<std::size_t>> m_held;  ///< by curve: key points
     std::size_t m_left_out = 0;
-    Plan m_plan;
+    std::vector<bool> m_are_ends_held;  ///< of each yarn, both
+    bool m_moves = false;
+    PlanInStretches m_made;
+    Plan& m_plan = m_made.m_plan;
+    Eigen::AlignedBox3d& m_box = m_made.m_box;
 };
-
-}  // namespace
 
 Result<Fidelity> parse_fidelity(std::string_view text) {
     for (const Fidelity fidelity : {Fidelity::draft, Fidelity::standard, Fidelity::reference}) {
@@ -443,7 +466,11 @@ Json lines_json(const Plan& plan) {
 }
 
 Result<Plan> make_plan(const Design& design, const Block& block, const SimulationRequest& request) {
-    return Planner(design, block, request).run();
+    return Planner(design, block, request, std::numeric_limits<std::size_t>::max()).whole();
+}
+
+Result<PlanInStretches> PlanInStretches::make(const Design& design, const Block& block, const SimulationRequest& request, std::size_t points_a_stretch) {
+    return Planner(design, block, request, points_a_stretch).in_stretches();
 }
 
 }  // namespace weave::sim

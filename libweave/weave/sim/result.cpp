@@ -216,13 +216,20 @@ Yarns copied_back(Yarns yarns, const Plan& plan, const Design& design) {
     return whole;
 }
 
+void CrossedYarns::add(const Crossing& crossing) {
+    picks = {std::min(picks[0], crossing.pick + 1), std::max(picks[1], crossing.pick + 1)};
+    ends = {std::min(ends[0], crossing.end + 1), std::max(ends[1], crossing.end + 1)};
+}
+
 Json coverage_of(const Plan& plan) {
+    CrossedYarns crossed;
+    for (const Crossing& crossing : plan.curves.crossings) crossed.add(crossing);
+    return coverage_of(plan, crossed);
+}
+
+Json coverage_of(const Plan& plan, CrossedYarns crossed) {
     const Region& region = plan.curves.region;
-    std::array<std::size_t, 2> picks{SIZE_MAX, 0}, ends{SIZE_MAX, 0};
-    for (const Crossing& crossing : plan.curves.crossings) {
-        picks = {std::min(picks[0], crossing.pick + 1), std::max(picks[1], crossing.pick + 1)};
-        ends = {std::min(ends[0], crossing.end + 1), std::max(ends[1], crossing.end + 1)};
-    }
+    auto& [picks, ends] = crossed;
     const std::array<std::size_t, 2> rows{region.first_row + 1, (region.last_row + 1) * plan.repeats[0]},
         columns{region.first_column + 1, (region.last_column + 1) * plan.repeats[1]};
     Json coverage{{"rows", rows}, {"columns", columns}, {"repeats", {plan.repeats[0], plan.repeats[1]}}};

@@ -8,6 +8,7 @@
 #include <weave/sim/plan.hpp>
 #include <weave/sim/yarns.hpp>
 
+#include <array>
 #include <cstddef>
 #include <cstdint>
 #include <vector>
@@ -22,6 +23,14 @@ Yarns copied_back(Yarns yarns, const Plan& plan, const Design& design);
 
 /// What of the cloth the yarns cover, first and last from 1, once a repeat has been copied back over it.
 Json coverage_of(const Plan& plan);
+
+/// The first and last pick and end that are crossed, from 1.
+struct CrossedYarns {
+    std::array<std::size_t, 2> picks{SIZE_MAX, 0}, ends{SIZE_MAX, 0};
+    void add(const Crossing& crossing);
+};
+/// The same of a plan without its crossings.
+Json coverage_of(const Plan& plan, CrossedYarns crossed);
 
 struct Contacts {
     std::size_t seen = 0;  ///< segments that touch one, by each segment: every pair twice
