@@ -5,6 +5,7 @@
 
 #include <weave/sim/yarns_file.hpp>
 
+#include <algorithm>
 #include <chrono>
 #include <csignal>
 #include <fstream>
@@ -42,7 +43,8 @@ struct Loom {
     }
     /// Relaxes a part of it that makes two blocks.
     [[nodiscard]] Workshop::Running start(std::size_t processes, std::vector<std::string> more) const {
-        more.insert(more.end(), {"--region", "picks:1-50,ends:1-60", "--residual", "1e-12"});
+        more.insert(more.end(), {"--region", "picks:1-50,ends:1-60"});
+        if (std::ranges::find(more, "--explain") == more.end()) more.insert(more.end(), {"--residual", "1e-12"});
         return start_whole(processes, more);
     }
     [[nodiscard]] Workshop::Running start_whole(std::size_t processes, const std::vector<std::string>& more) const {
@@ -106,6 +108,35 @@ TEST_CASE("any number of processes that mpirun starts writes the same yarns, and
         if (processes <= 4) CHECK(report.at("peak_bytes") < peak_before);  // there are six blocks
         peak_before = report.at("peak_bytes").get<std::uint64_t>();
     }
+}
+
+TEST_CASE("what several processes would do is told once, with the share of each, and a plan asks less of each the more there are") {
+    if (is_skipped()) return;
+    Loom loom;
+    (void)loom.shop.must({"tile", "d.weave", "--x", "5", "--y", "5", "-o", "large.weave"});
+    const auto explained = [&](const std::string& processes) {
+        const Ended ended = loom.shop.start_program(mpirun, "mpirun", {"-n", processes, WEAVE_PROGRAM, "simulate", "large.weave", "--whole", "--explain", "--json"}).finish();
+        CHECK(ended.exit == 0);
+        return json_of(ended);
+    };
+    const weave::Json one = explained("1"), three = explained("3");
+    CHECK(one.at("ranks").size() == 1);
+    CHECK(three.at("ranks").size() == 3);
+    CHECK(one.at("points") > 1000000);
+    CHECK(three.at("points") == one.at("points"));
+    CHECK(three.at("plan") == one.at("plan"));
+    std::uint64_t points = 0, peak = 0;
+    for (const weave::Json& rank : three.at("ranks")) {
+        points += rank.at("points").get<std::uint64_t>();
+        peak = std::max(peak, rank.at("peak_bytes").get<std::uint64_t>());
+    }
+    CHECK(points == one.at("points"));
+    // Two thirds of the points, at 48 bytes, are 43 MiB, whatever planning takes besides.
+    CHECK(peak + (30U << 20U) < one.at("ranks").at(0).at("peak_bytes").get<std::uint64_t>());
+    const Ended told = loom.run(2, {"--explain"});
+    CHECK(told.exit == 0);
+    CHECK_THAT(told.out, Contains("blocks: ") && Contains("process 2: "));
+    CHECK(told.out.find("gravity: off") == told.out.rfind("gravity: off"));
 }
 
 TEST_CASE("a process that is killed ends the run with a report, and another number of them goes on to the same bits") {

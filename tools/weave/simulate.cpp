@@ -6,6 +6,7 @@
 #include "simulate_ending.hpp"
 #include "simulate_on.hpp"
 #include "simulate_together.hpp"
+#include "simulate_words.hpp"
 #include "simulate_wish.hpp"
 #include "sweep.hpp"
 #include "teller.hpp"
@@ -30,13 +31,6 @@
 namespace weave::program {
 
 namespace {
-
-std::string in_words(const sim::Plan& plan) {
-    std::string text;
-    for (const sim::PlanLine& line : plan.lines)
-        text += "  " + line.term + ": " + line.choice + " (" + line.reason + ")\n";
-    return text;
-}
 
 /// The state to go on from, out of a .yarns file.
 Result<sim::StartState> taken_up(const std::string& file, const sim::Plan& plan, const SimulateTask& task) {
@@ -181,7 +175,7 @@ Status sweep(CommandOutcome& outcome, wire::Follower& server, const Cloth& cloth
 }
 
 Status run_simulation(CommandOutcome& outcome, const SimulateWish& wish) {
-    if (runs_together() && !wish.explain) return simulate_together(outcome, wish);
+    if (runs_together()) return simulate_together(outcome, wish);
     WEAVE_CHECK_OK(check_alone(wish));
     WEAVE_CHECK_OK(check_wish(wish));
     std::optional<wire::Follower> server;
@@ -209,7 +203,7 @@ Status run_simulation(CommandOutcome& outcome, const SimulateWish& wish) {
         plan.lines.push_back({"backend", choice->device.empty() ? "cpu" : "cuda: " + choice->device, choice->reason});
     }
     if (wish.explain) {
-        outcome.answer({{"plan", sim::lines_json(plan)}, {"yarns", plan.scene.yarns.size()}}, in_words(plan));
+        outcome.answer({{"plan", sim::lines_json(plan)}, {"yarns", plan.scene.yarns.size()}}, in_words(plan.lines));
         return {};
     }
     if (task.request.region) {

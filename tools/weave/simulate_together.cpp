@@ -1,7 +1,9 @@
 #include "simulate_together.hpp"
 
 #include "interrupt.hpp"
+#include "progress.hpp"
 #include "simulate_ending.hpp"
+#include "simulate_words.hpp"
 #include "teller.hpp"
 
 #include <weave/core/descriptor.hpp>
@@ -9,6 +11,7 @@
 #include <weave/core/text.hpp>
 #include <weave/ranks/mpi/mpi_comm.hpp>
 #include <weave/ranks/split_run.hpp>
+#include <weave/sim/forecast.hpp>
 
 #include <algorithm>
 #include <chrono>
@@ -139,6 +142,24 @@ ranks::SplitOptions options_of(const ranks::Comm& comm, const SimulateWish& wish
     return options;
 }
 
+/// What the run would be, and how it would be shared.
+Status explain(CommandOutcome& outcome, ranks::Comm& comm, const Prepared& prepared) {
+    WEAVE_TRY(Json answer, ranks::explain_split(comm, prepared.plan));
+    const sim::Plan& plan = prepared.plan.plan();
+    std::string text = in_words(plan.lines);
+    text += "  blocks: " + std::to_string(answer.at("blocks").at("rows").get<std::size_t>()) + " x " + std::to_string(answer.at("blocks").at("columns").get<std::size_t>()) +
+            " (" + counted(answer.at("points").get<std::size_t>(), "control point") + ")\n";
+    for (std::size_t rank = 0; rank < comm.size(); ++rank) {
+        const Json& one = answer.at("ranks").at(rank);
+        text += "  process " + std::to_string(rank + 1) + ": " + counted(one.at("blocks").get<std::size_t>(), "block") + " with " +
+                counted(one.at("points").get<std::size_t>(), "point") + " (planning took " + sim::memory_text(one.at("peak_bytes").get<std::uint64_t>()) + ")\n";
+    }
+    answer["plan"] = sim::lines_json(plan);
+    answer["yarns"] = plan.scene.yarns.size();
+    outcome.answer(std::move(answer), text);
+    return {};
+}
+
 Status tell(CommandOutcome& outcome, const ranks::Comm& comm, const Design& design, Json report, const SimulateWish& wish) {
     const std::vector<std::string> undone = left_undone(report, {0, 0, false});
     if (!undone.empty()) report["left_undone"] = undone;
@@ -159,6 +180,7 @@ Status simulate_together(CommandOutcome& outcome, const SimulateWish& wish) {
     const std::vector<double> failed = comm->gather(prepared ? 0.0 : 1.0);
     if (!prepared) return told(*comm, prepared.error(), failed.front() == 0);
     if (std::ranges::count(failed, 1.0) > 0) return system_fault("another process could not begin; it tells why");
+    if (wish.explain) return explain(outcome, *comm, *prepared);
     tell_when_ended(comm->is_first() ? last_words(wish.checkpoint, "") : "");
     stop_on_user_signal();
     Teller teller(wish.residual.value_or(prepared->plan.plan().goal));

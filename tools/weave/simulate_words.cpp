@@ -150,4 +150,10 @@ Result<std::vector<Flip>> parse_flips(const std::vector<std::string>& texts, con
     return flips;
 }
 
+std::string in_words(const std::vector<sim::PlanLine>& lines) {
+    std::string text;
+    for (const sim::PlanLine& line : lines) text += "  " + line.term + ": " + line.choice + " (" + line.reason + ")\n";
+    return text;
+}
+
 }  // namespace weave::program

@@ -8,7 +8,7 @@
 #include <string>
 #include <vector>
 
-/// What the words behind the options of `weave simulate` mean. Errors name the option as it was written.
+/// What the words behind the options of `weave simulate` mean, and a plan in words. Errors name the option as it was written.
 namespace weave::program {
 
 /// `warp.strain=1.01`: a number of the scene, for this run only.
@@ -29,5 +29,8 @@ Result<Region> parse_region(const std::string& text, const Block& block);
 /// `4,7` for each flip, picks and ends from 1, in their order: what each crossing is to be. Errors: one that is not legal
 /// once those before it are made, with the yarns in the way.
 Result<std::vector<Flip>> parse_flips(const std::vector<std::string>& texts, const Block& block);
+
+/// What a plan does and saves, a line each.
+std::string in_words(const std::vector<sim::PlanLine>& lines);
 
 }  // namespace weave::program

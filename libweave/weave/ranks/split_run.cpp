@@ -113,11 +113,15 @@ class SplitRun {
     std::chrono::steady_clock::time_point m_start = std::chrono::steady_clock::now();
 };
 
-Json run_key(const Design& design, const sim::Plan& plan, const Cut& cut) {
+std::size_t points_of(const Cut& cut) {
     std::size_t points = 0;
     for (const std::uint32_t of_yarn : cut.points) points += of_yarn;
+    return points;
+}
+
+Json run_key(const Design& design, const sim::Plan& plan, const Cut& cut) {
     return {{"design_sha256", design_sha256(design)}, {"scene_sha256", scene_sha256(design)}, {"points_per_key", plan.points_per_key},
-            {"sample_spacing", plan.scene.sample_spacing}, {"points", points}, {"blocks", cut.blocks}, {"yarns", cut.points.size()}};
+            {"sample_spacing", plan.scene.sample_spacing}, {"points", points_of(cut)}, {"blocks", cut.blocks}, {"yarns", cut.points.size()}};
 }
 
 Stand as_planned(const std::vector<Part>& parts) {
@@ -128,28 +132,35 @@ Stand as_planned(const std::vector<Part>& parts) {
     return stand;
 }
 
-/// What each rank has: the balance of the work, and what it told others.
-Json ranks_json(Comm& comm, const Cut& cut, const std::vector<Part>& parts, const SplitCloth& cloth) {
-    const auto [first, last] = cut.blocks_of(comm.rank(), comm.size());
-    double points = 0, guests = 0;
-    for (const Part& part : parts) points += static_cast<double>(part.own.size());
-    for (const auto& piece : cloth.pieces()) guests += static_cast<double>(piece->guests().size());
-    const Comm::Traffic traffic = comm.traffic();
-    const Comm::Packet own{static_cast<double>(last - first), points, guests, static_cast<double>(traffic.messages), static_cast<double>(traffic.bytes),
-                           static_cast<double>(traffic.gatherings), static_cast<double>(traffic.gathered_bytes), static_cast<double>(sim::peak_bytes())};
+std::size_t points_of(const std::vector<Part>& parts) {
+    std::size_t points = 0;
+    for (const Part& part : parts) points += part.own.size();
+    return points;
+}
+
+/// Whole numbers of all ranks, by name.
+Json gathered(Comm& comm, const std::vector<std::pair<const char*, std::uint64_t>>& own) {
+    Comm::Packet packet;
+    for (const auto& [name, number] : own) packet.push_back(static_cast<double>(number));
     Json list = Json::array();
-    for (const Comm::Packet& of_rank : comm.gather(own)) {
+    for (const Comm::Packet& of_rank : comm.gather(packet)) {
         Json rank;
-        const char* names[]{"blocks", "points", "guests", "messages", "bytes", "gatherings", "gathered_bytes", "peak_bytes"};
-        for (std::size_t k = 0; k < std::size(names); ++k) rank[names[k]] = static_cast<std::uint64_t>(of_rank[k]);
+        for (std::size_t k = 0; k < own.size(); ++k) rank[own[k].first] = static_cast<std::uint64_t>(of_rank[k]);
         list.push_back(std::move(rank));
     }
     return list;
 }
 
+/// What each rank has: the balance of the work, and what it told others.
+Json ranks_json(Comm& comm, const std::vector<Part>& parts, const SplitCloth& cloth) {
+    std::size_t guests = 0;
+    for (const auto& piece : cloth.pieces()) guests += piece->guests().size();
+    const Comm::Traffic traffic = comm.traffic();
+    return gathered(comm, {{"blocks", parts.size()}, {"points", points_of(parts)}, {"guests", guests}, {"messages", traffic.messages}, {"bytes", traffic.bytes},
+                           {"gatherings", traffic.gatherings}, {"gathered_bytes", traffic.gathered_bytes}, {"peak_bytes", sim::peak_bytes()}});
+}
+
 Json report_of(Comm& comm, const Cut& cut, const std::vector<Part>& parts, const Outline& outline, const Measured& measured, SplitRun& run, double goal) {
-    std::size_t points = 0;
-    for (const std::uint32_t of_yarn : cut.points) points += of_yarn;
     const sim::Relaxing<SplitCloth> relaxed = run.relaxed();
     const sim::Ending ending = run.ending();
     const std::string curvature = run.smallest_curvature();
@@ -166,7 +177,7 @@ Json report_of(Comm& comm, const Cut& cut, const std::vector<Part>& parts, const
                 {"residual", relaxed.residual},
                 {"reference_N", relaxed.reference_N},
                 {"energy_N_mm", relaxed.energy},
-                {"points", points},
+                {"points", points_of(cut)},
                 {"contacts", measured.contacts},
                 {"iterations", run.iterations()},
                 {"evaluations", run.evaluations()},
@@ -180,7 +191,7 @@ Json report_of(Comm& comm, const Cut& cut, const std::vector<Part>& parts, const
                 {"max_overlap", measured.max_overlap},
                 {"plan", outline.lines},
                 {"peak_bytes", 0}};
-    const Json ranks = ranks_json(comm, cut, parts, run.cloth());
+    const Json ranks = ranks_json(comm, parts, run.cloth());
     for (const Json& rank : ranks) report["peak_bytes"] = std::max(report["peak_bytes"].get<std::uint64_t>(), rank.at("peak_bytes").get<std::uint64_t>());
     report["blocks"] = {{"rows", cut.blocks[0]}, {"columns", cut.blocks[1]}, {"laid_out", run.cloth().lays()}};
     report["ranks"] = ranks;
@@ -211,6 +222,12 @@ Result<Json> simulate_split(Comm& comm, const Design& design, sim::PlanInStretch
     Json report = report_of(comm, cut, dealt.parts, outline, measured, run, goal);
     WEAVE_CHECK_OK(write_split(comm, cut, dealt.parts, outline, measured, run.cloth(), report, out));
     return report;
+}
+
+Result<Json> explain_split(Comm& comm, const sim::PlanInStretches& plan, std::size_t points_a_block) {
+    WEAVE_TRY(const CutPlan dealt, cut_plan(plan, comm.rank(), comm.size(), points_a_block));
+    Json ranks = gathered(comm, {{"blocks", dealt.parts.size()}, {"points", points_of(dealt.parts)}, {"peak_bytes", sim::peak_bytes()}});
+    return Json{{"points", points_of(dealt.cut)}, {"blocks", {{"rows", dealt.cut.blocks[0]}, {"columns", dealt.cut.blocks[1]}}}, {"ranks", std::move(ranks)}};
 }
 
 }  // namespace weave::ranks

@@ -36,4 +36,8 @@ struct SplitOptions {
 /// of another run, `out` that cannot be written.
 Result<Json> simulate_split(Comm& comm, const Design& design, sim::PlanInStretches plan, const SplitOptions& options, const std::filesystem::path& out);
 
+/// What a run would be: blocks, and of each rank its `blocks`, its `points` and the `peak_bytes` that it took to plan. The same on
+/// all ranks. Errors: what is not computed so.
+Result<Json> explain_split(Comm& comm, const sim::PlanInStretches& plan, std::size_t points_a_block = usual_points);
+
 }  // namespace weave::ranks
