@@ -199,9 +199,23 @@ TEST_CASE("what processes together cannot do is told once, before anything is re
     }
     loom.shop.refused({"simulate", "d.weave", "-o", "c.yarns", "--checkpoint", "ck"}, 2, {"--checkpoint", "mpirun -n 1"});
     loom.shop.refused({"simulate", "d.weave", "-o", "c.yarns", "--patience", "3"}, 2, {"--patience", "mpirun"});
-    const Ended damaged = loom.run(2, {"-o", "c.yarns", "--checkpoint", "d.weave"});
-    CHECK(damaged.exit == 5);
-    CHECK_THAT(damaged.err, Contains("d.weave"));
+    const auto told_once = [&](const std::vector<std::string>& words, int exit, const std::vector<std::string>& pieces) {
+        const Ended ended = loom.run(4, words);
+        INFO(ended.err);
+        CHECK(ended.exit == exit);
+        for (const std::string& piece : pieces) CHECK_THAT(ended.err, Contains(piece));
+        const std::string lines = "\n" + ended.err, line = "\nweave: ";
+        CHECK((Contains(line).match(lines) && lines.find(line) == lines.rfind(line)));
+    };
+    told_once({"-o", "c.yarns", "--checkpoint", "d.weave"}, 5, {"d.weave"});
+    told_once({"-o", "c.yarns", "--checkpoint", "/proc/nope"}, 5, {"/proc/nope"});
+    told_once({"-o", "c.yarns", "--checkpoint-every", "-1"}, 2, {"--checkpoint-every"});
+    told_once({"-o", "no/folder/c.yarns", "--steps", "100000"}, 5, {"no/folder"});
+    told_once({"-o", "c.yarns", "--checkpoint", ""}, 2, {"--checkpoint"});
+    (void)loom.run(2, {"-o", "c.yarns", "--checkpoint", "ck", "--steps", "3"});
+    REQUIRE(loom.shop.has("ck/step-3/rank-1.part"));
+    loom.shop.put("ck/step-3/rank-1.part", "{}");
+    told_once({"-o", "c.yarns", "--checkpoint", "ck"}, 3, {"rank-1.part"});
 }
 
 }  // namespace program_tests

@@ -2,6 +2,7 @@
 
 #include "command.hpp"
 #include "interrupt.hpp"
+#include "simulate_together.hpp"
 
 namespace {
 
@@ -13,6 +14,7 @@ constexpr const char* about =
 
 int main(int count, char** words) {
     weave::program::tidy_up_when_ended();
+    weave::program::let_one_speak();
     weave::CommandOutcome outcome("weave", weave::JsonLayout::over_lines);
     CLI::App app(about, "weave");
     weave::prepare_program(app, WEAVE_VERSION);

@@ -16,6 +16,7 @@
 #include <weave/core/text.hpp>
 #include <weave/design/document.hpp>
 #include <weave/picture/cloth_view.hpp>
+#include <weave/ranks/mpi/mpi_comm.hpp>
 #include <weave/sim/exports.hpp>
 #include <weave/sim/run.hpp>
 #include <weave/sim/simulate.hpp>
@@ -175,7 +176,7 @@ Status sweep(CommandOutcome& outcome, wire::Follower& server, const Cloth& cloth
 }
 
 Status run_simulation(CommandOutcome& outcome, const SimulateWish& wish) {
-    if (runs_together()) return simulate_together(outcome, wish);
+    if (ranks::is_one_of_many()) return simulate_together(outcome, wish);
     WEAVE_CHECK_OK(check_alone(wish));
     WEAVE_CHECK_OK(check_wish(wish));
     std::optional<wire::Follower> server;
@@ -272,10 +273,11 @@ void add_simulate(CLI::App& app, CommandOutcome& outcome) {
     command->add_option("--seed", wish->seed, "of that noise; 1 if nothing is said")->transform(whole_number())->type_name("N");
     command->add_flag("--explain", wish->explain, "tell what would be simulated and why, and end");
     command->add_option("--steps", wish->steps, "stop after so many steps in all; each run of --starts and --symmetry has as many")->transform(whole_number())->type_name("N");
-    command->add_option("--seconds", wish->seconds, "stop after so long in all; each run of --starts and --symmetry has as long")->check(positive_number())->type_name("N");
+    command->add_option("--seconds", wish->seconds, "stop after so long in all; each run of --starts and --symmetry has as long, and so has each that goes on from a checkpoint")->check(positive_number())->type_name("N");
     add_threads(command, wish->threads);
     command->add_option("--checkpoint", wish->checkpoint, "under mpirun: the folder for checkpoints, which all processes see; where it has one of this run, that is gone on "
                                                           "from, with any number of processes")
+        ->check([](const std::string& folder) { return folder.empty() ? "is empty" : ""; })
         ->type_name("FOLDER");
     command->add_option("--checkpoint-every", wish->checkpoint_every, "seconds between checkpoints; 120 if nothing is said")->check(positive_number())->type_name("N");
     command->add_option("--patience", wish->patience, "under mpirun: seconds after which processes that do not answer are lost; 600 if nothing is said")

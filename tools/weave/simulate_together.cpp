@@ -60,18 +60,17 @@ Result<std::string> hash_of_file(const std::string& file) {
 }
 
 /// What is told where the run is ended from outside, as mpirun ends it when a process is gone.
-std::string last_words(const std::string& folder, const std::string& saved) {
+std::string last_words(const std::string& folder, std::optional<std::size_t> newest) {
     if (folder.empty()) return "ended from outside, and no checkpoints were asked for (--checkpoint FOLDER): nothing is kept";
-    return "ended from outside; " + (saved.empty() ? std::string("no checkpoint was written yet") : saved) +
+    if (!newest) return "ended from outside before there was a checkpoint in " + folder + ": the same command begins anew";
+    return "ended from outside; the newest checkpoint is that of step " + std::to_string(*newest) + " in " + folder +
            ": the same command goes on from there, with any number of processes";
 }
 
 }  // namespace
 
-bool runs_together() {
-    if (!ranks::is_one_of_many()) return false;
-    if (!is_first_process()) be_silent();
-    return true;
+void let_one_speak() {
+    if (ranks::is_one_of_many() && !is_first_process()) be_silent();
 }
 
 Status check_alone(const SimulateWish& wish) {
@@ -120,12 +119,6 @@ Result<ranks::Comm*> others(const SimulateWish& wish) {
     return comm.get();
 }
 
-/// An error that only this process has is told by it, the first's by the program as any.
-Error told(const ranks::Comm& comm, const Error& error, bool is_alone_with_it) {
-    if (!comm.is_first() && is_alone_with_it) say("rank " + std::to_string(comm.rank()) + ": " + error.text());
-    return error;
-}
-
 ranks::SplitOptions options_of(const ranks::Comm& comm, const SimulateWish& wish, Teller& teller) {
     ranks::SplitOptions options;
     options.residual = wish.residual;
@@ -135,16 +128,14 @@ ranks::SplitOptions options_of(const ranks::Comm& comm, const SimulateWish& wish
     options.checkpoints = wish.checkpoint;
     options.checkpoint_every_s = wish.checkpoint_every.value_or(options.checkpoint_every_s);
     options.watch = [&](const sim::Progress& progress) { return (!comm.is_first() || teller(progress)) && !asked_to_stop(); };
-    options.note = [&](const std::string& line) {
-        teller.note(line);
-        tell_when_ended(last_words(wish.checkpoint, "the newest: " + line));
-    };
+    options.note = [&](const std::string& line) { teller.note(line); };
+    options.saved = [&](std::size_t step) { tell_when_ended(last_words(wish.checkpoint, step)); };
     return options;
 }
 
 /// What the run would be, and how it would be shared.
 Status explain(CommandOutcome& outcome, ranks::Comm& comm, const Prepared& prepared) {
-    WEAVE_TRY(Json answer, ranks::explain_split(comm, prepared.plan));
+    WEAVE_TRY(Json answer, ranks::explain_split(comm, *prepared.design, prepared.plan));
     const sim::Plan& plan = prepared.plan.plan();
     std::string text = in_words(plan.lines);
     text += "  blocks: " + std::to_string(answer.at("blocks").at("rows").get<std::size_t>()) + " x " + std::to_string(answer.at("blocks").at("columns").get<std::size_t>()) +
@@ -177,16 +168,14 @@ Status tell(CommandOutcome& outcome, const ranks::Comm& comm, const Design& desi
 Status simulate_together(CommandOutcome& outcome, const SimulateWish& wish) {
     WEAVE_TRY(ranks::Comm* const comm, others(wish));
     Result<Prepared> prepared = prepare(outcome, wish);
-    const std::vector<double> failed = comm->gather(prepared ? 0.0 : 1.0);
-    if (!prepared) return told(*comm, prepared.error(), failed.front() == 0);
-    if (std::ranges::count(failed, 1.0) > 0) return system_fault("another process could not begin; it tells why");
+    WEAVE_CHECK_OK(ranks::agreed(*comm, prepared ? Status() : Status(prepared.error())));
     if (wish.explain) return explain(outcome, *comm, *prepared);
-    tell_when_ended(comm->is_first() ? last_words(wish.checkpoint, "") : "");
+    tell_when_ended(comm->is_first() ? last_words(wish.checkpoint, {}) : "");
     stop_on_user_signal();
     Teller teller(wish.residual.value_or(prepared->plan.plan().goal));
     const Result<Json> report = ranks::simulate_split(*comm, *prepared->design, std::move(prepared->plan), options_of(*comm, wish, teller), wish.out);
     tell_when_ended("");
-    if (!report) return told(*comm, report.error(), report.error().message.find("it tells why") == std::string::npos);
+    if (!report) return report.error();
     teller.end();
     return tell(outcome, *comm, *prepared->design, *report, wish);
 }

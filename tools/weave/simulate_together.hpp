@@ -6,8 +6,9 @@
 /// `weave simulate` where mpirun started several of it: they relax one cloth together (weave/ranks).
 namespace weave::program {
 
-/// Whether they did; then all but the first are silent from now on.
-bool runs_together();
+/// Where mpirun started several processes, all but the first are silent from now on: what is wrong with the words or the design all
+/// find alike.
+void let_one_speak();
 
 /// What only several processes do.
 Status check_alone(const SimulateWish& wish);

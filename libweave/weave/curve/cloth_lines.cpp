@@ -81,9 +81,21 @@ ClothLines::Leads ClothLines::Kept::find(std::size_t line) const {
     return found == m_lines.end() ? nullptr : found->second;
 }
 
-ClothLines::Leads ClothLines::Kept::keep(std::size_t line, std::vector<Lead> leads) {
+std::size_t ClothLines::Kept::keys_of(const std::vector<Lead>& leads) {
     std::size_t keys = 0;
     for (const Lead& lead : leads) keys += lead.level.size();
+    return keys;
+}
+
+void ClothLines::Kept::forget(std::size_t line) {
+    const auto found = m_lines.find(line);
+    if (found == m_lines.end()) return;
+    m_keys -= keys_of(*found->second);
+    m_lines.erase(found);
+}
+
+ClothLines::Leads ClothLines::Kept::keep(std::size_t line, std::vector<Lead> leads) {
+    const std::size_t keys = keys_of(leads);
     if (m_keys + keys > most_kept_keys) {
         m_lines.clear();
         m_keys = 0;

@@ -73,9 +73,10 @@ class ClothLines {
       public:
         [[nodiscard]] Leads find(std::size_t line) const;
         Leads keep(std::size_t line, std::vector<Lead> leads);
-        void forget(std::size_t line) { m_lines.erase(line); }
+        void forget(std::size_t line);
 
       private:
+        static std::size_t keys_of(const std::vector<Lead>& leads);
         std::map<std::size_t, Leads> m_lines;
         std::size_t m_keys = 0;
     };

@@ -10,6 +10,7 @@
 #include <bit>
 #include <cmath>
 #include <cstring>
+#include <random>
 
 namespace weave::ranks {
 
@@ -25,13 +26,17 @@ std::string part_name(std::size_t rank) {
     return "rank-" + std::to_string(rank) + ".part";
 }
 
-/// The error of the first rank that has one, told to all.
-Status agreed(Comm& comm, const Status& own) {
-    const std::vector<double> failed = comm.gather(own ? 0.0 : 1.0);
-    const auto first = std::ranges::find(failed, 1.0);
-    if (first == failed.end()) return {};
-    if (!own) return own;
-    return system_fault("rank " + std::to_string(first - failed.begin()) + " could not; it tells why");
+bool is_part(std::string_view name) {
+    return name.starts_with("rank-") && name.ends_with(".part") && parse_whole(name.substr(5, name.size() - 10)).has_value();
+}
+
+/// The step of a checkpoint's folder, by its name.
+std::optional<std::size_t> step_of(const fs::path& folder) {
+    const std::string name = folder.filename().string();
+    if (!name.starts_with(step_prefix)) return {};
+    const auto step = parse_whole(std::string_view(name).substr(step_prefix.size()));
+    if (!step || *step < 0 || name != std::string(step_prefix) + std::to_string(*step)) return {};
+    return static_cast<std::size_t>(*step);
 }
 
 Status make_folder(const fs::path& folder) {
@@ -98,7 +103,43 @@ Status Checkpoints::write_own(const Comm& comm, const Cut& cut, const std::vecto
     return write_file(place(stand.iterations) / part_name(comm.rank()), front.dump() + "\n" + bytes);
 }
 
+Status Checkpoints::try_out(Comm& comm) const {
+    constexpr std::string_view name = ".weave-shared";
+    std::string word(16, '\0');
+    if (comm.is_first()) {
+        std::random_device random;
+        for (char& letter : word) letter = static_cast<char>('a' + random() % 26);
+    }
+    Status status = comm.is_first() ? make_folder(m_folder) : Status();
+    if (comm.is_first() && status) status = write_file(m_folder / name, word);
+    WEAVE_CHECK_OK(agreed(comm, status));
+    Comm::Packet letters;
+    for (const char letter : word) letters.push_back(static_cast<double>(letter));
+    const std::vector<Comm::Packet> words = comm.gather(letters);
+    std::string wanted;
+    for (const double letter : words.front()) wanted += static_cast<char>(letter);
+    if (!comm.is_first()) {
+        const auto seen = read_file(m_folder / name, 64);
+        if (!seen || *seen != wanted) status = system_fault("is not the folder that the first process sees: checkpoints need one that all processes share", m_folder.string());
+        const fs::path own = m_folder / (std::string(name) + "-" + std::to_string(comm.rank()));
+        std::error_code ignored;
+        if (status) status = write_file(own, wanted);
+        fs::remove(own, ignored);
+    }
+    status = agreed(comm, status);
+    std::error_code ignored;
+    if (comm.is_first()) fs::remove(m_folder / name, ignored);
+    return status;
+}
+
+bool Checkpoints::is_complete(std::size_t step) const {
+    std::error_code ignored;
+    return fs::exists(place(step) / complete_name, ignored);
+}
+
 Status Checkpoints::write(Comm& comm, const Cut& cut, const std::vector<Part>& parts, const Stand& stand) const {
+    // A run never comes to a step that it has a checkpoint of but by beginning there.
+    if (comm.gather(comm.is_first() && is_complete(stand.iterations) ? 1.0 : 0.0).front() != 0) return {};
     WEAVE_CHECK_OK(agreed(comm, comm.is_first() ? make_folder(place(stand.iterations)) : Status()));
     WEAVE_CHECK_OK(agreed(comm, write_own(comm, cut, parts, stand)));
     Status status;
@@ -107,12 +148,22 @@ Status Checkpoints::write(Comm& comm, const Cut& cut, const std::vector<Part>& p
         status = write_file(place(stand.iterations) / complete_name, complete.dump(1) + "\n");
     }
     WEAVE_CHECK_OK(agreed(comm, status));
-    if (!comm.is_first()) return {};
-    std::error_code ignored;  // what cannot be removed is only older
-    for (const fs::directory_entry& entry : fs::directory_iterator(m_folder, ignored)) {
-        if (entry.path().filename().string().starts_with(step_prefix) && entry.path() != place(stand.iterations)) fs::remove_all(entry.path(), ignored);
-    }
+    if (comm.is_first()) remove_others(stand.iterations);
     return {};
+}
+
+/// What cannot be removed is only older. Of a folder nothing goes but the files of a checkpoint, and it itself once it is empty.
+void Checkpoints::remove_others(std::size_t step) const {
+    std::error_code ignored;
+    for (const fs::directory_entry& entry : fs::directory_iterator(m_folder, ignored)) {
+        const auto other = step_of(entry.path());
+        if (!other || *other == step || !entry.is_directory(ignored)) continue;
+        fs::remove(entry.path() / complete_name, ignored);  // first: what is half removed does not count
+        for (const fs::directory_entry& file : fs::directory_iterator(entry.path(), ignored)) {
+            if (is_part(file.path().filename().string())) fs::remove(file.path(), ignored);
+        }
+        fs::remove(entry.path(), ignored);
+    }
 }
 
 Result<std::optional<std::size_t>> Checkpoints::newest_step() const {
@@ -120,10 +171,8 @@ Result<std::optional<std::size_t>> Checkpoints::newest_step() const {
     std::error_code code;
     if (!fs::exists(m_folder, code)) return newest;
     for (const fs::directory_entry& entry : fs::directory_iterator(m_folder, code)) {
-        const std::string name = entry.path().filename().string();
-        if (!name.starts_with(step_prefix) || !fs::exists(entry.path() / complete_name, code)) continue;
-        const auto step = parse_whole(std::string_view(name).substr(step_prefix.size()));
-        if (step && *step >= 0 && (!newest || static_cast<std::size_t>(*step) > *newest)) newest = static_cast<std::size_t>(*step);
+        const auto step = step_of(entry.path());
+        if (step && is_complete(*step) && (!newest || *step > *newest)) newest = step;
     }
     if (code) return system_fault("cannot be read: " + code.message(), m_folder.string());
     return newest;

@@ -28,7 +28,11 @@ class Checkpoints {
     /// `run`: what tells this run from any other: design, scene, plan.
     Checkpoints(std::filesystem::path folder, Json run) : m_folder(std::move(folder)), m_run(std::move(run)) {}
 
-    /// Writes one; all ranks call it at once. Where one of them cannot (its disk is full), none counts, and all get the error.
+    /// Whether all ranks see the folder and can write there, for what is needed only after long work; makes it. All call it at once.
+    Status try_out(Comm& comm) const;
+
+    /// Writes one; all ranks call it at once. Where one of them cannot (its disk is full), none counts, and all get the error. One
+    /// that is complete already stays as it is.
     Status write(Comm& comm, const Cut& cut, const std::vector<Part>& parts, const Stand& stand) const;
 
     /// The newest that is complete, if there is one; all ranks call it at once. Errors: it is of another run, or damaged.
@@ -36,6 +40,8 @@ class Checkpoints {
 
   private:
     [[nodiscard]] std::filesystem::path place(std::size_t iterations) const;
+    [[nodiscard]] bool is_complete(std::size_t step) const;
+    void remove_others(std::size_t step) const;
     [[nodiscard]] Result<std::optional<std::size_t>> newest_step() const;
     Status write_own(const Comm& comm, const Cut& cut, const std::vector<Part>& parts, const Stand& stand) const;
     Result<Stand> read_own(const Comm& comm, const Cut& cut, const std::vector<Part>& parts, std::size_t step) const;

@@ -1,5 +1,6 @@
 #include <weave/ranks/comm.hpp>
 
+#include <string>
 #include <utility>
 
 namespace weave::ranks {
@@ -43,6 +44,27 @@ std::vector<Comm::Packet> Comm::swap(std::vector<Packet> to_each) {
     exchange(out, in);
     for (Letter& letter : in) from_each[letter.rank] = std::move(letter.numbers);
     return from_each;
+}
+
+Status agreed(Comm& comm, const Status& own) {
+    Comm::Packet told;
+    if (!own) {
+        const Error& error = own.error();
+        told.push_back(static_cast<double>(error.code));
+        told.push_back(static_cast<double>(error.message.size()));
+        for (const char letter : error.message + error.where) told.push_back(static_cast<double>(static_cast<unsigned char>(letter)));
+    }
+    const std::vector<Comm::Packet> all = comm.gather(told);
+    for (std::size_t rank = 0; rank < all.size(); ++rank) {
+        if (all[rank].empty()) continue;
+        std::string text;
+        for (std::size_t k = 2; k < all[rank].size(); ++k) text += static_cast<char>(static_cast<unsigned char>(all[rank][k]));
+        const auto length = static_cast<std::size_t>(all[rank][1]);
+        const std::string where = text.substr(length);
+        const std::string who = rank == 0 ? "" : "rank " + std::to_string(rank);
+        return Error{static_cast<ErrorCode>(static_cast<int>(all[rank][0])), text.substr(0, length), who.empty() || where.empty() ? who + where : who + ": " + where};
+    }
+    return {};
 }
 
 }  // namespace weave::ranks

@@ -1,5 +1,7 @@
 #pragma once
 
+#include <weave/core/result.hpp>
+
 #include <cstddef>
 #include <cstdint>
 #include <span>
@@ -61,5 +63,9 @@ class SerialComm : public Comm {
     void exchange(const std::vector<Letter>&, std::vector<Letter>&) override {}
     using Comm::gather;
 };
+
+/// The error of the first rank that has one, on all of them, with that rank's number where it is not the first; all call it at once.
+/// So all end alike, and whoever tells it tells the cause.
+Status agreed(Comm& comm, const Status& own);
 
 }  // namespace weave::ranks

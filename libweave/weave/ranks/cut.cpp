@@ -1,5 +1,7 @@
 #include <weave/ranks/cut.hpp>
 
+#include <weave/core/sha256.hpp>
+
 #include <algorithm>
 #include <cmath>
 #include <set>
@@ -156,6 +158,12 @@ class Dealer {
     std::set<std::pair<std::uint32_t, std::int64_t>> m_seen;  ///< along this yarn
 };
 
+void add(const sim::Stretch& stretch, Sha256& hash) {
+    const auto own = static_cast<std::size_t>(static_cast<std::ptrdiff_t>(stretch.first) - stretch.begin), count = stretch.last - stretch.first;
+    hash.add({reinterpret_cast<const char*>(&stretch.control[own]), count * sizeof(Vec3)});
+    hash.add({reinterpret_cast<const char*>(&stretch.frozen[own]), count});
+}
+
 }  // namespace
 
 Result<CutPlan> cut_plan(const sim::PlanInStretches& plan, std::size_t rank, std::size_t ranks, std::size_t points_a_block) {
@@ -165,7 +173,12 @@ Result<CutPlan> cut_plan(const sim::PlanInStretches& plan, std::size_t rank, std
     result.parts.resize(last - first);
     const Cutter cutter(plan, result.cut);
     Dealer dealer(cutter, result.cut, first, result.parts);
-    plan.each_stretch([&](const sim::Stretch& stretch) { dealer.deal(stretch); });
+    Sha256 hash;
+    plan.each_stretch([&](const sim::Stretch& stretch) {
+        dealer.deal(stretch);
+        add(stretch, hash);
+    });
+    result.cut.sha256 = hash.hex();
     return result;
 }
 

@@ -5,6 +5,7 @@
 #include <array>
 #include <cstddef>
 #include <cstdint>
+#include <string>
 #include <vector>
 
 namespace weave::ranks {
@@ -41,6 +42,7 @@ struct Cut {
     std::vector<std::uint32_t> points;        ///< of each yarn
     sim::SimScene terms;                      ///< what else is simulated: no yarns
     std::array<double, 2> low{}, high{};      ///< of all planned places, seen from above
+    std::string sha256;                       ///< of all planned places and which are held: what tells this plan from any other
 
     [[nodiscard]] std::size_t count() const { return blocks[0] * blocks[1]; }
     /// Whether a point may move: a yarn of one point is no curve.

@@ -1,5 +1,7 @@
 #include <weave/ranks/split_run.hpp>
 
+#include <weave/core/file.hpp>
+#include <weave/core/sha256.hpp>
 #include <weave/core/text.hpp>
 #include <weave/design/document.hpp>
 #include <weave/ranks/split_cloth.hpp>
@@ -25,12 +27,13 @@ class SplitRun {
         : m_comm(comm), m_cut(cut), m_parts(parts), m_options(options), m_goal(goal), m_stand(std::move(stand)), m_executor(options.threads),
           m_cloth(comm, cut, parts, m_executor, m_stand.state) {}
 
-    /// Legs to the end. `checkpoints`: null where none are written.
-    void relax(const Checkpoints* checkpoints) {
+    /// Legs to the end. `checkpoints`: null where none are written. `newest`: the step of the one that is there.
+    void relax(const Checkpoints* checkpoints, std::optional<std::size_t> newest) {
+        m_newest = newest;
         m_saved = seconds();
         do {
             leg();
-            if (checkpoints != nullptr && (!m_end || m_end == sim::Ending::stopped || m_end == sim::Ending::time)) save(*checkpoints);
+            if (checkpoints != nullptr) save(*checkpoints);
         } while (!m_end);
     }
 
@@ -78,7 +81,7 @@ class SplitRun {
     std::optional<sim::Ending> ends() {
         const sim::Progress progress{m_stand.iterations, m_relaxing.residual, m_relaxing.energy, seconds()};
         double wish = m_options.watch && !m_options.watch(progress) ? 1 : 0;
-        if (wish == 0 && m_comm.is_first() && seconds() > m_options.most_seconds) wish = 2;
+        if (wish == 0 && m_comm.is_first() && seconds() - m_stand.seconds > m_options.most_seconds) wish = 2;
         const std::vector<double> wishes = m_comm.gather(wish);
         const auto first = std::ranges::find_if(wishes, [](double one) { return one != 0; });
         if (first == wishes.end()) return {};
@@ -94,9 +97,14 @@ class SplitRun {
         now.evaluations = evaluations();
         now.seconds = seconds();
         const Status written = checkpoints.write(m_comm, m_cut, m_parts, now);
-        if (!m_comm.is_first() || !m_options.note) return;
-        m_options.note(written ? "checkpoint of step " + std::to_string(now.iterations) + " in " + m_options.checkpoints.string()
-                               : "no checkpoint of step " + std::to_string(now.iterations) + ", the one before stays: " + written.error().text());
+        if (!m_comm.is_first()) return;
+        const std::string step = std::to_string(now.iterations), before = m_newest ? "that of step " + std::to_string(*m_newest) + " stays" : "there is none before it";
+        if (written && m_newest == now.iterations) return;
+        if (m_options.note)
+            m_options.note(written ? "checkpoint of step " + step + " in " + m_options.checkpoints.string() : "no checkpoint of step " + step + ", " + before + ": " + written.error().text());
+        if (!written) return;
+        m_newest = now.iterations;
+        if (m_options.saved) m_options.saved(now.iterations);
     }
 
     Comm& m_comm;
@@ -110,6 +118,7 @@ class SplitRun {
     sim::Relaxing<SplitCloth> m_relaxing;
     std::optional<sim::Ending> m_end;
     double m_saved = 0;
+    std::optional<std::size_t> m_newest;  ///< step of the newest checkpoint
     std::chrono::steady_clock::time_point m_start = std::chrono::steady_clock::now();
 };
 
@@ -121,7 +130,41 @@ std::size_t points_of(const Cut& cut) {
 
 Json run_key(const Design& design, const sim::Plan& plan, const Cut& cut) {
     return {{"design_sha256", design_sha256(design)}, {"scene_sha256", scene_sha256(design)}, {"points_per_key", plan.points_per_key},
-            {"sample_spacing", plan.scene.sample_spacing}, {"points", points_of(cut)}, {"blocks", cut.blocks}, {"yarns", cut.points.size()}};
+            {"sample_spacing", plan.scene.sample_spacing}, {"points", points_of(cut)}, {"blocks", cut.blocks}, {"yarns", cut.points.size()}, {"plan_sha256", cut.sha256}};
+}
+
+/// Whether all ranks are about the same, `words`: a stale copy of a design on one machine is found before it does harm.
+Status check_alike(Comm& comm, const std::string& words) {
+    Comm::Packet letters;
+    for (const char letter : sha256_hex(words)) letters.push_back(static_cast<double>(letter));
+    Status status;
+    if (comm.gather(letters).front() != letters) status = Error{ErrorCode::usage, "has another design or other options than the first process: all must be given the same", {}};
+    return agreed(comm, status);
+}
+
+/// This rank's part of a plan, and what tells the run from any other.
+struct Dealt {
+    CutPlan plan;
+    Json key;
+};
+
+Result<Dealt> deal(Comm& comm, const Design& design, const sim::PlanInStretches& plan, std::size_t points_a_block, const std::string& purpose) {
+    Result<CutPlan> cut = cut_plan(plan, comm.rank(), comm.size(), points_a_block);
+    WEAVE_CHECK_OK(agreed(comm, cut ? Status() : Status(cut.error())));
+    Json key = run_key(design, plan.plan(), cut->cut);
+    WEAVE_CHECK_OK(check_alike(comm, key.dump() + purpose));
+    return Dealt{*std::move(cut), std::move(key)};
+}
+
+/// What must be the same on all ranks besides what is simulated.
+std::string purpose_of(const SplitOptions& options) {
+    return Json{options.residual.value_or(0), options.most_iterations, options.checkpoints.string(), options.checkpoint_every_s}.dump();
+}
+
+/// The checkpoint to go on from, if there is one, in a folder that is fit for more.
+Result<std::optional<Stand>> newest(Comm& comm, const Dealt& dealt, const Checkpoints& checkpoints) {
+    WEAVE_CHECK_OK(checkpoints.try_out(comm));
+    return checkpoints.newest(comm, dealt.plan.cut, dealt.plan.parts);
 }
 
 Stand as_planned(const std::vector<Part>& parts) {
@@ -185,7 +228,7 @@ Json report_of(Comm& comm, const Cut& cut, const std::vector<Part>& parts, const
                 {"smallest_curvature", curvature},
                 {"strain_deviation", {{"warp", measured.strain_deviation[0]}, {"weft", measured.strain_deviation[1]}}},
                 {"order_kept", measured.lost == 0},
-                {"crossings", outline.all_crossings},
+                {"crossings", outline.planned_crossings},
                 {"lost_crossings", measured.lost},
                 {"slid_crossings", measured.slid},
                 {"max_overlap", measured.max_overlap},
@@ -201,33 +244,35 @@ Json report_of(Comm& comm, const Cut& cut, const std::vector<Part>& parts, const
 }  // namespace
 
 Result<Json> simulate_split(Comm& comm, const Design& design, sim::PlanInStretches plan, const SplitOptions& options, const std::filesystem::path& out) {
-    WEAVE_TRY(const CutPlan dealt, cut_plan(plan, comm.rank(), comm.size(), options.points_a_block));
-    const Cut& cut = dealt.cut;
-    const Outline outline = outline_of(design, plan, dealt.parts);
+    WEAVE_CHECK_OK(agreed(comm, comm.is_first() ? check_writable(out) : Status()));
+    WEAVE_TRY(const Dealt dealt, deal(comm, design, plan, options.points_a_block, purpose_of(options)));
+    const auto& [cut, parts] = dealt.plan;
+    const Outline outline = outline_of(design, plan, parts);
     const double goal = options.residual.value_or(outline.goal);
-    std::optional<Checkpoints> checkpoints;
-    if (!options.checkpoints.empty()) checkpoints.emplace(options.checkpoints, run_key(design, plan.plan(), cut));
     plan = {};
-    Stand stand = as_planned(dealt.parts);
-    if (checkpoints) {
-        WEAVE_TRY(std::optional<Stand> newest, checkpoints->newest(comm, cut, dealt.parts));
-        if (newest) {
-            stand = *std::move(newest);
-            if (comm.is_first() && options.note) options.note("going on from the checkpoint of step " + std::to_string(stand.iterations));
-        }
+    std::optional<Checkpoints> checkpoints;
+    std::optional<Stand> before;
+    if (!options.checkpoints.empty()) {
+        checkpoints.emplace(options.checkpoints, dealt.key);
+        WEAVE_TRY(before, newest(comm, dealt, *checkpoints));
     }
-    SplitRun run(comm, cut, dealt.parts, options, goal, std::move(stand));
-    run.relax(checkpoints ? &*checkpoints : nullptr);
-    const Measured measured = measure(comm, cut, dealt.parts, outline, run.cloth());
-    Json report = report_of(comm, cut, dealt.parts, outline, measured, run, goal);
-    WEAVE_CHECK_OK(write_split(comm, cut, dealt.parts, outline, measured, run.cloth(), report, out));
+    std::optional<std::size_t> step;
+    if (before) step = before->iterations;
+    if (before && comm.is_first() && options.note) options.note("going on from the checkpoint of step " + std::to_string(*step));
+    if (before && comm.is_first() && options.saved) options.saved(*step);
+    SplitRun run(comm, cut, parts, options, goal, before ? *std::move(before) : as_planned(parts));
+    run.relax(checkpoints ? &*checkpoints : nullptr, step);
+    const Measured measured = measure(comm, cut, parts, outline, run.cloth());
+    Json report = report_of(comm, cut, parts, outline, measured, run, goal);
+    WEAVE_CHECK_OK(write_split(comm, design, cut, parts, outline, measured, run.cloth(), report, out));
     return report;
 }
 
-Result<Json> explain_split(Comm& comm, const sim::PlanInStretches& plan, std::size_t points_a_block) {
-    WEAVE_TRY(const CutPlan dealt, cut_plan(plan, comm.rank(), comm.size(), points_a_block));
-    Json ranks = gathered(comm, {{"blocks", dealt.parts.size()}, {"points", points_of(dealt.parts)}, {"peak_bytes", sim::peak_bytes()}});
-    return Json{{"points", points_of(dealt.cut)}, {"blocks", {{"rows", dealt.cut.blocks[0]}, {"columns", dealt.cut.blocks[1]}}}, {"ranks", std::move(ranks)}};
+Result<Json> explain_split(Comm& comm, const Design& design, const sim::PlanInStretches& plan, std::size_t points_a_block) {
+    WEAVE_TRY(const Dealt dealt, deal(comm, design, plan, points_a_block, "explain"));
+    const auto& [cut, parts] = dealt.plan;
+    Json ranks = gathered(comm, {{"blocks", parts.size()}, {"points", points_of(parts)}, {"peak_bytes", sim::peak_bytes()}});
+    return Json{{"points", points_of(cut)}, {"blocks", {{"rows", cut.blocks[0]}, {"columns", cut.blocks[1]}}}, {"ranks", std::move(ranks)}};
 }
 
 }  // namespace weave::ranks

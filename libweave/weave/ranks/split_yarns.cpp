@@ -112,54 +112,118 @@ Comm::Packet packet_of(const Part& part, const Piece& piece, std::span<const dou
     return packet;
 }
 
-/// The first rank's end of a file that all fill.
+/// The first rank's end of a file that all fill. One repeat of a cloth is written as often as it fills the cloth, as sim::copied_back() has it.
 class Filing {
   public:
-    Filing(FileInPieces& file, const YarnsLayout& layout, const Cut& cut) : m_file(file), m_layout(layout), m_first{0} {
-        for (const std::uint32_t points : cut.points) m_first.push_back(m_first.back() + points);
+    Filing(FileInPieces& file, const YarnsLayout& layout, const Cut& cut, const Outline& outline)
+        : m_file(file), m_layout(layout), m_outline(outline), m_cut(cut), m_times(outline.plan.repeats), m_first{0} {
+        m_wefts = wefts_of(outline);
+        for (const std::size_t points : points_of_file(cut, outline)) m_first.push_back(m_first.back() + points);
+    }
+
+    /// Control points of each yarn of the file.
+    static std::vector<std::size_t> points_of_file(const Cut& cut, const Outline& outline) {
+        const std::size_t wefts = wefts_of(outline);
+        const auto& [x, y] = outline.plan.repeats;
+        std::vector<std::size_t> points;
+        for (std::size_t copy = 0; copy < x; ++copy) {
+            for (std::size_t weft = 0; weft < wefts; ++weft) points.push_back(cut.points[weft] * y);
+        }
+        for (std::size_t copy = 0; copy < y; ++copy) {
+            for (std::size_t warp = wefts; warp < cut.points.size(); ++warp) points.push_back(cut.points[warp] * x);
+        }
+        return points;
     }
 
     /// Points that follow one another along a yarn are written at once.
     Status file_points(const Comm::Packet& packet) {
-        std::vector<double> control, planned, strain, contact;
-        std::size_t begin = 0;
-        const auto place = [&](std::size_t at) { return m_first[static_cast<std::size_t>(packet[at])] + static_cast<std::size_t>(packet[at + 1]); };
+        Run run;
         for (std::size_t at = 0; at < packet.size(); at += numbers_a_point) {
             const double* from = &packet[at];
-            if (control.empty()) begin = place(at);
-            control.insert(control.end(), from + 2, from + 5);
-            planned.insert(planned.end(), from + 5, from + 8);
-            strain.push_back(from[8]);
-            contact.push_back(from[9]);
-            const std::size_t next = at + numbers_a_point;
-            if (next < packet.size() && place(next) == begin + strain.size()) continue;
-            WEAVE_CHECK_OK(m_file.write(m_layout.control + 24 * begin, file_bytes(control)));
-            WEAVE_CHECK_OK(m_file.write(m_layout.planned + 24 * begin, file_bytes(planned)));
-            WEAVE_CHECK_OK(m_file.write(m_layout.strain + 8 * begin, file_bytes(strain)));
-            WEAVE_CHECK_OK(m_file.write(m_layout.contact_N + 8 * begin, file_bytes(contact)));
-            for (std::vector<double>* list : {&control, &planned, &strain, &contact}) list->clear();
+            const auto yarn = static_cast<std::size_t>(from[0]), index = static_cast<std::size_t>(from[1]);
+            if (!run.control.empty() && (yarn != run.yarn || index != run.index + run.control.size())) {
+                WEAVE_CHECK_OK(file_copies(run));
+                run = {};
+            }
+            if (run.control.empty()) run.yarn = yarn, run.index = index;
+            run.control.emplace_back(from[2], from[3], from[4]);
+            run.planned.emplace_back(from[5], from[6], from[7]);
+            run.strain.push_back(from[8]);
+            run.contact.push_back(from[9]);
         }
-        return {};
+        return run.control.empty() ? Status() : file_copies(run);
     }
 
     Status file_crossings(const Comm::Packet& packet) {
-        std::vector<Crossing> run;
-        std::uint64_t begin = 0;
-        for (std::size_t at = 0; at < packet.size(); at += 8) {
-            const auto whole = [&](std::size_t k) { return static_cast<std::size_t>(packet[at + k]); };
-            if (run.empty()) begin = whole(0);
-            run.push_back({whole(1), whole(2), whole(3), whole(4), whole(5), whole(6), whole(7) != 0});
-            if (at + 8 < packet.size() && static_cast<std::uint64_t>(packet[at + 8]) == begin + run.size()) continue;
-            WEAVE_CHECK_OK(m_file.write(m_layout.crossings + 28 * begin, file_bytes(run)));
-            run.clear();
+        for (std::size_t x = 0; x < m_times[0]; ++x) {
+            for (std::size_t y = 0; y < m_times[1]; ++y) WEAVE_CHECK_OK(file_crossings(packet, x, y));
         }
         return {};
     }
 
   private:
+    struct Run {
+        std::size_t yarn = 0, index = 0;
+        std::vector<Vec3> control, planned;
+        std::vector<double> strain, contact;
+    };
+
+    static std::size_t wefts_of(const Outline& outline) {
+        return static_cast<std::size_t>(std::ranges::count(outline.bare.yarns, System::weft, &SimulatedYarn::system));
+    }
+
+    Status file_copies(const Run& run) {
+        for (std::size_t x = 0; x < m_times[0]; ++x) {
+            for (std::size_t y = 0; y < m_times[1]; ++y) WEAVE_CHECK_OK(file_copy(run, x, y));
+        }
+        return {};
+    }
+
+    Status file_copy(const Run& run, std::size_t x, std::size_t y) {
+        const bool is_weft = run.yarn < m_wefts;
+        const std::size_t yarn = is_weft ? x * m_wefts + run.yarn : m_times[0] * m_wefts + y * (m_cut.points.size() - m_wefts) + run.yarn - m_wefts;
+        const std::uint64_t begin = m_first[yarn] + (is_weft ? y : x) * m_cut.points[run.yarn] + run.index;
+        const Vec3 aside(static_cast<double>(x) * m_outline.bare.size_mm[0], static_cast<double>(y) * m_outline.bare.size_mm[1], 0);
+        WEAVE_CHECK_OK(m_file.write(m_layout.control + 24 * begin, file_bytes(numbers_of(run.control, aside))));
+        WEAVE_CHECK_OK(m_file.write(m_layout.planned + 24 * begin, file_bytes(numbers_of(run.planned, aside))));
+        WEAVE_CHECK_OK(m_file.write(m_layout.strain + 8 * begin, file_bytes(run.strain)));
+        return m_file.write(m_layout.contact_N + 8 * begin, file_bytes(run.contact));
+    }
+
+    static std::vector<double> numbers_of(const std::vector<Vec3>& places, const Vec3& aside) {
+        std::vector<double> numbers;
+        for (const Vec3& place : places) {
+            const Vec3 moved = place + aside;
+            numbers.insert(numbers.end(), moved.data(), moved.data() + 3);
+        }
+        return numbers;
+    }
+
+    Status file_crossings(const Comm::Packet& packet, std::size_t x, std::size_t y) {
+        const sim::Plan& plan = m_outline.plan;
+        const std::uint64_t before = (x * m_times[1] + y) * m_outline.all_crossings;
+        std::vector<Crossing> run;
+        std::uint64_t begin = 0;
+        for (std::size_t at = 0; at < packet.size(); at += 8) {
+            const auto whole = [&](std::size_t k) { return static_cast<std::size_t>(packet[at + k]); };
+            if (run.empty()) begin = whole(0);
+            run.push_back({x * m_wefts + whole(1), whole(2) + y * m_outline.keys[whole(1)],
+                           m_times[0] * m_wefts + y * (m_cut.points.size() - m_wefts) + whole(3) - m_wefts, whole(4) + x * m_outline.keys[whole(3)],
+                           whole(5) + x * (plan.cloth_picks / m_times[0]), whole(6) + y * (plan.cloth_ends / m_times[1]), whole(7) != 0});
+            if (at + 8 < packet.size() && static_cast<std::uint64_t>(packet[at + 8]) == begin + run.size()) continue;
+            WEAVE_CHECK_OK(m_file.write(m_layout.crossings + 28 * (before + begin), file_bytes(run)));
+            run.clear();
+        }
+        return {};
+    }
+
     FileInPieces& m_file;
     const YarnsLayout& m_layout;
-    std::vector<std::size_t> m_first;
+    const Outline& m_outline;
+    const Cut& m_cut;
+    std::array<std::size_t, 2> m_times;
+    std::size_t m_wefts = 0;
+    std::vector<std::size_t> m_first;  ///< point of each yarn of the file
 };
 
 Comm::Packet crossings_packet(const Outline& outline, std::size_t block) {
@@ -173,8 +237,8 @@ Comm::Packet crossings_packet(const Outline& outline, std::size_t block) {
     return packet;
 }
 
-/// What is known of the yarns once they lie at rest.
-Yarns labelled(const Cut& cut, const Outline& outline, const Measured& measured, Json report) {
+/// What is known of the yarns of the file once they lie at rest.
+Yarns labelled(const Design& design, const Cut& cut, const Outline& outline, const Measured& measured, Json report) {
     Yarns yarns = outline.bare;
     for (std::size_t y = 0; y < yarns.yarns.size(); ++y) {
         SimulatedYarn& yarn = yarns.yarns[y];
@@ -182,7 +246,7 @@ Yarns labelled(const Cut& cut, const Outline& outline, const Measured& measured,
         yarn.rest_length_mm = cut.yarns[y].is_fed ? yarn.length_mm / cut.yarns[y].strain : cut.yarns[y].rest_mm;
     }
     yarns.report = std::move(report);
-    return yarns;
+    return sim::copied_back(std::move(yarns), outline.plan, design);
 }
 
 /// To the first rank, from whichever has them; the others get nothing.
@@ -223,12 +287,15 @@ Outline outline_of(const Design& design, const sim::PlanInStretches& stretches, 
     sim::CrossedYarns crossed;
     stretches.each_crossing([&](const Crossing& crossing) {
         crossed.add(crossing);
+        ++outline.planned_crossings;
         if (crossing.weft == sim::PlanInStretches::none || crossing.warp == sim::PlanInStretches::none) return;
         const auto index = static_cast<std::size_t>(std::lround(outline.per_key[crossing.weft] * static_cast<double>(crossing.weft_key))) % stretches.points(crossing.weft);
         const auto block = part_with(parts, static_cast<std::uint32_t>(crossing.weft), static_cast<std::uint32_t>(index));
         if (block) outline.crossings.push_back({crossing, outline.all_crossings, *block});
         ++outline.all_crossings;
     });
+    outline.plan = plan;
+    for (std::size_t y = 0; y < plan.curve_of.size(); ++y) outline.keys.push_back(stretches.keys(y));
     outline.coverage = sim::coverage_of(plan, crossed);
     outline.lines = sim::lines_json(plan);
     outline.fidelity = plan.fidelity;
@@ -268,7 +335,7 @@ Measured measure(Comm& comm, const Cut& cut, const std::vector<Part>& parts, con
     return measured;
 }
 
-Status write_split(Comm& comm, const Cut& cut, const std::vector<Part>& parts, const Outline& outline, const Measured& measured,
+Status write_split(Comm& comm, const Design& design, const Cut& cut, const std::vector<Part>& parts, const Outline& outline, const Measured& measured,
                    SplitCloth& cloth, Json report, const std::filesystem::path& out) {
     std::vector<double> contact;
     cloth.contact_forces(contact);
@@ -281,8 +348,8 @@ Status write_split(Comm& comm, const Cut& cut, const std::vector<Part>& parts, c
     std::optional<FileInPieces> file;
     YarnsLayout layout;
     const auto begin = [&]() -> Status {
-        const std::vector<std::size_t> points(cut.points.begin(), cut.points.end());
-        WEAVE_TRY(layout, lay_out_yarns(labelled(cut, outline, measured, std::move(report)), points, outline.all_crossings));
+        const std::size_t copies = outline.plan.repeats[0] * outline.plan.repeats[1];
+        WEAVE_TRY(layout, lay_out_yarns(labelled(design, cut, outline, measured, std::move(report)), Filing::points_of_file(cut, outline), copies * outline.all_crossings));
         WEAVE_TRY(FileInPieces begun, FileInPieces::begin(out));
         file.emplace(std::move(begun));
         return file->write(0, layout.front);
@@ -301,14 +368,13 @@ Status write_split(Comm& comm, const Cut& cut, const std::vector<Part>& parts, c
             points = to_first(comm, rank, std::move(points), size(0));
             crossings = to_first(comm, rank, std::move(crossings), size(1));
             if (!comm.is_first() || !status) continue;
-            Filing filing(*file, layout, cut);
+            Filing filing(*file, layout, cut, outline);
             status = filing.file_points(points);
             if (status) status = filing.file_crossings(crossings);
         }
     }
     if (comm.is_first() && status) status = file->finish();
-    if (comm.gather(status ? 0.0 : 1.0).front() == 0) return {};
-    return comm.is_first() ? status : Status(system_fault("the first rank could not write the yarns; it tells why"));
+    return agreed(comm, status);
 }
 
 }  // namespace weave::ranks

@@ -22,7 +22,9 @@ struct Outline {
         std::size_t block = 0;       ///< of those of this rank
     };
     std::vector<Own> crossings;
-    std::uint64_t all_crossings = 0;
+    std::uint64_t all_crossings = 0, planned_crossings = 0;  ///< the latter with those of yarns that are not simulated
+    sim::Plan plan;                                          ///< without points and key points
+    std::vector<std::size_t> keys;                           ///< of each yarn
     Json coverage, lines;
     sim::Fidelity fidelity = sim::Fidelity::standard;
     double points_per_key = 0, goal = 0;
@@ -40,7 +42,7 @@ struct Measured {
 Measured measure(Comm& comm, const Cut& cut, const std::vector<Part>& parts, const Outline& outline, SplitCloth& cloth);
 
 /// Writes the yarns of all ranks to one file, through the first rank, which holds the numbers of one block at a time.
-Status write_split(Comm& comm, const Cut& cut, const std::vector<Part>& parts, const Outline& outline, const Measured& measured,
+Status write_split(Comm& comm, const Design& design, const Cut& cut, const std::vector<Part>& parts, const Outline& outline, const Measured& measured,
                    SplitCloth& cloth, Json report, const std::filesystem::path& out);
 
 }  // namespace weave::ranks
