@@ -20,11 +20,12 @@ struct Case {
     bool is_whole = false;
     std::optional<WeftMode> weft_mode = {};
     std::optional<Region> region = {};
+    sim::Fidelity fidelity = sim::Fidelity::draft;
 };
 
 inline sim::SimulationRequest request_of(const Case& of) {
     sim::SimulationRequest request;
-    request.fidelity = sim::Fidelity::draft;
+    request.fidelity = of.fidelity;
     request.reduce = !of.is_whole;
     request.weft_mode = of.weft_mode;
     request.region = of.region;
