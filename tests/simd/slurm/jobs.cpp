@@ -30,13 +30,15 @@ std::string batch_of(wire::Follower& follower, std::uint64_t job) {
 
 /// Until Slurm runs it, and it has made steps.
 bool makes_steps(const Box& box, std::uint64_t job) {
-    return until([&] {
+    const bool made = until([&] {
         const Json status = box.status();  // of which the list below is a part
         for (const Json& one : status.at("jobs")) {
             if (one.at("job") == job && one.at("step") > 0) return true;
         }
         return false;
     });
+    if (!made) UNSCOPED_INFO("what simd says of its jobs: " << box.status().dump(1));
+    return made;
 }
 
 /// Arrays that the queue has seen.
