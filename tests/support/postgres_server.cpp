@@ -200,8 +200,15 @@ void PostgresServer::kill() {
 
 void PostgresServer::stop() {
     ::kill(m_process, SIGINT);
-    ::waitpid(m_process, nullptr, 0);
-    m_process = 0;
+    // A server whose log's disk is full may wait for ever for its last checkpoint.
+    for (int wait = 0; wait < 300; ++wait) {
+        if (::waitpid(m_process, nullptr, WNOHANG) == m_process) {
+            m_process = 0;
+            return;
+        }
+        ::usleep(100'000);
+    }
+    kill();
 }
 
 /// What is mounted is seen by this thread and what it starts alone, and is gone with them, however they end.
