@@ -1,6 +1,7 @@
 #pragma once
 
 #include "../box.hpp"
+#include "../results.hpp"
 
 #include <weave/core/file.hpp>
 
@@ -103,6 +104,16 @@ class Cluster {
     }
     weave::testing::TemporaryFolder m_folder;
 };
+
+/// A run of long_cloth that is caught in the act: it outlasts by far a look of the daemon, a checkpoint and Slurm's own way of putting a job back,
+/// a second each, also on a machine several times as quick. It does come to rest, so that its bits can be compared.
+inline wire::Simulation lasting_run() {
+    wire::Simulation simulation;
+    simulation.plan.fidelity = sim::Fidelity::reference;
+    simulation.plan.reduce = false;
+    simulation.residual = 1e-4;
+    return simulation;
+}
 
 /// Waits until something is so; whether it came to that.
 inline bool until(const std::function<bool()>& is_so, std::chrono::milliseconds patience = 60s) {

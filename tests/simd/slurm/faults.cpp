@@ -1,6 +1,5 @@
 // What happens to jobs in Slurm when copies go astray, disks are full, clocks are wrong, and what is between daemon and nodes is cut.
 
-#include "../results.hpp"
 #include "../submitted.hpp"
 #include "cluster.hpp"
 
@@ -42,7 +41,7 @@ std::unique_ptr<weave::testing::Program> stray_copy(const Cluster& cluster, cons
 std::string wanted_yarns() {
     const Box here;
     wire::Follower follower = here.follower();
-    const std::uint64_t job = submit(follower, document_of(long_cloth), long_run());
+    const std::uint64_t job = submit(follower, document_of(long_cloth), lasting_run());
     REQUIRE(end_of(follower, job).phase == wire::JobPhase::done);
     return yarns_of(follower, job);
 }
@@ -54,7 +53,7 @@ TEST_CASE("of two copies of a job the later one counts and the stale one ends it
     const Cluster cluster;
     const Box box(cluster.config());
     wire::Follower follower = box.follower();
-    const std::uint64_t job = submit(follower, document_of(long_cloth), long_run());
+    const std::uint64_t job = submit(follower, document_of(long_cloth), lasting_run());
     const JobFolder folder = folder_of(cluster, job);
     REQUIRE(has_attempt(folder, 1));
     const std::string told = (cluster.folder() / "stray").string();
@@ -76,7 +75,7 @@ TEST_CASE("a stale copy that writes its result all the same is refused by its to
     const Cluster cluster;
     Box box(cluster.config());
     wire::Follower follower = box.follower();
-    const std::uint64_t job = submit(follower, document_of(long_cloth), long_run());
+    const std::uint64_t job = submit(follower, document_of(long_cloth), lasting_run());
     const JobFolder folder = folder_of(cluster, job);
     REQUIRE(has_attempt(folder, 1));
     const auto copy = stray_copy(cluster, "1.json", (cluster.folder() / "stray").string());
@@ -137,7 +136,7 @@ TEST_CASE("a job that Slurm puts back goes on soon from its checkpoint and ends 
     const Cluster cluster;
     const Box box(cluster.config());
     wire::Follower follower = box.follower();
-    const std::uint64_t job = submit(follower, document_of(long_cloth), long_run());
+    const std::uint64_t job = submit(follower, document_of(long_cloth), lasting_run());
     const JobFolder folder = folder_of(cluster, job);
     REQUIRE(has_attempt(folder, 1));
     REQUIRE(until([&] { return std::filesystem::exists(folder.attempt(1) / "checkpoint"); }));
@@ -156,7 +155,7 @@ TEST_CASE("while Slurm does not answer that is told and jobs that run end well a
     const Cluster cluster;
     const Box box(cluster.config());
     wire::Follower follower = box.follower();
-    const std::uint64_t job = submit(follower, document_of(long_cloth), long_run());
+    const std::uint64_t job = submit(follower, document_of(long_cloth), lasting_run());
     REQUIRE(has_attempt(folder_of(cluster, job), 1));
     cluster.signal("slurmctld", SIGKILL);
     const std::uint64_t later = submit(follower, document_of("plain"), at(sim::Fidelity::draft));
@@ -180,7 +179,7 @@ TEST_CASE("a node that dies while its job goes on costs nothing") {
     const Cluster cluster;
     const Box box(cluster.config());
     wire::Follower follower = box.follower();
-    const std::uint64_t job = submit(follower, document_of(long_cloth), long_run());
+    const std::uint64_t job = submit(follower, document_of(long_cloth), lasting_run());
     const JobFolder folder = folder_of(cluster, job);
     REQUIRE(has_attempt(folder, 1));
     cluster.signal(folder.news(1)->node, SIGKILL);
@@ -193,7 +192,7 @@ TEST_CASE("a node that is cut off from all others loses its job to another and d
     const Cluster cluster;
     const Box box(cluster.config());
     wire::Follower follower = box.follower();
-    const std::uint64_t job = submit(follower, document_of(long_cloth), long_run());
+    const std::uint64_t job = submit(follower, document_of(long_cloth), lasting_run());
     const JobFolder folder = folder_of(cluster, job);
     REQUIRE(has_attempt(folder, 1));
     const std::string node = folder.news(1)->node;

@@ -1,6 +1,5 @@
 // Jobs in Slurm: handed over in arrays, run on nodes, brought home, cancelled, and found again by a daemon that was killed.
 
-#include "../results.hpp"
 #include "../submitted.hpp"
 #include "cluster.hpp"
 
@@ -66,14 +65,14 @@ TEST_CASE("jobs run in Slurm as they do on this machine with a GPU of their own 
     {
         const Box here;
         wire::Follower follower = here.follower();
-        const std::uint64_t job = submit(follower, document_of(long_cloth), long_run());
+        const std::uint64_t job = submit(follower, document_of(long_cloth), lasting_run());
         CHECK(end_of(follower, job).phase == wire::JobPhase::done);
         wanted = yarns_of(follower, job);
     }
     const Cluster cluster;
     const Box box(cluster.config());
     wire::Follower follower = box.follower();
-    const std::uint64_t first = submit(follower, document_of(long_cloth), long_run()), second = submit(follower, document_of(long_cloth), long_run());
+    const std::uint64_t first = submit(follower, document_of(long_cloth), lasting_run()), second = submit(follower, document_of(long_cloth), lasting_run());
     REQUIRE(makes_steps(box, first));
     REQUIRE(makes_steps(box, second));
     std::set<std::string> places{batch_of(follower, first), batch_of(follower, second)};
@@ -146,7 +145,7 @@ TEST_CASE("a daemon that is killed finds its jobs in Slurm again and hands none 
     const Cluster cluster;
     Box box(cluster.config());
     wire::Follower follower = box.follower();
-    const std::uint64_t quick = submit(follower, document_of(long_cloth), long_run()), slow = submit(follower, document_of(long_cloth), endless());
+    const std::uint64_t quick = submit(follower, document_of(long_cloth), lasting_run()), slow = submit(follower, document_of(long_cloth), endless());
     REQUIRE(makes_steps(box, quick));
     REQUIRE(makes_steps(box, slow));
     box.kill();
