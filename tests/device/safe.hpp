@@ -3,6 +3,7 @@
 #include "bench.hpp"
 #include "support/machines.hpp"
 
+#include <algorithm>
 #include <cmath>
 #include <cstdint>
 #include <vector>
@@ -77,7 +78,45 @@ void check_share(Machine& machine, const SimScene& scene, double size, double to
     CHECK(share_of(bench, 8) == Approx(right).epsilon(tolerance));
 }
 
+/// Two crossing yarns that all but lie on one another.
+SimScene crossed_yarns() {
+    SimScene scene;
+    for (const int k : {0, 1}) {
+        SimYarn yarn = usual_yarn();
+        yarn.is_fed = false;
+        const weave::Vec3 along = k == 1 ? weave::Vec3(0.3, 1, 0) : weave::Vec3(1, 0, 0), middle(0, 0, k * 0.002);
+        scene.yarns.push_back(laid(yarn, middle - along, middle + along, 9));
+    }
+    return scene;
+}
+
+template <class Real, class Machine>
+void check_pressed(Machine& machine, double tolerance) {
+    DeviceBench<Real, Machine> bench(machine, crossed_yarns());
+    bench.host.evaluate();
+    std::vector<Real> change = some_change(bench, 7, 2e-4);
+    for (std::size_t row = 0; row < bench.cloth.rows; ++row) change[3 * row + 2] += row < bench.cloth.rows / 2 ? Real(1e-3) : Real(-1e-3);
+    std::vector<double> left = bench.slots_of(change);
+    REQUIRE(bench.host.energy.safe_share(bench.host.state, left, 1) == 0);
+    bench.host.energy.shorten(bench.host.state, left);
+    const std::vector<double> found = bench.slots_of(shortened(bench, change));
+    double apart = 0, moved = 0;
+    for (std::size_t i = 0; i < left.size(); ++i) {
+        apart = std::max(apart, std::abs(found[i] - left[i]));
+        moved = std::max(moved, std::abs(left[i]));
+    }
+    CHECK(apart <= tolerance);
+    CHECK(moved > 1e-4);
+    CHECK(share_of(bench, 1) >= 0.899);
+}
+
 }  // namespace
+
+TEMPLATE_TEST_CASE("steps: of yarns that are pressed together what is left is what the processor leaves", "[device]", WEAVE_MACHINES) {
+    TestType machine;
+    check_pressed<double>(machine, 1e-15);
+    check_pressed<float>(machine, 1e-8);
+}
 
 TEMPLATE_TEST_CASE("steps: what is safe is what the processor holds for safe", "[device]", WEAVE_MACHINES) {
     TestType machine;

@@ -1,5 +1,6 @@
 #include <weave/ranks/split_cloth.hpp>
 
+#include <weave/sim/approach.hpp>
 #include <weave/sim/relax.hpp>
 
 #include <algorithm>
@@ -274,7 +275,7 @@ void SplitCloth::shorten(Slots& slots) {
         if (greatest_of_all(unsafe) == 0) return;
         for (std::size_t b = 0; b < shares.size(); ++b) {
             Piece& piece = *m_lay->pieces[b];
-            piece.energy().shorten_by(shares[b], round, m_slots[b]);
+            piece.energy().shorten_by(piece.state, shares[b], round, m_slots[b]);
             piece.take(m_slots[b], std::span(slots).subspan(m_first_slot[b], m_first_slot[b + 1] - m_first_slot[b]));
         }
     }

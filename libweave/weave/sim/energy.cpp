@@ -1,7 +1,5 @@
 #include <weave/sim/energy.hpp>
 
-#include <weave/sim/approach.hpp>
-
 #include <algorithm>
 #include <cmath>
 
@@ -181,6 +179,12 @@ void Energy<Real>::move_samples(const std::vector<Real>& state, const std::vecto
     });
 }
 
+/// Of two own samples, in the state that move_samples() was told of.
+template <class Real>
+CrossingLines<Real> Energy<Real>::lines(std::size_t sample, std::size_t other, const Vec<Real>& apart, Real reach) const {
+    return CrossingLines<Real>::of(load(&m_tangent[3 * sample]), load(&m_tangent[3 * other]), apart, reach, m_neighbours.are_of_one_yarn(sample, other));
+}
+
 /// The share by which sample `a` may go: no near one comes closer by 0.45 of its distance. Squares alone, so
 /// that the loop over neighbours has neither roots nor divisions.
 template <class Real>
@@ -197,7 +201,7 @@ double Energy<Real>::safe_share_of(const FabricView<Real>& fabric, std::size_t a
         const Real near2 = apart.squaredNorm(), closing2 = change.squaredNorm(),
                    reach = all.radius[a] + all.radius[b];
         if (near2 < reach * reach / 4)
-            share = std::min(share, crossing_share(load(&m_tangent[3 * a]), load(&m_tangent[3 * std::size_t(own)]), apart, change, reach));
+            share = std::min(share, lines(a, own, apart, reach).share(change, reach));
         if (closing2 * apart2 <= change2 * near2) continue;
         change2 = closing2;
         apart2 = near2;
@@ -231,11 +235,54 @@ bool Energy<Real>::find_safe_shares(const std::vector<Real>& state, const std::v
     return std::all_of(share.begin(), share.end(), [](double part) { return part >= ShorteningRounds::enough; });
 }
 
+/// What of a slot's change does not bring samples nearer that are pressed together, of the segments that it reaches and that may not move.
 template <class Real>
-void Energy<Real>::shorten_by(std::vector<double>& share, int round, std::vector<Real>& change) const {
-    // What is still not safe does not move at all: else one place would hold up the whole cloth.
+Vec<Real> Energy<Real>::without_closing(const FabricView<Real>& fabric, const std::vector<double>& share, std::size_t slot, Vec<Real> mine) const {
+    const SamplesView<Real>& all = fabric.samples;
+    const YarnPlace& yarn = m_fabric.yarns()[m_fabric.yarn_of_slot()[slot]];
+    const std::size_t within = slot - yarn.first_slot - yarn.skipped;
+    for (std::size_t c = 0; c < 4; ++c) {
+        if (within - c >= yarn.segments || share[yarn.first_segment + within - c] > 0) continue;
+        const SegmentPlace& segment = fabric.segments[yarn.first_segment + within - c];
+        for (std::size_t a = segment.sample; a < segment.sample + fabric.yarns[segment.yarn].samples; ++a) {
+            const Vec<Real> at(all.x[a], all.y[a], all.z[a]), moved = load(&m_moved[3 * a]);
+            for (std::uint32_t e = fabric.first_neighbour[a]; e < fabric.first_neighbour[a + 1]; ++e) {
+                const std::uint32_t b = fabric.neighbours[e];
+                const std::size_t own = m_neighbours.own(b);
+                const Vec<Real> apart = at - Vec<Real>(all.x[b], all.y[b], all.z[b]), theirs = load(&m_moved[3 * own]);
+                const Real reach = all.radius[a] + all.radius[b];
+                if (apart.squaredNorm() >= reach * reach / 4) continue;
+                const CrossingLines<Real> both = lines(a, own, apart, reach);
+                if (both.is_pressed(reach) && both.closing(moved - theirs) > 0) mine = both.without_closing(mine, moved, theirs);
+            }
+        }
+    }
+    return mine;
+}
+
+/// A slot beyond a yarn's end that moves as a control point does counts with that one.
+template <class Real>
+void Energy<Real>::leave_out_closing(const FabricView<Real>& fabric, const std::vector<double>& share, std::vector<Real>& change) const {
+    const auto put = [&](std::size_t slot, const Vec<Real>& moves) {
+        for (std::size_t k = 0; k < 3; ++k) change[3 * slot + k] = moves[static_cast<Eigen::Index>(k)];
+    };
+    m_executor.each(m_fabric.slots(), [&](std::size_t slot) {
+        if (m_fabric.moves()[slot] != 0) put(slot, without_closing(fabric, share, slot, load(&change[3 * slot])));
+    });
+    for (const FollowSlot& follow : m_fabric.follows()) {
+        const std::size_t from = follow.from[0];
+        if (follow.weight[0] == 1 && m_fabric.moves()[from] != 0) put(from, without_closing(fabric, share, follow.slot, load(&change[3 * from])));
+    }
+}
+
+template <class Real>
+void Energy<Real>::shorten_by(const std::vector<Real>& state, std::vector<double>& share, int round, std::vector<Real>& change) {
     if (round >= ShorteningRounds::gentle) {
+        // What is still not safe does not move at all: else one place would hold up the whole cloth.
         for (double& part : share) part = part < ShorteningRounds::enough ? 0 : 1;
+    } else if (std::ranges::find(share, 0.0) != share.end()) {
+        leave_out_closing(view(state), share, change);
+        std::ranges::replace(share, 0.0, 1.0);
     }
     std::vector<double> least(m_fabric.slots());
     m_executor.each(m_fabric.slots(), [&](std::size_t slot) {
@@ -260,7 +307,7 @@ void Energy<Real>::shorten(const std::vector<Real>& state, std::vector<Real>& ch
     std::vector<double> share;
     for (int round = 0; round < ShorteningRounds::most; ++round) {
         if (find_safe_shares(state, change, share)) return;
-        shorten_by(share, round, change);
+        shorten_by(state, share, round, change);
     }
     // Rounds may run out before all places agree; then all of it is shortened alike.
     const auto whole = static_cast<Real>(safe_share(state, change, 1));

@@ -1,5 +1,6 @@
 #pragma once
 
+#include <weave/sim/approach.hpp>
 #include <weave/sim/execute.hpp>
 #include <weave/sim/fabric.hpp>
 #include <weave/sim/fields.hpp>
@@ -13,12 +14,6 @@
 #include <vector>
 
 namespace weave::sim {
-
-/// Rounds of Energy::shorten(): after the gentle ones what is not safe `enough` does not move at all.
-struct ShorteningRounds {
-    static constexpr int gentle = 6, most = 20;
-    static constexpr double enough = 0.9;
-};
 
 /// Energy of the yarns and its gradient: stretch, bending and contact, and the fields and held friction that the scene has.
 template <class Real>
@@ -60,12 +55,15 @@ class Energy {
     /// A round of shorten() by its two halves, for a cloth that is relaxed in parts: the share of the change that is safe
     /// by each segment, and whether it is enough everywhere; and the change shortened by these shares.
     bool find_safe_shares(const std::vector<Real>& state, const std::vector<Real>& change, std::vector<double>& share);
-    void shorten_by(std::vector<double>& share, int round, std::vector<Real>& change) const;
+    void shorten_by(const std::vector<Real>& state, std::vector<double>& share, int round, std::vector<Real>& change);
 
   private:
     void lay_samples(const std::vector<Real>& state);
     void move_samples(const std::vector<Real>& state, const std::vector<Real>& change);
     [[nodiscard]] double safe_share_of(const FabricView<Real>& fabric, std::size_t sample, double most) const;
+    [[nodiscard]] CrossingLines<Real> lines(std::size_t sample, std::size_t other, const Vec<Real>& apart, Real reach) const;
+    void leave_out_closing(const FabricView<Real>& fabric, const std::vector<double>& share, std::vector<Real>& change) const;
+    [[nodiscard]] Vec<Real> without_closing(const FabricView<Real>& fabric, const std::vector<double>& share, std::size_t slot, Vec<Real> mine) const;
     void gather(std::vector<Real>& gradient) const;
     [[nodiscard]] double image_pull(const FabricView<Real>& fabric, std::size_t sample,
                                     std::size_t axis) const;

@@ -41,6 +41,10 @@ class Neighbours {
     [[nodiscard]] std::uint32_t own(std::uint32_t sample) const {
         return sample < m_own ? sample : m_halo[sample - m_own].of;
     }
+    /// Whether two own samples are of one yarn.
+    [[nodiscard]] bool are_of_one_yarn(std::size_t a, std::size_t b) const {
+        return m_fabric.segment_places()[m_segment_of[a]].yarn == m_fabric.segment_places()[m_segment_of[b]].yarn;
+    }
     /// How many periods away from its own sample a sample lies.
     [[nodiscard]] std::array<std::int16_t, 2> image(std::uint32_t sample) const {
         return sample < m_own ? std::array<std::int16_t, 2>{} : m_halo[sample - m_own].image;

@@ -57,7 +57,7 @@ struct SafeShare {
             const Vec<Real> from = apart(at, lists.sample[b], static_cast<Real>(cloth.scale.step_mm)), change = mine - load(moved[own].by);
             const Real near2 = from.squaredNorm(), closing2 = change.squaredNorm(), reach = radius + lists.radius[b];
             if (near2 < reach * reach / 4) {
-                const double crossing = crossing_share(tangent(index), tangent(own), from, change, reach);
+                const double crossing = lines(index, own, from, reach).share(change, reach);
                 share = crossing < share ? crossing : share;
             }
             if (closing2 * apart2 <= change2 * near2) continue;
@@ -69,9 +69,29 @@ struct SafeShare {
         return near < share ? near : share;
     }
 
+    /// What of `mine`, the change of a slot that sample `index` follows, does not bring that one nearer to any it is pressed against.
+    WEAVE_HD Vec<Real> without_closing(std::size_t index, Vec<Real> mine) const {
+        const Sample<Real> at = lists.sample[index];
+        const Real radius = lists.radius[index];
+        const Vec<Real> move = load(moved[index].by);
+        for (std::uint32_t e = lists.first[index]; e < lists.first[index + 1]; ++e) {
+            const std::uint32_t b = lists.neighbour[e], own = lists.own_of(b);
+            const Vec<Real> from = apart(at, lists.sample[b], static_cast<Real>(cloth.scale.step_mm)), theirs = load(moved[own].by);
+            const Real reach = radius + lists.radius[b];
+            if (from.squaredNorm() >= reach * reach / 4) continue;
+            const CrossingLines<Real> both = lines(index, own, from, reach);
+            if (both.is_pressed(reach) && both.closing(move - theirs) > 0) mine = both.without_closing(mine, move, theirs);
+        }
+        return mine;
+    }
+
   private:
-    WEAVE_HD Vec<Real> tangent(std::size_t index) const {
-        const SegmentPlace segment = cloth.segment[cloth.segment_of_sample[index]];
+    WEAVE_HD CrossingLines<Real> lines(std::size_t index, std::size_t own, const Vec<Real>& from, Real reach) const {
+        const SegmentPlace &mine = cloth.segment[cloth.segment_of_sample[index]], &other = cloth.segment[cloth.segment_of_sample[own]];
+        return CrossingLines<Real>::of(tangent(index, mine), tangent(own, other), from, reach, mine.yarn == other.yarn);
+    }
+
+    WEAVE_HD Vec<Real> tangent(std::size_t index, const SegmentPlace& segment) const {
         Real slots[12];
         load_around_first(state, segment.slot, slots);
         return combine(cloth.basis[cloth.yarn[segment.yarn].basis + (index - segment.sample)].slope, slots);
@@ -95,8 +115,33 @@ struct SafeShareOfSegment {
     }
 };
 
+/// Leaves out of a row's change what would bring samples nearer that are pressed together, of segments that may not move. Slots beyond a
+/// yarn's end that move as the row does count too.
+template <class Real>
+struct LeaveOutClosing {
+    SafeShare<Real> of_sample;
+    View<const double> share;
+    View<Real> change;
+
+    WEAVE_HD void operator()(std::size_t row) const {
+        const ClothView<Real>& cloth = of_sample.cloth;
+        const YarnSpan& span = cloth.span[cloth.yarn_of_row[row]];
+        Vec<Real> mine = load(change.at(3 * row, 3));
+        for (std::uint32_t i = cloth.first_slot_of_row[row]; i < cloth.first_slot_of_row[row + 1]; ++i) {
+            if (cloth.slots_of_row[i].weight != 1) continue;
+            const std::uint32_t within = cloth.slots_of_row[i].slot - span.first_slot;
+            for (std::uint32_t c = 0; c < 4 && c <= within; ++c) {
+                if (within - c >= span.segments || share[span.first_segment + within - c] > 0) continue;
+                const SegmentPlace& place = cloth.segment[span.first_segment + within - c];
+                for (std::uint32_t k = 0; k < cloth.yarn[place.yarn].samples; ++k) mine = of_sample.without_closing(place.sample + k, mine);
+            }
+        }
+        for (int k = 0; k < 3; ++k) change[3 * row + std::size_t(k)] = mine[k];
+    }
+};
+
 /// Shortens a row's change to what the segments allow that its slots reach. `holds`: a segment that allows less than `enough` does
-/// not move at all.
+/// not move at all; else one that allows nothing has had its closing left out, and moves with what remains.
 template <class Real>
 struct ShortenRow {
     ClothView<Real> cloth;
@@ -114,6 +159,7 @@ struct ShortenRow {
                 if (within - c >= span.segments) continue;
                 double of = share[span.first_segment + within - c];
                 if (holds) of = of < enough ? 0 : 1;
+                else if (!(of > 0)) of = 1;
                 least = of < least ? of : least;
             }
         }
@@ -149,18 +195,21 @@ struct SafeSteps {
     /// come to agree. At least 0.9 of what is left is safe.
     WEAVE_ANYWHERE template <class Crew>
     WEAVE_HD void shorten(Crew& crew, const ListsView<Real>& lists, const View<const double>& state, const View<Real>& change) const {
-        constexpr int rounds = 6, most_rounds = 20;
-        constexpr double enough = 0.9;
-        for (int round = 0; round < most_rounds; ++round) {
+        using Rounds = ShorteningRounds;
+        const SafeShare<Real> of_sample{cloth, lists, state, moved, 1};
+        for (int round = 0; round < Rounds::most; ++round) {
             crew.each(cloth.samples, MoveSamples<Real>{cloth, change, moved});
-            crew.each(cloth.segments, SafeShareOfSegment<Real>{{cloth, lists, state, moved, 1}, share});
-            if (crew.least(cloth.segments, Number<double>{share}, 1) >= enough) return;
+            crew.each(cloth.segments, SafeShareOfSegment<Real>{of_sample, share});
+            const double least = crew.least(cloth.segments, Number<double>{share}, 1);
+            if (least >= Rounds::enough) return;
             // What is still not safe does not move at all: else one place would hold up the whole cloth.
-            crew.each(cloth.rows, ShortenRow<Real>{cloth, share, enough, round >= rounds, change});
+            const bool holds = round >= Rounds::gentle;
+            if (!holds && !(least > 0)) crew.each(cloth.rows, LeaveOutClosing<Real>{of_sample, share, change});
+            crew.each(cloth.rows, ShortenRow<Real>{cloth, share, Rounds::enough, holds, change});
         }
         // Rounds may run out before all places agree; then all of it is shortened alike.
         const double whole = safe_share(crew, lists, state, change, 1);
-        if (whole < enough) crew.each(3 * std::size_t(cloth.rows), Scale<Real>{static_cast<Real>(whole), change});
+        if (whole < Rounds::enough) crew.each(3 * std::size_t(cloth.rows), Scale<Real>{static_cast<Real>(whole), change});
     }
 };
 
