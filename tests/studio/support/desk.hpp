@@ -5,8 +5,13 @@
 
 #include <catch2/catch.hpp>
 
+#include <weave/core/file.hpp>
+
+#include <filesystem>
+#include <string>
 #include <studio/panels/message_bar.hpp>
 #include <studio/window/main_window.hpp>
+#include <support/temporary_folder.hpp>
 
 #include "hands.hpp"
 
@@ -37,6 +42,13 @@ struct Desk {
 
     MainWindow window;
 };
+
+/// A file with these bytes, to be opened.
+inline std::string file_of(const weave::testing::TemporaryFolder& folder, const char* name, const std::string& bytes) {
+    const std::filesystem::path path = folder.path / name;
+    REQUIRE(write_file(path, bytes));
+    return path.string();
+}
 
 /// Presses the button of a question that says this.
 inline void press(QDialog& dialog, const QString& text) {
