@@ -3,6 +3,7 @@
 #include "box.hpp"
 #include "results.hpp"
 
+#include <map>
 #include <random>
 #include <sys/resource.h>
 
@@ -280,7 +281,10 @@ TEST_CASE("clocks that jump by a day at every look change nothing") {
 
 namespace {
 
-/// Sessions of one cloth, while daemon and workers are killed at random moments: each ends at rest with the same bits.
+constexpr std::size_t most_faults = 3;  // after which, without a step between, simd gives a session up
+
+/// Sessions of one cloth, while daemon and workers are killed at random moments: each ends at rest with the same bits, or is given up where its
+/// own workers were killed too often.
 void kill_under(std::size_t sessions, std::size_t kills, const char* cloth, const wire::Simulation& simulation) {
     const unsigned seed = seed_of_test();
     INFO("seed " << seed);
@@ -295,6 +299,7 @@ void kill_under(std::size_t sessions, std::size_t kills, const char* cloth, cons
     std::size_t made = 0, of_daemon = 0, given_up = 0, at_rest = 0;
     while (made < kills) {
         std::vector<std::unique_ptr<Followed>> all;
+        std::map<std::uint64_t, std::size_t> killed;  // workers of each session
         for (std::size_t k = 0; k < sessions; ++k) {
             all.push_back(std::make_unique<Followed>(box, document_of(cloth), simulation));
             all.back()->run();
@@ -305,8 +310,10 @@ void kill_under(std::size_t sessions, std::size_t kills, const char* cloth, cons
                 box.kill();
                 box.start();
                 ++of_daemon;
-            } else if (const auto worker = box.worker("session", all[random() % sessions]->number)) {
-                ::kill(*worker, SIGKILL);
+            } else {
+                const std::uint64_t session = all[random() % sessions]->number;
+                const auto worker = box.worker("session", session);
+                if (worker && ::kill(*worker, SIGKILL) == 0) ++killed[session];
             }
         }
         for (const auto& session : all) {
@@ -317,22 +324,28 @@ void kill_under(std::size_t sessions, std::size_t kills, const char* cloth, cons
                     return (frame != nullptr && frame->head.at_rest) || (message != nullptr && std::holds_alternative<wire::Ended>(*message));
                 },
                 300s);
-            REQUIRE(rests);
+            if (!rests) FAIL("session " << session->number << " comes to no end; what simd says of it: " << box.status().dump(1) << box.told());
             check_events(*session);
-            if (const auto ended = session->all<wire::Ended>(); !ended.empty()) {  // killed too often in a row: it says why
+            // A worker may have been killed too often in a row, also when what it had shown was at rest already: the session says why it ended.
+            const auto bytes = session->follower().download(wire::session_yarns(session->number), std::uint64_t{1} << 30);
+            if (!bytes && session->all<wire::Ended>().empty()) REQUIRE(session->next<wire::Ended>());
+            if (const auto ended = session->all<wire::Ended>(); !ended.empty()) {
                 REQUIRE(ended.front().error);
                 CHECK_THAT(ended.front().error->message, Catch::Contains("in a row"));
+                CHECK(killed[session->number] > most_faults);
                 ++given_up;
                 continue;
             }
-            check_same_yarns(session->yarns(), wanted);
+            INFO((bytes ? "" : bytes.error().text()));
+            REQUIRE(bytes);
+            check_same_yarns(*bytes, wanted);
             ++at_rest;
             session->ask(wire::Close{wire::new_request_id(), session->number});
             REQUIRE(session->next<wire::Ended>());
         }
     }
     std::printf("%zu kills, %zu of the daemon: %zu sessions came to rest, %zu were given up\n", made, of_daemon, at_rest, given_up);
-    CHECK(given_up * 4 <= at_rest);
+    CHECK(at_rest > 0);
 }
 
 }  // namespace
