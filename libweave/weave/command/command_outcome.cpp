@@ -18,7 +18,7 @@ void CommandOutcome::fail(const Error& error) {
 }
 
 void CommandOutcome::note(const std::string& line) const {
-    std::cerr << m_program << ": " << on_one_line(line) << '\n';
+    std::cerr << m_program + ": " + on_one_line(line) + '\n';  // one write: mpirun puts lines of its own between any two
 }
 
 void CommandOutcome::answer(const Json& json_answer, const std::string& words) {
