@@ -349,7 +349,7 @@ void kill_under(std::size_t sessions, std::size_t kills, const char* cloth, cons
         }
     }
     std::printf("%zu kills, %zu of the daemon: %zu sessions came to rest, %zu were given up\n", made, of_daemon, at_rest, given_up);
-    CHECK(at_rest > 0);
+    CHECK(given_up <= 1 + at_rest / 4);  // one of few may be, by chance
 }
 
 }  // namespace
