@@ -8,6 +8,7 @@
 #include <loomlink/commands/command.hpp>
 #include <loomlink/commands/site_copy.hpp>
 #include <loomlink/store/copy.hpp>
+#include <loomlink/store/server.hpp>
 #include <memory>
 
 namespace weave::loomlink {

@@ -136,10 +136,6 @@ Status Store::backup(const std::filesystem::path& to) const {
     return back_up_store(m_core->place(), to);
 }
 
-bool is_database(const std::string& place) {
-    return sql::engine_of(place) == sql::Engine::postgres;
-}
-
 Status back_up_store(const std::string& place, const std::filesystem::path& to) {
     return is_database(place) ? copy_store(place, to.string()) : copy_database(place, to);
 }
