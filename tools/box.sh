@@ -47,12 +47,14 @@ wait_for_checkpoint() { # PID
 }
 
 # Runs a `weave simulate` of dora's in $made while the box is killed in the middle as by a fault of the machine, and started again: the job goes
-# on from its last checkpoint, and whoever waits for it notices a pause. What was said stands in $scratch/said.
+# on from its last checkpoint, and whoever waits for it notices a pause. What was said, of broken connections too, stands in $scratch/said.
 simulate_and_kill() { # COMMAND...
-    (cd "$made" && at_desk dora "$@") > "$scratch/said" 2> "$scratch/progress" &
+    (cd "$made" && at_desk dora "$@") > "$scratch/answer" 2> "$scratch/progress" &
     local job=$!
     wait_for_checkpoint $job
+    box_killed=$box_server
     stop_box -KILL
     serve_box
     wait $job || { cat "$scratch/progress" "$scratch/box/log" >&2; return 5; }
+    { grep -E 'trying again|connected again' "$scratch/progress" || true; cat "$scratch/answer"; } > "$scratch/said"
 }

@@ -21,8 +21,8 @@ looms, Edda audits, and Mary looks after the mill’s server. Everything on this
 slices() {
     chapter "Three weaves, drawn as slices"
     cp tools/demo_input/*.weave tools/demo_input/*.png db/looms/tc2.json db/looms/ep-2688.json "$made/"
-    text "A slice is a cut along an end: the picks are dots, the ends are paths between them. Dora drew eight slices of each weave in the studio and set them side by \
-side. All three are double cloths, with a gold and a blue weft that change places, and every second row stitches the layers together."
+    text "A slice is a cut along an end: the picks are dots, the ends are paths between them. Each weave is eight slices side by side, as the studio’s section editor \
+keeps them. All three are double cloths, with a gold and a blue weft that change places, and every second row stitches the layers together."
     tell dora 0 weave info leaf.weave
     pictures
     local name
@@ -42,7 +42,7 @@ side. All three are double cloths, with a gold and a blue weft that change place
 
 stencil() {
     chapter "A picture says where each weave goes"
-    text "Dora painted the leaves in three colours, one pixel for each stack of yarns. Where a colour ends, the layers change places."
+    text "The leaves are painted in three colours, one pixel for each stack of yarns. Where a colour ends, the layers change places."
     tell dora 0 weave stencil leaves.png --map '#1f3a5f=ground.weave' --map '#e0a830=leaf.weave' --map '#b0741c=shade.weave' -o ginkgo.weave
     pictures two
     figure leaves.png "<code>leaves.png</code>, as it was painted" "big drawn"
@@ -89,11 +89,12 @@ relaxing() {
     serve_box
     around_the_flaw
     text "What does that float do in real cloth? Dora has the part round it relaxed on <code>simd</code>, which knows her by a token of the mill. \
-While her job runs the daemon is killed, as by a fault of the machine, and started again; the job goes on from its last checkpoint."
+Once her job has a first checkpoint the daemon is killed, as by a fault of the machine, and started again; the job goes on from there, and her command waits."
     local command=(weave simulate ginkgo.weave --region "$part" --residual 1e-4 -o part.yarns --on "$box_place" --fingerprint "$box_fingerprint")
     simulate_and_kill "${command[@]}"
     put_on_page dora 0 "$(typed "${command[@]}")"
-    say "   $(head -n 1 "$scratch/said")"
+    text "Process $box_killed was the daemon that died (SIGKILL)."
+    say "   $(grep -m 1 'at rest' "$scratch/said")"
     tell dora 0 weave inspect part.yarns
     local row_mm
     row_mm=$(place_mm "$scratch/said")
@@ -168,8 +169,8 @@ release() {
     tell otto 0 loomlink verify-files "$for_ep" --loom 'EP 1'
     cp -r "$made/$for_ep" "$made/kept-by-otto"
     cp "$made/$for_ep"/*-card.png "$made/released-card.png"
-    pictures
-    figure released-card.png "The card as it was released, one pixel a crossing: pick 1 at the bottom, end 1 at the left" "big drawn"
+    pictures two
+    figure released-card.png "The card as it was released, one pixel a crossing: pick 1 at the bottom, end 1 at the left, black lifts" "true"
     pictures_end
     text "The files: <a href=\"$for_tc2/\">for the TC2</a> a TIFF and the table of picks, and for the EP loom its controller’s file, the table and a picture, \
 <a href=\"kept-by-otto/\">kept here</a> in a copy. Layout-compatible with observed files, not certified by the maker."
@@ -219,7 +220,7 @@ audit() {
     chapter "The audit"
     text "Edda sees who did what, and why, refusals included. The log is a chain of hashes with a signed head; she takes the whole of it along and proves offline that nothing was changed, \
 removed or put in another order."
-    tell edda 0 loomlink log --design ginkgo
+    tell edda 0 loomlink log
     tell edda 0 loomlink audit bundle -o log.json
     tell edda 0 loomlink audit verify log.json --trust trust.json
     say "   $(head -n 1 "$scratch/said")"

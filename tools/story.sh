@@ -9,12 +9,11 @@ story_head() { # TITLE LEAD
 *{box-sizing:border-box}body{font:17px/1.6 "DejaVu Sans",system-ui,sans-serif;color:var(--ink);background:var(--paper);max-width:1080px;margin:0 auto;padding:3rem 1.5rem 5rem}
 h1{font-size:2.1rem;line-height:1.2;font-weight:600;color:var(--blue);margin:0}h2{font-size:1.45rem;font-weight:600;color:var(--blue);margin:4rem 0 .4rem;padding-top:1.2rem;border-top:3px solid var(--gold)}
 h2 b{color:var(--gold);font-weight:600;margin-right:.6rem}p{max-width:44rem;margin:.7rem 0}.lead{font-size:1.1rem;color:var(--soft)}a{color:var(--blue)}code{font-size:.9em}
-nav{margin-top:1.5rem;font-size:.95rem}nav a{margin-right:1.1rem;white-space:nowrap}
-pre{font:13px/1.5 "DejaVu Sans Mono",monospace;white-space:pre-wrap;overflow-wrap:anywhere;margin:0;padding:.75rem 1rem}
-.run{margin:1.1rem 0;border:1px solid var(--line);border-radius:6px;overflow:hidden;background:#fff}.run .command{background:var(--blue);color:#fff}.run .command i{color:#f0c66b;font-style:normal}
+pre{font:13px/1.5 "DejaVu Sans Mono",monospace;white-space:pre-wrap;overflow-wrap:anywhere;margin:0;padding:.75rem 1rem}pre:empty{display:none}
+.run pre{max-height:30rem;overflow-y:auto}.run{margin:1.1rem 0;border:1px solid var(--line);border-radius:6px;overflow:hidden;background:#fff}.run .command{background:var(--blue);color:#fff}.run .command i{color:#f0c66b;font-style:normal}
 .run.refused{border-color:var(--bad)}.run .status{color:var(--bad);padding-top:0}details{border-top:1px solid var(--line)}summary{cursor:pointer;padding:.4rem 1rem;font-size:.85rem;color:var(--soft)}
 section{display:grid;grid-template-columns:repeat(auto-fill,minmax(300px,1fr));gap:1.1rem;margin:1.4rem 0}figure{margin:0;background:#fff;border:1px solid var(--line);border-radius:6px;padding:.8rem;min-width:0}
-figure.wide{grid-column:1/-1}img{display:block;width:100%;height:270px;object-fit:contain}figure.big img{height:430px}figure.big{grid-column:span 1}section.two{grid-template-columns:repeat(auto-fit,minmax(420px,1fr))}
+figure.wide{grid-column:1/-1}img{display:block;width:100%;height:270px;object-fit:contain}figure.big img{height:430px}figure.true img{width:auto;max-width:100%;height:auto;margin:auto}section.two{grid-template-columns:repeat(auto-fit,minmax(420px,1fr))}
 figure.strip{overflow:hidden}figure.strip img{width:auto;max-width:none;height:230px}figure.drawn img{image-rendering:pixelated}figcaption{font-size:.88rem;line-height:1.45;color:var(--soft);margin-top:.6rem}
 table{border-collapse:collapse;font-size:.95rem;margin:1rem 0}td,th{text-align:left;padding:.3rem 1.6rem .3rem 0;border-bottom:1px solid var(--line)}td:nth-child(2){text-align:right}
 @media(max-width:520px){body{padding:1.5rem 1rem}section,section.two{grid-template-columns:1fr}h1{font-size:1.6rem}}
@@ -62,7 +61,7 @@ quietly() {
 typed() {
     local word line=
     for word in "$@"; do
-        [[ $word =~ ^[A-Za-z0-9_./:=,@%+-]+$ ]] || word="'$word'"
+        [[ $word =~ ^[A-Za-z0-9_./:=,@%+-]+$ ]] || word="'${word//\'/\'\\\'\'}'"
         line+="$word "
     done
     printf '%s' "${line% }"
@@ -70,7 +69,7 @@ typed() {
 
 # What a command said, for the page: how far it was is left out, and what a loom's rules could not judge is folded away.
 answer_in_html() { # FILE
-    grep -vE '^(relaxing|planning|drawing) |^not evaluated' "$1" | sed "s|$made/||g" | in_html
+    sed -E "/^(relaxing|planning|drawing) |^not evaluated/d; s|$made/||g" "$1" | in_html
     local folded
     folded=$(grep -c '^not evaluated' "$1") || return 0
     printf '</pre><details><summary>%d rules that could not be judged, and why</summary><pre>' "$folded"
@@ -99,7 +98,7 @@ put_on_page() { # NAME STATUS COMMAND
     {
         printf '<div class="%s"><pre class="command"><i>%s$</i> %s</pre><pre>' "$class" "$1" "$(in_html <<< "$3")"
         answer_in_html "$scratch/said"
-        echo "</pre>"
+        printf '</pre>'
         [ "$2" -eq 0 ] || printf '<pre class="status">exit status %d</pre>' "$2"
         echo "</div>"
     } >> "$page"
