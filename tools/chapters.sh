@@ -93,7 +93,7 @@ Once her job has a first checkpoint the daemon is killed, as by a fault of the m
     local command=(weave simulate ginkgo.weave --region "$part" --residual 1e-4 -o part.yarns --on "$box_place" --fingerprint "$box_fingerprint")
     simulate_and_kill "${command[@]}"
     put_on_page dora 0 "$(typed "${command[@]}")"
-    text "Process $box_killed was the daemon that died (SIGKILL)."
+    text "The daemon that was killed (SIGKILL) was process $box_killed; the first lines are what Dora’s command noticed of it."
     say "   $(grep -m 1 'at rest' "$scratch/said")"
     tell dora 0 weave inspect part.yarns
     local row_mm
@@ -208,7 +208,8 @@ flip_one_bit() { # FILE
 recall() {
     chapter "A recall"
     text "The EP loom was set up with the wrong gold. Abel withdraws its release; the TC2’s stays in force. When Otto’s terminal asks the next time, the files go, and \
-a copy that somebody kept is refused."
+a copy that somebody kept is refused. Edda has taken the log’s signed head along before."
+    tell edda 0 loomlink audit head -o head.json
     tell abel 0 loomlink withdraw 'EP 1' 1 --reason "The wrong gold yarn on feeder 1" --password-file mill-password
     tell otto 0 loomlink pull 'EP 1' --to at-the-ep
     say "   $(head -n 2 "$scratch/said" | tr '\n' ';')"
@@ -219,10 +220,12 @@ a copy that somebody kept is refused."
 audit() {
     chapter "The audit"
     text "Edda sees who did what, and why, refusals included. The log is a chain of hashes with a signed head; she takes the whole of it along and proves offline that nothing was changed, \
-removed or put in another order."
-    tell edda 0 loomlink log
+removed or put in another order, since the head that she kept included."
+    local from
+    from=$(at_desk edda "$loomlink" log | sed -nE 's/^([0-9]+) .* design\.added .*/\1/p')
+    tell edda 0 loomlink log --from "$from"
     tell edda 0 loomlink audit bundle -o log.json
-    tell edda 0 loomlink audit verify log.json --trust trust.json
+    tell edda 0 loomlink audit verify log.json --trust trust.json --retained head.json
     say "   $(head -n 1 "$scratch/said")"
     stop_mill
 }
