@@ -207,9 +207,10 @@ flip_one_bit() { # FILE
 
 recall() {
     chapter "A recall"
-    text "The EP loom was set up with the wrong gold. Abel withdraws its release; the TC2’s stays in force. When Otto’s terminal asks the next time, the files go, and \
-a copy that somebody kept is refused. Edda has taken the log’s signed head along before."
+    text "First Edda takes the log’s signed head along, to hold the log to it later."
     tell edda 0 loomlink audit head -o head.json
+    text "The EP loom was set up with the wrong gold. Abel withdraws its release; the TC2’s stays in force. When Otto’s terminal asks the next time, the files go, and \
+a copy that somebody kept is refused."
     tell abel 0 loomlink withdraw 'EP 1' 1 --reason "The wrong gold yarn on feeder 1" --password-file mill-password
     tell otto 0 loomlink pull 'EP 1' --to at-the-ep
     say "   $(head -n 2 "$scratch/said" | tr '\n' ';')"
@@ -220,7 +221,7 @@ a copy that somebody kept is refused. Edda has taken the log’s signed head alo
 audit() {
     chapter "The audit"
     text "Edda sees who did what, and why, refusals included. The log is a chain of hashes with a signed head; she takes the whole of it along and proves offline that nothing was changed, \
-removed or put in another order, since the head that she kept included."
+removed or put in another order. By the head that she kept an older copy of the log would be found out."
     local from
     from=$(at_desk edda "$loomlink" log | sed -nE 's/^([0-9]+) .* design\.added .*/\1/p')
     tell edda 0 loomlink log --from "$from"
