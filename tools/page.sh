@@ -1,4 +1,4 @@
-# The pages that tools/demo and tools/gallery make: pictures with the sentence that says what each shows. Sourced by them, with
+# The pages that tools/demo and tools/paper make: pictures with the sentence that says what each shows. Sourced by them, with
 # $weave the program, $made the folder that is being made, and $page the page in it.
 
 page_head() { # TITLE COMMAND
