@@ -48,12 +48,12 @@ fig4() {
     heading "Figure 4: a baby shoe"
     sample shoe-baby
     told fig4-blocks info shoe-baby.weave
-    relax shoe-baby fig4 --wraparound --fidelity draft --steps 500
+    relax shoe-baby fig4 --wraparound --fidelity draft --steps 300
     pictures
     picture shoe-baby.weave card fig4-card "The card image"
     picture shoe-baby.weave weft:41 fig4-heel "Slice 1, in the heel: four picks a row" --from-end 57
     picture shoe-baby.weave weft:145 fig4-middle "Slice 2, through the ankle: six picks a row" --from-end 33
-    picture fig4.yarns 3d fig4-shoe "Relaxed as far as 500 steps go" --side corner --size 760x560
+    picture fig4.yarns 3d fig4-shoe "As far as 300 steps go" --side corner --size 760x560
     picture fig4.yarns 3d fig4-cut "The same, cut through the ankle" --side front --cut x=45 --size 760x400
     done_with_pictures
 }
@@ -153,6 +153,7 @@ fig11() {
         done_with_pictures
     done
     measured fig11-twill-g dent fig11-twill-g.yarns 8
+    measured fig11-satin-e dent fig11-satin-e.yarns 5
 }
 
 fig12() {
@@ -162,8 +163,9 @@ fig12() {
     local version
     for version in wrong corrected; do
         relax tl013-$version fig12-$version
+        measured fig12-$version lean fig12-$version.yarns
         pictures
-        picture fig12-$version.yarns 3d fig12-$version "$version, from the last end" --side right --size 760x420
+        picture fig12-$version.yarns 3d fig12-$version "$version, from the last end, cut in the middle" --side right --cut y=4 --size 1000x340
         done_with_pictures
     done
     pictures
@@ -193,7 +195,7 @@ fig14() {
     pictures
     picture i-beam.weave weft:4 fig14-slice "A slice along the weft; purple: placeholders"
     picture i-beam.weave card fig14-card "The card image"
-    picture fig14.yarns 3d fig14-relaxed "Relaxed" --side 25,20 --size 760x480
+    picture fig14.yarns 3d fig14-relaxed "Relaxed, cut across the ends" --side front --cut x=2.5 --size 760x480
     done_with_pictures
 }
 
@@ -204,7 +206,7 @@ fig15() {
     pictures
     picture shoe-toddler.weave face fig15-face "The face, loose yarns trimmed" --trim
     picture shoe-toddler.weave weft:199 fig15-middle "A slice along the weft through the ankle" --from-end 141
-    picture shoe-toddler.weave warp:94 fig15-warp "A slice along the warp: sole, insole, top" --from-pick 81
+    picture shoe-toddler.weave warp:94 fig15-warp "A slice along the warp near the toe: sole, insole, top" --from-pick 537
     done_with_pictures
 }
 
