@@ -26,18 +26,18 @@ fig1() {
     relax three-colour-stencil fig1-after --region picks:65-100,ends:35-66 --flip 86,42 --flip 92,44
     pictures
     picture three-colour-stencil.weave face fig1-face "The face as it is drawn"
-    picture fig1-whole.yarns 3d fig1-whole "All of it, relaxed in draft" --side top --size 640x640
-    picture fig1-before.yarns 3d fig1-before "A petal as it was drawn" --side top --size 600x480
-    picture fig1-after.yarns 3d fig1-after "After two flips at its left edge" --side top --size 600x480
+    picture fig1-whole.yarns 3d fig1-whole "All of it, relaxed in draft" --side top --size 540x540
+    picture fig1-before.yarns 3d fig1-before "A petal as it was drawn" --side top --size 520x420
+    picture fig1-after.yarns 3d fig1-after "After two flips at its left edge" --side top --size 520x420
     done_with_pictures
 }
 
 fig3() {
     heading "Figure 3: simple weaves and their cards"
-    sample plain twill-2-2 satin-5 satin-e
+    sample plain twill-2-2 satin-5
     pictures
     local name
-    for name in plain twill-2-2 satin-5 satin-e; do
+    for name in plain twill-2-2 satin-5; do
         picture $name.weave block "fig3-$name-block" "$name, the block"
         picture $name.weave card "fig3-$name-card" "$name, the card"
     done
@@ -53,8 +53,8 @@ fig4() {
     picture shoe-baby.weave card fig4-card "The card image"
     picture shoe-baby.weave weft:41 fig4-heel "Slice 1, in the heel: four picks a row" --from-end 57
     picture shoe-baby.weave weft:145 fig4-middle "Slice 2, through the ankle: six picks a row" --from-end 33
-    picture fig4.yarns 3d fig4-shoe "As far as 300 steps go" --side corner --size 760x560
-    picture fig4.yarns 3d fig4-cut "The same, cut through the ankle" --side front --cut x=45 --size 760x400
+    picture fig4.yarns 3d fig4-shoe "As far as 300 steps go" --side corner --size 640x480
+    picture fig4.yarns 3d fig4-cut "The same, cut through the ankle" --side front --cut x=45 --size 640x360
     done_with_pictures
 }
 
@@ -63,7 +63,7 @@ fig5() {
     sample layer-to-layer
     relax layer-to-layer fig5
     pictures
-    picture fig5.yarns 3d fig5-cut "Cut across the ends" --cut x=2.2 --repeat 1x2 --size 760x480
+    picture fig5.yarns 3d fig5-cut "Cut across the ends" --cut x=2.2 --repeat 1x2 --size 600x400
     done_with_pictures
 }
 
@@ -134,8 +134,8 @@ fig10() {
         pictures
         picture $name.weave warp:1 fig10-$name-slice "$name: a slice"
         picture $name.weave card fig10-$name-card "$name: the card"
-        picture fig10-$name.yarns 3d fig10-$name-relaxed "$name: relaxed" --size 760x480
-        picture fig10-$name.yarns 3d fig10-$name-side "$name: from the side" --side right --size 760x480
+        picture fig10-$name.yarns 3d fig10-$name-relaxed "$name: relaxed" --size 560x380
+        picture fig10-$name.yarns 3d fig10-$name-side "$name: from the side" --side right --size 600x320
         done_with_pictures
     done
     measured fig10-layer-to-layer neighbours fig10-layer-to-layer.yarns
@@ -148,8 +148,8 @@ fig11() {
         sample $name
         relax $name fig11-$name
         pictures
-        picture fig11-$name.yarns 3d fig11-$name "$name, relaxed" --repeat 2x2 --size 760x520
-        picture fig11-$name.yarns 3d fig11-$name-height "$name, by height" --side top --colour height --repeat 3x3 --size 760x600
+        picture fig11-$name.yarns 3d fig11-$name "$name, relaxed" --repeat 2x2 --size 600x420
+        picture fig11-$name.yarns 3d fig11-$name-height "$name, by height" --side top --colour height --repeat 2x3 --size 600x460
         done_with_pictures
     done
     measured fig11-twill-g dent fig11-twill-g.yarns 8
@@ -181,8 +181,8 @@ fig13() {
     pictures
     local run
     for run in closed open; do
-        picture fig13-$run.yarns 3d fig13-$run "$run" --side 60,25 --size 760x520
-        picture fig13-$run.yarns 3d fig13-$run-cut "$run, cut through the middle" --side front --cut x=13 --size 760x400
+        picture fig13-$run.yarns 3d fig13-$run "$run" --side 60,25 --size 600x400
+        picture fig13-$run.yarns 3d fig13-$run-cut "$run, cut through the middle" --side front --cut x=13 --size 600x340
     done
     done_with_pictures
 }
@@ -195,7 +195,7 @@ fig14() {
     pictures
     picture i-beam.weave weft:4 fig14-slice "A slice along the weft; purple: placeholders"
     picture i-beam.weave card fig14-card "The card image"
-    picture fig14.yarns 3d fig14-relaxed "Relaxed, cut across the ends" --side front --cut x=2.5 --size 760x480
+    picture fig14.yarns 3d fig14-relaxed "Relaxed, cut across the ends" --side front --cut x=2.5 --size 640x440
     done_with_pictures
 }
 
@@ -213,11 +213,9 @@ fig15() {
 fig16() {
     heading "Figure 16: details of the adult shoe"
     sample shoe-adult
-    relax shoe-adult fig16 --region picks:5401-5472,ends:1201-1248 --fidelity draft --steps 400
     pictures
     picture shoe-adult.weave weft:3000 fig16-middle "Through the middle: sole, insole, upper" --from-end 1081
     picture shoe-adult.weave weft:3000 fig16-rim "At the rim: ends that bind nothing" --from-end 301
-    picture fig16.yarns 3d fig16-relaxed "A piece of the toe, relaxed with frozen rims" --side 60,25 --size 760x480
     done_with_pictures
 }
 
