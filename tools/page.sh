@@ -18,7 +18,12 @@ in_html() { sed 's/&/\&amp;/g; s/</\&lt;/g'; }
 # A picture by `weave render`, which takes the options.
 picture() { # FILE VIEW NAME CAPTION [OPTION...]
     "$weave" render "$made/$1" --view "$2" -o "$made/$3.png" "${@:5}" > /dev/null
-    echo "<figure><a href=\"$3.png\"><img src=\"$3.png\" alt=\"$4\"></a><figcaption>$4</figcaption></figure>" >> "$page"
+    shown "$3" "$4"
+}
+
+# A picture that is there.
+shown() { # NAME CAPTION
+    echo "<figure><a href=\"$1.png\"><img src=\"$1.png\" alt=\"$2\"></a><figcaption>$2</figcaption></figure>" >> "$page"
 }
 
 # Relaxes NAME.weave into RUN.yarns and puts what was said, and what `weave inspect` tells a weaver, on the page. Yarns that did

@@ -169,7 +169,7 @@ fig12() {
         done_with_pictures
     done
     pictures
-    picture tl013-corrected.weave card fig12-card "The corrected card"
+    shown fig12-diff "The corrected card, and in what it differs"
     done_with_pictures
 }
 
