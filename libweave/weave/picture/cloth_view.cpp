@@ -86,7 +86,7 @@ std::vector<std::string> notes_of(const Yarns& yarns, const ClothView& view, con
 }
 
 /// A report that does not say how its run ended is that of yarns at rest.
-const char* state_words(const Json& report) {
+std::string state_words(const Json& report) {
     if (sim::part_of(report, "converged") != false) return "relaxed yarns";
     return sim::part_of(report, "iterations") == 0 ? "planned yarns" : "yarns not at rest";
 }
@@ -95,7 +95,7 @@ PageText words_of(const Yarns& yarns, const ClothView& view, const TubeScene& sc
     const double width = static_cast<double>(view.width) - 2 * Page::margin;
     PageText text;
     text.title = fitting(yarns.title.empty() ? "Relaxed cloth" : yarns.title, width, Page::title_size, true);
-    std::vector<std::string> lines = in_lines({std::string(state_words(yarns.report)) + ", seen " + side_words(view),
+    std::vector<std::string> lines = in_lines({state_words(yarns.report) + ", seen " + side_words(view),
                                                counted(count_of(yarns, System::weft), "weft") + " × " +
                                                    counted(count_of(yarns, System::warp), "warp"),
                                                std::string("coloured by ") + words_of(view.colour).subtitle},
