@@ -238,6 +238,6 @@ epilogue() {
 <a href=\"proof.evidence\">the signed evidence</a>, <a href=\"at-the-tc2/\">the TC2’s files</a>, <a href=\"log.json\">the log</a> and <a href=\"trust.json\">whose keys count</a>."
     text "The mill itself: <code>build/release/bin/loomlink serve ${folder#"$PWD"/}/mill</code>, then <a href=\"https://localhost:8443/\">https://localhost:8443/</a> as mary, dora, abel, \
 otto or edda; the password of all is in <a href=\"mill-password\">mill-password</a>, for this is a story. The certificate is of the mill’s own making, so the browser asks first. \
-<code>tools/gallery</code> shows relaxed 3D structures, pockets and shoes."
+<code>tools/paper</code> shows relaxed 3D structures, pockets and shoes."
     chapters_took
 }

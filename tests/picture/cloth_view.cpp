@@ -172,7 +172,7 @@ TEST_CASE("yarns are drawn in their own colours, or the paper's where nobody cho
     CHECK(Shot(plain, view_of({})).scene.colours == std::vector<Colour>{paper_weft, paper_warp});
 }
 
-TEST_CASE("strain, contact and movement colour the yarns between the ends of the bar") {
+TEST_CASE("strain, contact, movement and height colour the yarns between the ends of the bar") {
     Yarns yarns = cross();
     yarns.yarns[1].planned = {{0, 5, 1}, {10, 5, 4}};
     const Shot strain(yarns, view_of({.side = "top", .colour = "strain"}));
@@ -187,6 +187,24 @@ TEST_CASE("strain, contact and movement colour the yarns between the ends of the
     CHECK(moved.at({5, 1, 0}).green < 60);
     yarns.yarns[0].contact_N = yarns.yarns[1].contact_N = {0, 0};
     CHECK_NOTHROW(drawn(yarns, view_of({.colour = "contact"})));
+    yarns.yarns[0].spline.control = {{5, 0, -2}, {5, 10, -2}};
+    const Shot height(yarns, view_of({.side = "top", .colour = "height"}));
+    CHECK((height.scene.low == -2 && height.scene.high == 1));
+    CHECK(height.at({5, 1, -2}).green < 60);
+    CHECK(height.at({9.7, 5, 1}).green > height.at({9.7, 5, 1}).blue + 60);
+}
+
+TEST_CASE("a picture says whether its yarns are as planned, at rest or not") {
+    Yarns yarns = cross();
+    const auto picture = [&](const Json& report) {
+        yarns.report = report;
+        return drawn(yarns, view_of({}));
+    };
+    const std::string relaxed = picture({{"converged", true}, {"iterations", 7}}),
+                      moving = picture({{"converged", false}, {"iterations", 7}}),
+                      planned = picture({{"converged", false}, {"iterations", 0}});
+    CHECK(picture(Json::object()) == relaxed);
+    CHECK((moving != relaxed && planned != relaxed && planned != moving));
 }
 
 TEST_CASE("the colour map is evenly lighter from end to end") {
