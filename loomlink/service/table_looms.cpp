@@ -1,4 +1,3 @@
-#include <weave/block/card_image.hpp>
 
 #include <loomlink/service/table.hpp>
 

@@ -3,7 +3,6 @@
 #include <algorithm>
 #include <loomlink/workflow/accounts.hpp>
 #include <loomlink/workflow/looms.hpp>
-#include <loomlink/workflow/missing.hpp>
 #include <loomlink/workflow/names.hpp>
 #include <loomlink/workflow/policy.hpp>
 #include <loomlink/workflow/release_files.hpp>

@@ -2,7 +2,6 @@
 
 #include "command.hpp"
 #include "on_server.hpp"
-#include "remote_job.hpp"
 
 #include <weave/core/text.hpp>
 

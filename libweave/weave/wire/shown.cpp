@@ -1,6 +1,5 @@
 #include <weave/wire/shown.hpp>
 
-#include <weave/loom/pick_table.hpp>
 
 #include <algorithm>
 
