@@ -1,3 +1,4 @@
+#include <weave/block/card_image.hpp>
 
 #include <loomlink/service/table.hpp>
 

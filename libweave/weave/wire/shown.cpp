@@ -1,5 +1,6 @@
 #include <weave/wire/shown.hpp>
 
+#include <weave/design/picks.hpp>
 
 #include <algorithm>
 
