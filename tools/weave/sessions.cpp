@@ -4,6 +4,7 @@
 #include "on_server.hpp"
 
 #include <weave/core/text.hpp>
+#include <weave/wire/remote_job.hpp>
 
 #include <chrono>
 #include <cstdio>
