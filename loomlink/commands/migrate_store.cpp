@@ -2,7 +2,6 @@
 
 #include <weave/command/serving.hpp>
 #include <weave/core/text.hpp>
-#include <weave/keys/hex.hpp>
 #include <weave/keys/private_file.hpp>
 
 #include <loomlink/commands/command.hpp>

@@ -54,10 +54,6 @@ class Store {
     /// How the disk took the last write: an error of the system while it is full or fails.
     [[nodiscard]] Status last_write() const;
 
-    /// A copy of the store as it is now, while it is in use: a file of SQLite, whatever the store is. Refused where the
-    /// file exists.
-    Status backup(const std::filesystem::path& to) const;
-
   private:
     class Core;
     explicit Store(std::unique_ptr<Core> core);

@@ -3,7 +3,7 @@
 #include <algorithm>
 #include <loomlink/workflow/accounts.hpp>
 #include <loomlink/workflow/looms.hpp>
-#include <loomlink/workflow/missing.hpp>
+#include <loomlink/workflow/evidence.hpp>
 #include <loomlink/workflow/names.hpp>
 #include <loomlink/workflow/policy.hpp>
 #include <loomlink/workflow/release_files.hpp>

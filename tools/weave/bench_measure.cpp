@@ -173,12 +173,6 @@ void reset_peak_memory() {
         << "5\n";  // where that is not allowed, the peak is that of the process
 }
 
-Control control_of(const sim::SimScene& scene) {
-    Control control;
-    for (const sim::SimYarn& yarn : scene.yarns) control.push_back(yarn.control);
-    return control;
-}
-
 std::size_t points_of(const sim::SimScene& scene) {
     std::size_t points = 0;
     for (const sim::SimYarn& yarn : scene.yarns) points += yarn.control.size();
