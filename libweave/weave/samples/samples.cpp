@@ -13,12 +13,12 @@ const std::string not_printed = " The paper does not print its card legibly; bui
 
 std::vector<Sample> library() {
     return {
-        {"plain", "Plain weave", "The simplest design there is: one preset." + by_rule, "tc2", sample::plain},
+        {"plain", "Plain weave", "Over one, under one: the simplest design there is, one preset." + by_rule, "tc2", sample::plain},
         {"twill-2-2", "2/2 twill", "Diagonal lines." + by_rule, "tc2", sample::twill_2_2},
         {"satin-5", "5-end satin", "A smooth warp face." + by_rule, "tc2", sample::satin_5},
         {"sateen-8", "8-end sateen", "A smooth weft face." + by_rule, "tc2", sample::sateen_8},
         {"rib", "2/2 warp rib", "Ribs across the cloth." + by_rule, "tc2", sample::rib},
-        {"basket", "2/2 basket", "Also called hopsack." + by_rule, "tc2", sample::basket},
+        {"basket", "2/2 basket", "Plain weave of pairs, also called hopsack." + by_rule, "tc2", sample::basket},
         {"herringbone", "Herringbone", "A twill that turns." + by_rule, "tc2", sample::herringbone},
         {"satin-e", "Satin E: two-layer satin",
          "Figure 11's first cloth: two satins back to back, stitched." + not_printed, "tc2", sample::satin_e},
@@ -37,7 +37,7 @@ std::vector<Sample> library() {
         {"orthogonal", "Orthogonal", "Figure 10: upright binders and straight stuffers." + not_printed, "tc2",
          sample::orthogonal},
         {"stitched-layers", "Four stitched layers",
-         "Not in the paper: plain-weave layers stitched point by point.", "tc2", sample::stitched_layers},
+         "Plain-weave layers stitched point by point. Not in the paper.", "tc2", sample::stitched_layers},
         {"hexagon-tubes", "Hexagon tubes",
          "Figure 10: layers that join and part to six-sided cells." + not_printed, "tc2",
          sample::hexagon_tubes},
