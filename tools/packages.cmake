@@ -47,5 +47,13 @@ foreach(component ${CPACK_COMPONENTS_ALL}) # what Debian wants beside every pack
   install(FILES ${PROJECT_SOURCE_DIR}/LICENSE DESTINATION ${CMAKE_INSTALL_DATADIR}/doc/${CPACK_DEBIAN_${upper}_PACKAGE_NAME} RENAME copyright COMPONENT ${component})
 endforeach()
 install(FILES ${PROJECT_SOURCE_DIR}/docs/licences.md ${PROJECT_SOURCE_DIR}/CHANGELOG.md DESTINATION ${CMAKE_INSTALL_DATADIR}/doc/${CPACK_DEBIAN_LIBRARY_PACKAGE_NAME} COMPONENT library)
+# What a person reads who has the packages and not the tree.
+set(library_docs ${CMAKE_INSTALL_DATADIR}/doc/${CPACK_DEBIAN_LIBRARY_PACKAGE_NAME})
+set(services_docs ${CMAKE_INSTALL_DATADIR}/doc/${CPACK_DEBIAN_SERVICES_PACKAGE_NAME})
+install(FILES libweave/weave/loom/PROFILE.md libweave/weave/design/FORMAT.md libweave/weave/sim/YARNS.md libweave/weave/io/CONTROLLER_FILES.md DESTINATION ${library_docs} COMPONENT library)
+install(FILES docs/operators-guide.md loomlink/RUNBOOK.md db/roles.sql DESTINATION ${services_docs} COMPONENT services)
+install(DIRECTORY docs/pictures/loomlink DESTINATION ${services_docs}/pictures COMPONENT services)
+install(FILES loomlink/README.md DESTINATION ${services_docs} RENAME loomlink.md COMPONENT services)
+install(FILES simd/README.md DESTINATION ${services_docs} RENAME simd.md COMPONENT services)
 
 include(CPack)

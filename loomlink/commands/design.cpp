@@ -33,15 +33,17 @@ Status show_design(wire::MillClient& client, const std::string& design, CommandO
 }
 
 std::string revision_words(const Json& revision) {
-    std::string words =
-        in_columns({{"design", told(revision, "design") + ", revision " + told(revision, "number")},
-                    {"state", told(revision, "state")},
-                    {"message", told(revision, "message")},
-                    {"saved", told(revision, "at") + " by " + told(revision, "author_name")},
-                    {"parents", told(revision, "parents")},
-                    {"size", told(revision, "picks") + " picks, " + told(revision, "ends") + " ends"},
-                    {"SHA-256", told(revision, "sha256")},
-                    {"you may", told(revision, "may")}});
+    std::vector<std::vector<std::string>> facts{
+        {"design", told(revision, "design") + ", revision " + told(revision, "number")},
+        {"state", told(revision, "state")},
+        {"message", told(revision, "message")},
+        {"saved", told(revision, "at") + " by " + told(revision, "author_name")},
+        {"parents", told(revision, "parents")},
+        {"size", told(revision, "picks") + " picks, " + told(revision, "ends") + " ends"},
+        {"SHA-256", told(revision, "sha256")},
+        {"you may", told(revision, "may")}};
+    std::erase_if(facts, [](const std::vector<std::string>& fact) { return fact.back().empty(); });
+    std::string words = in_columns(facts);
     for (const Json& text : entries(revision, "missing"))
         words += "missing  " + (text.is_string() ? on_one_line(text.get<std::string>()) : text.dump()) + "\n";
     words += in_columns(revision, "decisions", {"what", "by", "at", "reason"});

@@ -37,7 +37,7 @@ void add_init_command(CLI::App& app, CommandOutcome& outcome) {
     CLI::App* const command = add_command(app, outcome, "init", "Make a site in an empty folder");
     auto folder = std::make_shared<std::string>(".");
     auto config = std::make_shared<ServeConfig>();
-    add_text(command, "folder", *folder, "the folder of the site; the current one if not given");
+    add_text(command, "FOLDER", *folder, "the folder of the site; the current one if not given");
     command->add_option("--site", config->site, "the name of the site (mill)");
     add_text(command, "--store", config->store,
              "connection string of the PostgreSQL database to keep it in (postgresql://HOST/DATABASE); a file if not given");

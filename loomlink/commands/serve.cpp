@@ -64,12 +64,13 @@ void add_serve_command(CLI::App& app, CommandOutcome& outcome) {
     CLI::App* const command = add_command(
         app, outcome, "serve", "Serve a site; where the folder is empty or missing, make a new one first");
     auto options = std::make_shared<ServeOptions>(command);
-    add_text(command, "folder", options->folder, "the folder of the site; the current one if not given");
-    options->words.add("--site", "site", options->config.site, "the name of a site that is made");
+    add_text(command, "FOLDER", options->folder, "the folder of the site; the current one if not given");
+    options->words.add("--site", "site", options->config.site, "the name of a site that is made")->type_name("NAME");
     options->words.add("--store", "store", options->config.store,
-                       "connection string of the PostgreSQL database for a site that is made (postgresql://HOST/DATABASE); a file if not given");
+                       "connection string of the PostgreSQL database for a site that is made (postgresql://HOST/DATABASE); a file if not given")
+        ->type_name("CONNECTION");
     options->words.add("--standby", "standby", options->config.standby,
-                       "connection string of a server that follows that database, to read from");
+                       "connection string of a server that follows that database, to read from")->type_name("CONNECTION");
     options->words.add_service(options->config);
     on_run(command, outcome, [options, &outcome] { return serve(*options, outcome); });
 }

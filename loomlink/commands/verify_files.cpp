@@ -39,6 +39,8 @@ Result<Believed> believed(const VerifyWords& words) {
     std::filesystem::path file = words.state_file;
     if (file.empty()) {
         WEAVE_TRY(file, usual_state_file(words.loom));
+        if (std::error_code code; !std::filesystem::exists(file, code))
+            return bad_input("this terminal has pulled nothing for it yet: say --trust FILE (trust show -o), or pull first", words.loom);
     }
     WEAVE_TRY(TerminalState state, load_state(file));
     return Believed{state.trust, state};

@@ -41,12 +41,12 @@ std::optional<FileFinding> look_at(const fs::path& file, std::uint64_t size, con
     return {};
 }
 
-/// Whether a manifest can be what people signed before it is read; one that is missing is told by the
-/// reading.
+/// Whether a manifest can be what people signed before it is read.
 Status check_manifest_file(const fs::path& place) {
     std::error_code code;
     const fs::file_status status = fs::symlink_status(place, code);
-    if (!fs::exists(status)) return {};
+    if (status.type() == fs::file_type::not_found)
+        return bad_input("is not there: name the folder of one release, as pull made it", place.string());
     if (!fs::is_regular_file(status))
         return invalid("is not a file of its own, but a link or something else", place.string());
     const auto size = fs::file_size(place, code);

@@ -59,11 +59,11 @@ void add_serve_command(CLI::App& app, CommandOutcome& outcome) {
                                           "simd serve box --address 0.0.0.0 --host box.mill");
     auto options = std::make_shared<ServeOptions>(command);
     ServeConfig& config = options->config;
-    command->add_option("folder", options->folder, "the folder of its sessions and jobs; the current one if not given");
+    command->add_option("FOLDER", options->folder, "the folder of its sessions and jobs; the current one if not given");
     options->words.add_service(config);
-    options->words.add("--socket", "unix_socket", config.unix_socket, "the Unix socket for this machine (simd.sock in the folder)");
-    options->words.add("--threads", "threads", config.threads, "threads that compute; 0: one a core");
-    options->words.add("--backend", "backend", config.backend, "what computes: auto (a CUDA device where there is one that can), cpu or cuda");
+    options->words.add("--socket", "unix_socket", config.unix_socket, "the Unix socket for this machine (simd.sock in the folder)")->type_name("PATH");
+    options->words.add("--threads", "threads", config.threads, "threads that compute; 0: one a core")->type_name("N");
+    options->words.add("--backend", "backend", config.backend, "what computes: auto (a CUDA device where there is one that can), cpu or cuda")->type_name("WORD");
     on_run(command, outcome, [options, &outcome] { return serve(*options, outcome); });
 }
 

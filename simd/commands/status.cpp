@@ -80,7 +80,7 @@ Status top(const StatusWords& words, CommandOutcome& outcome) {
 
 CLI::App* add_status_command(CLI::App& app, CommandOutcome& outcome, const char* name, const char* help, const std::shared_ptr<StatusWords>& words) {
     CLI::App* const command = add_command(app, outcome, name, help);
-    command->add_option("folder", words->folder, "the folder of a daemon of this machine; the current one if not given");
+    command->add_option("FOLDER", words->folder, "the folder of a daemon of this machine; the current one if not given");
     add_server_options(command, words->server);
     return command;
 }

@@ -20,7 +20,7 @@ struct TokenWords {
 CLI::App* add_token_command(CLI::App& group, CommandOutcome& outcome, const char* name, const char* help, const std::shared_ptr<TokenWords>& words,
                             bool of_person) {
     CLI::App* const command = add_command(group, outcome, name, help);
-    command->add_option("folder", words->folder, "the folder of the daemon")->required();
+    command->add_option("FOLDER", words->folder, "the folder of the daemon")->required();
     if (of_person) command->add_option("person", words->person, "the name by which the daemon knows the person")->required();
     return command;
 }
@@ -40,7 +40,7 @@ Status list(const TokenWords& words, CommandOutcome& outcome) {
 }  // namespace
 
 void add_token_commands(CLI::App& app, CommandOutcome& outcome) {
-    CLI::App& group = *app.add_subcommand("token", "Who may come in, beside those whom loomlink gives a token");
+    CLI::App& group = *app.add_subcommand("token", "Who may come in, beside those whom loomlink gives a token")->group("Commands");
     group.require_subcommand(1);
     const auto words = std::make_shared<TokenWords>();
     on_run(add_token_command(group, outcome, "add", "Make a token for a person, in place of an earlier one; it is told once", words, true), outcome,

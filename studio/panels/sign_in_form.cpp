@@ -20,8 +20,8 @@ SignInForm::SignInForm(QWidget* parent)
     auto* greeting =
         new QLabel(tr("You are not signed in. A mill keeps every revision of a design and lets others "
                       "approve it; ask your mill's administrator for "
-                      "its address, the fingerprint of its certificate, and an invitation. With the invitation's link "
-                      "join once, in a terminal: loomlink user join LINK. Then sign in here."));
+                      "its address, the fingerprint of its certificate, and an invitation. Open the invitation's link in "
+                      "a browser and join there, once (or in a terminal: loomlink user join LINK). Then sign in here."));
     greeting->setWordWrap(true);
     greeting->setObjectName("greeting");
     greeting->setTextInteractionFlags(Qt::TextSelectableByMouse);

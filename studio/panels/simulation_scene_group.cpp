@@ -38,12 +38,12 @@ SceneGroup::SceneGroup(QWidget* parent)
     fill_boundaries(m_boundary_x, tr("First and last pick"));
     fill_boundaries(m_boundary_y, tr("Left and right edge"));
     m_weft_mode->addItem(tr("Each pick from edge to edge"), static_cast<int>(WeftMode::periodic));
-    m_weft_mode->addItem(tr("Turns at the edge (wraparound)"), static_cast<int>(WeftMode::wraparound));
+    m_weft_mode->addItem(tr("Turns at the edge"), static_cast<int>(WeftMode::wraparound));
     m_weft_mode->setAccessibleName(tr("Weft"));
     m_weft_mode->setObjectName("weft_mode");
     m_weft_mode->setToolTip(
         tr("Whether each pick is a yarn of its own, or the picks of a feeder are one yarn that turns where "
-           "an end catches it."));
+           "an end catches it (wraparound)."));
     m_friction->name(tr("Friction"),
                      tr("Coefficient of friction between yarns (Coulomb): 0 is none; yarns are said to have "
                         "0.2 to 0.5, which was measured here (docs/simulation, Friction). Range 0 to 1."));

@@ -111,8 +111,8 @@ std::array<QString, Tutorial::steps + 1> Tutorial::texts() {
         tr("You have one repeat of a plain weave. Make a layer of it: press Repeat in the tool bar, 10 along and 10 across, so that the cloth has at least 20 picks and 20 ends."),
         tr("See it as cloth: press Run in Simulation (or Space), and wait until it is at rest. Drag in the 3D view to turn it, use the wheel to come nearer; 1 to 6 are standard views."),
         tr("Any crossing can be changed by itself: click one on the card, and weft and end change sides there, as where a float is to be caught. Where that cannot be, it says which yarns stand in the way. Ctrl+Z takes it back."),
-        tr("Now a second layer: choose Attach in the 3D view, click the lower face of the block (or drag a block onto another in Blocks), and take the same layer again. It will lie below the first."),
-        tr("Two layers, open on all sides. In Simulation, on the page Cloth, choose for Weft: Turns at the edge (wraparound): at both long sides it goes from one layer to the other and closes them."),
+        tr("Now a second layer: press Attach in the tool bar, press 2 to see the back, click the cloth in the 3D view, and choose layer-repeated, the same layer again. It will lie below the first."),
+        tr("Two layers, open on all sides. In Simulation, on the page Cloth, choose for Weft: Turns at the edge: at both long sides it goes from one layer to the other and closes them."),
         tr("The weft closes the sides, the cloth is hollow. Flip crossings of the first picks to close an end as well, look through it with Cut above the 3D view, and save it with Ctrl+S.")};
 }
 

@@ -101,18 +101,21 @@ TEST_CASE("what is thrown ends as a fault of the system, and what the library te
 }
 
 TEST_CASE("a call that makes no sense ends with 2 and says what there is") {
-    const auto says = [](const std::vector<std::string>& words) {
+    const auto says = [](const std::vector<std::string>& words, const std::string& help = "'loom --help' or 'loom COMMAND --help'") {
         const Ended ended = run(words, nothing);
         CHECK(ended.code == 2);
         CHECK(ended.out.empty());
-        CHECK_THAT(ended.err, Catch::EndsWith("\nTry 'loom --help' or 'loom COMMAND --help'.\n"));
+        CHECK_THAT(ended.err, Catch::EndsWith("\nTry " + help + ".\n"));
         return ended.err.substr(0, ended.err.find('\n'));
     };
     CHECK(says({}) == "loom: name a command");
     CHECK(says({"spin"}) == "loom: there is no command 'spin'");
     CHECK(says({"--fast"}) == "loom: there is no option '--fast'");
-    CHECK(says({"beam"}) == "loom: name what to do; beam has wind and turn");
-    CHECK(says({"beam", "burn"}) == "loom: there is no command 'burn' of beam; beam has wind and turn");
+    const std::string of_beam = "'loom beam --help' or 'loom beam COMMAND --help'";
+    CHECK(says({"beam"}, of_beam) == "loom: name what to do; beam has wind and turn");
+    CHECK(says({"beam", "burn"}, of_beam) == "loom: there is no command 'burn' of beam; beam has wind and turn");
+    CHECK(says({"weave", "--fast", "9"}, "'loom weave --help'") == "loom: there is no option '--fast' here");
+    CHECK(says({"beam", "wind", "tight"}, "'loom beam wind --help'") == "loom: 'tight' is one word too many");
     const Json error = parse_json(run({"beam", "--json"}, nothing).out).value().at("error");
     CHECK(error.at("kind") == "usage");
     CHECK(error.at("message") == "name what to do; beam has wind and turn");

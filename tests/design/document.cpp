@@ -448,6 +448,14 @@ TEST_CASE("files: errors name the file, and saving replaces it whole") {
                Catch::StartsWith(file.string() + ": warp.yarns[0].radius_mm: must be"));
     REQUIRE(save_design(design, file));
     CHECK(load_design(file).value() == design);
+    const auto other = [&](const std::string& content) {
+        std::ofstream(folder / "other") << content;
+        return load_design(folder / "other").error().message;
+    };
+    CHECK(other("weave-yarns 1\n") == "holds relaxed yarns, no design");
+    CHECK_THAT(other("\x89PNG\r\n"), Catch::Contains("have to be imported first"));
+    CHECK_THAT(other(" {\"format\""), Catch::Contains("is not JSON: line 1"));
+    std::filesystem::remove(folder / "other");
     CHECK(load_design(folder / "none.weave").error().where == (folder / "none.weave").string());
     CHECK_FALSE(save_design(design, folder / "none" / "shoe.weave"));
     CHECK(std::distance(std::filesystem::directory_iterator(folder), {}) == 1);

@@ -144,7 +144,7 @@ TEST_CASE("a folder without a manifest that counts is refused as a whole") {
     CHECK(placed.findings().size() == 2);
     fs::remove(manifest);
     const auto missing = verify_files(placed.folder, placed.state.trust);
-    check_refused(missing, "cannot open");
+    check_refused(missing, "manifest.json: is not there: name the folder of one release");
     CHECK(missing.error().code == ErrorCode::bad_input);
     TrustDocument terms = placed.site.trust_terms(2);
     terms.keys.erase(terms.keys.begin() + 2);

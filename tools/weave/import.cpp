@@ -168,6 +168,8 @@ std::string in_words(const ImportRequest& request, const Block& block, const Jso
                  groupings[k]["reason"].get<std::string>() + ")\n";
     }
     if (groupings.size() > 1) words += "Another one: --infer --grouping N\n";
+    if (!request.infer && request.t.empty() && request.p.empty() && request.loom.empty())
+        words += "Read as one layer; where picks or ends lie on one another, --infer finds which, or --t and --p say it.\n";
     return words;
 }
 

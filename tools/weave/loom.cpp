@@ -92,7 +92,7 @@ void add_check(CLI::App& app, CommandOutcome& outcome) {
                     "Hold a design to a loom, rule by rule; exit status 1 where a rule finds an error");
     const auto wish = std::make_shared<CheckWish>();
     command->add_option("FILE", wish->file, "the .weave file")->required();
-    command->add_option("--loom", wish->loom, "the loom's profile, a .json file")->type_name("FILE")->required();
+    command->add_option("--loom", wish->loom, "the loom's profile, a .json file: db/looms of the tree, share/weave/looms where it is installed")->type_name("FILE")->required();
     command
         ->add_option(
             "--yarns", wish->yarns,
@@ -139,7 +139,7 @@ void add_export(CLI::App& app, CommandOutcome& outcome) {
     const auto loom = std::make_shared<std::string>();
     const auto folder = std::make_shared<std::string>();
     command->add_option("FILE", *file, "the .weave file")->required();
-    command->add_option("--loom", *loom, "the loom's profile, a .json file")->type_name("FILE")->required();
+    command->add_option("--loom", *loom, "the loom's profile, a .json file: db/looms of the tree, share/weave/looms where it is installed")->type_name("FILE")->required();
     command->add_option("-o,--out", *folder, "the folder to write; it must not exist, or be empty")
         ->check(output_name())
         ->type_name("FOLDER")

@@ -37,12 +37,14 @@ Error usage_error(const std::string& message) {
 void list_samples(CommandOutcome& outcome) {
     Json list = Json::array();
     std::string names;
+    std::size_t longest = 0;
+    for (const Sample& sample : samples()) longest = std::max(longest, sample.name.size());
     for (const Sample& sample : samples()) {
         list.push_back(
             {{"name", sample.name}, {"title", sample.title}, {"about", sample.about}, {"loom", sample.loom}});
-        names += sample.name + "\n";
+        names += sample.name + std::string(longest + 2 - sample.name.size(), ' ') + sample.about.substr(0, sample.about.find(". ")) + "\n";
     }
-    outcome.answer({{"samples", std::move(list)}}, names);
+    outcome.answer({{"samples", std::move(list)}}, names + "\nweave samples NAME -o FILE.weave writes one; --json tells more of each.\n");
 }
 
 void add_samples(CLI::App& app, CommandOutcome& outcome) {
@@ -50,7 +52,7 @@ void add_samples(CLI::App& app, CommandOutcome& outcome) {
         add_command(app, outcome, "samples", "List the designs that come with the program, or write one");
     const auto name = std::make_shared<std::string>();
     const auto out = std::make_shared<std::string>();
-    command->add_option("NAME", *name, "the sample to write; without it the names are listed, one a line");
+    command->add_option("NAME", *name, "the sample to write; without it they are listed, one a line");
     command->add_option("-o,--out", *out, "the .weave file to write")->type_name("FILE");
     on_run(command, outcome, [=, &outcome]() -> Status {
         if (name->empty()) {
@@ -282,7 +284,7 @@ void add_stencil(CLI::App& app, CommandOutcome& outcome) {
         ->add_option("IMAGE", *picture,
                      "PNG, TIFF or BMP; its bottom row is row 0 of the cloth, its left column column 0")
         ->required();
-    command->add_option("--map", *mappings, "COLOUR=FILE, such as #ff0000=twill.weave; once for each colour")
+    command->add_option("--map", *mappings, "COLOUR=FILE, such as '#ff0000=twill.weave' (in quotes, or a shell takes # for a comment); once for each colour")
         ->type_name("COLOUR=FILE")
         ->required()
         ->allow_extra_args(false);

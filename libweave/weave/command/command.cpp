@@ -33,13 +33,32 @@ std::string commands_of(const CLI::App& group) {
     return names;
 }
 
+/// The command that a call names, as far as it names one.
+const CLI::App& command_named(const CLI::App& app) {
+    const CLI::App* last = &app;
+    while (!last->get_subcommands().empty()) last = last->get_subcommands().front();
+    return *last;
+}
+
+/// As it is called: `loomlink user join`.
+std::string whole_name(const CLI::App& command) {
+    const CLI::App* const group = command.get_parent();
+    return (group == nullptr ? "" : whole_name(*group) + " ") + command.get_name();
+}
+
+/// What a command was told beyond what it takes: an option that it has not, else the first word too many.
+std::string word_too_many(const std::vector<std::string>& words) {
+    const auto option = std::find_if(words.begin(), words.end(), [](const std::string& word) { return word.starts_with('-'); });
+    return option == words.end() ? "'" + words.front() + "' is one word too many" : "there is no option '" + *option + "' here";
+}
+
 /// What is wrong with a call that could not be parsed, in a sentence. CLI11 asks for a command before it
 /// looks at words it does not know.
 std::string usage_trouble(const CLI::App& app, const CLI::ParseError& trouble) {
-    const CLI::App* last = &app;
-    while (!last->get_subcommands().empty()) last = last->get_subcommands().front();
-    if (last->get_require_subcommand_min() == 0) return trouble.what();
+    const CLI::App* const last = &command_named(app);
     auto unknown = last->remaining();
+    if (last->get_require_subcommand_min() == 0)
+        return dynamic_cast<const CLI::ExtrasError*>(&trouble) == nullptr || unknown.empty() ? trouble.what() : word_too_many(unknown);
     std::erase(unknown, "--json");  // which says how to answer, and is no reason
     const std::string has = last == &app ? "" : "; " + last->get_name() + " has " + commands_of(*last);
     if (unknown.empty()) return last == &app ? "name a command" : "name what to do" + has;
@@ -58,8 +77,9 @@ void parse(CLI::App& app, CommandOutcome& outcome, int count, char** words) {
         }
         outcome.json = asks_for_json(count, words);  // which the parser need not have reached
         outcome.fail({ErrorCode::usage, usage_trouble(app, trouble), ""});
-        const std::string& name = app.get_name();
-        std::cerr << "Try '" << name << " --help' or '" << name << " COMMAND --help'.\n";
+        const std::string name = whole_name(command_named(app));
+        const bool has_commands = command_named(app).get_require_subcommand_min() > 0;
+        std::cerr << "Try '" << name << " --help'" << (has_commands ? " or '" + name + " COMMAND --help'" : "") << ".\n";
     } catch (const std::bad_alloc&) {
         outcome.fail(system_fault("this machine has not enough memory for it"));
     } catch (const std::exception& trouble) {

@@ -6,17 +6,17 @@
 namespace weave {
 
 ConfigOptions::ConfigOptions(CLI::App* command, const std::string& more) : m_command(command) {
-    command->add_option("--config", m_file, "a file of JSON with what else stands here, and more (" + more + ")");
+    command->add_option("--config", m_file, "a file of JSON with what else stands here, and more (" + more + ")")->type_name("FILE");
     command->add_flag("--check-config", m_check_only,
                       "say whether it could be served so: what is configured, its files, and that address and port are free; and end");
 }
 
 void ConfigOptions::add_service(ServiceConfig& config) {
-    add("--address", "address", config.address, "the address to listen on (" + config.address + ")");
-    add("--port", "port", config.port, "the port to listen on (" + std::to_string(config.port) + "); 0: any free one");
-    add("--host", "hosts", config.hosts, "a name or address that clients use; may be repeated");
-    add("--cert", "certificate", config.certificate, "a certificate (PEM) in place of a self-made one");
-    add("--key", "key", config.key, "the key of that certificate (PEM)");
+    add("--address", "address", config.address, "the address to listen on (" + config.address + ")")->type_name("ADDRESS");
+    add("--port", "port", config.port, "the port to listen on (" + std::to_string(config.port) + "); 0: any free one")->type_name("N");
+    add("--host", "hosts", config.hosts, "a name or address that clients use; may be repeated")->type_name("HOST");
+    add("--cert", "certificate", config.certificate, "a certificate (PEM) in place of a self-made one")->type_name("FILE");
+    add("--key", "key", config.key, "the key of that certificate (PEM)")->type_name("FILE");
     m_command->add_flag_callback(
         "--plain", [this, &config] { give("--plain", "plain", [&config] { config.plain = true; }); },
         "HTTP without TLS, on this machine alone");

@@ -24,8 +24,8 @@ class ConfigOptions {
 
     /// Adds an option in place of the member `member`, which is kept at `place`.
     template <class Value>
-    void add(const std::string& option, const std::string& member, Value& place, const std::string& help) {
-        m_command->add_option_function<Value>(
+    CLI::Option* add(const std::string& option, const std::string& member, Value& place, const std::string& help) {
+        return m_command->add_option_function<Value>(
             option,
             [this, option, member, &place](const Value& value) {
                 give(option, member, [&place, value] { place = value; });

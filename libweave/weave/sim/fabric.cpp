@@ -56,7 +56,6 @@ void Fabric<Real>::add_yarn(const SimYarn& yarn) {
     place.skipped = yarn.is_cut[0] ? 1 : 0;
     place.first_slot = static_cast<std::uint32_t>(m_moves.size());
     place.first_segment = static_cast<std::uint32_t>(m_segments.size());
-    place.first_sample = static_cast<std::uint32_t>(m_samples);
     const auto index = static_cast<std::uint32_t>(m_places.size());
 
     // A few more samples than the planned length asks for keep the spacing when the yarn grows.

@@ -15,7 +15,6 @@ namespace weave::sim {
 struct YarnPlace {
     std::uint32_t first_slot = 0, slots = 0, points = 0;
     std::uint32_t first_segment = 0, segments = 0;
-    std::uint32_t first_sample = 0;
     std::uint32_t skipped = 0;  ///< slots before its first segment: one where it is cut off
 };
 

@@ -5,7 +5,8 @@
 
 #include <cstdio>
 
-int main(int, char** arguments) {
+int main(int count, char** arguments) {
+    if (count != 2) return std::puts("usage: outside DESIGN.weave"), 2;
     const auto design = weave::load_design(arguments[1]);
     if (!design) return std::puts(design.error().text().c_str()), 3;
     const auto cloth = weave::evaluate(*design);
