@@ -62,9 +62,9 @@ Result<std::string> hash_of_file(const std::string& file) {
 /// What is told where the run is ended from outside, as mpirun ends it when a process is gone.
 std::string last_words(const std::string& folder, std::optional<std::size_t> newest) {
     if (folder.empty()) return "ended from outside, and no checkpoints were asked for (--checkpoint FOLDER): nothing is kept";
-    if (!newest) return "ended from outside before there was a checkpoint in " + folder + ": the same command begins anew";
-    return "ended from outside; the newest checkpoint is that of step " + std::to_string(*newest) + " in " + folder +
-           ": the same command goes on from there, with any number of processes";
+    // A checkpoint may have become whole just now: only its folder knows.
+    const std::string known = newest ? "the checkpoint of step " + std::to_string(*newest) + " in " + folder + " is whole" : "no checkpoint in " + folder + " was known to be whole yet";
+    return "ended from outside; " + known + ": the same command goes on from the newest that is" + (newest ? "" : ", or begins anew") + ", with any number of processes";
 }
 
 }  // namespace
