@@ -311,25 +311,31 @@ Control resampled_to(const sim::SimScene& scene, const sim::SimScene& from, cons
 
 std::vector<std::string> structure_names() {
     std::vector<std::string> names;
-    for (const Printed& printed : table_1) names.emplace_back(printed.name);
+    for (const Sample& sample : samples()) names.push_back(sample.name);
     names.emplace_back(pinned_plain);
     return names;
 }
 
+bool is_whole_product(const std::string& name) {
+    return name.rfind("shoe-", 0) == 0;
+}
+
 Result<Structure> make_structure(const std::string& name) {
     Structure structure;
-    const auto* printed = std::ranges::find_if(table_1, [&](const Printed& one) { return one.name == name; });
     if (name == pinned_plain) {
         structure = make_pinned_plain();
-    } else if (printed != std::end(table_1)) {
+    } else if (const Sample* sample = find_sample(name); sample != nullptr) {
         structure.name = name;
-        structure.design = find_sample(name)->make();
-        structure.paper_points = printed->points;
-        structure.paper_seconds = printed->seconds;
+        structure.design = sample->make();
     } else {
         std::string names;
         for (const std::string& one : structure_names()) names += (names.empty() ? "" : ", ") + one;
         return Error{ErrorCode::usage, "there is no structure '" + name + "'; there are " + names, "--only"};
+    }
+    const auto* printed = std::ranges::find_if(table_1, [&](const Printed& one) { return one.name == name; });
+    if (printed != std::end(table_1)) {
+        structure.paper_points = printed->points;
+        structure.paper_seconds = printed->seconds;
     }
     WEAVE_TRY(const Evaluation evaluation, evaluate(structure.design));
     structure.block = evaluation.block;

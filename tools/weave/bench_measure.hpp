@@ -93,10 +93,12 @@ struct Structure {
     double points_per_key = 4;            ///< of `standard`
 };
 
-/// The eight structures of the paper's Table 1, and a plain weave of pinned yarns.
+/// Every sample, and a plain weave of pinned yarns.
 std::vector<std::string> structure_names();
-/// One of them, tiled and with points for each crossing so that `standard` has about the paper's number of
-/// points.
+/// The shoes: a hundred thousand points and more, measured only where they are asked for by name.
+bool is_whole_product(const std::string& name);
+/// One of them. Those of the paper's Table 1 are tiled and have points for each crossing so that `standard` has
+/// about the paper's number of points; the others are their smallest repeat in the usual points.
 Result<Structure> make_structure(const std::string& name);
 
 /// Options of `weave bench` that all its parts have.

@@ -148,15 +148,17 @@ class Tradeoff {
         json["start"] = start;
         json["goal"] = grades[g].goal;
         json["errors"] = Json::array();
+        const Shape last = shape_of(m_plans[g], run.control);
         for (const Snapshot& snapshot : run.snapshots) {
             const Shape shape = shape_of(m_plans[g], snapshot.control);
             Json error = error_json(m_plans[g], shape, m_true_shape);
+            // What it would cost to stop there, whatever the points cost.
+            error["to_its_end"] = error_json(m_plans[g], shape, last);
             error["residual"] = snapshot.wanted;
             error["seconds"] = snapshot.seconds;
             error["lost_crossings"] = shape.lost;
             json["errors"].push_back(error);
         }
-        const Shape last = shape_of(m_plans[g], run.control);
         json["lost_crossings"] = last.lost;
         json["crimp_warp_pc"] = last.crimp_pc[0];
         json["crimp_weft_pc"] = last.crimp_pc[1];
