@@ -31,18 +31,6 @@ std::string line_after(const char* file, const std::string& name) {
     return "";
 }
 
-double length_of(const Spline& spline) {
-    constexpr double places[]{0.0694318442029737, 0.3300094782075719, 0.6699905217924281, 0.9305681557970263};
-    constexpr double weights[]{0.1739274225687269, 0.3260725774312731, 0.3260725774312731,
-                               0.1739274225687269};
-    double length = 0;
-    for (std::size_t s = 0; s < spline.segments(); ++s) {
-        for (std::size_t g = 0; g < 4; ++g)
-            length += weights[g] * spline.tangent(static_cast<double>(s) + places[g]).norm();
-    }
-    return length;
-}
-
 /// Keeps the states of a run at the residuals that are told.
 class Looker {
   public:
@@ -162,6 +150,13 @@ Json machine_json(std::size_t threads) {
             {"memory_GiB", std::round(gib)}};
 }
 
+std::string machine_line(const Json& machine) {
+    return "Machine: " + machine.at("processor").get<std::string>() + ", " +
+           std::to_string(machine.at("cores").get<std::size_t>()) + " cores, " +
+           std::to_string(machine.at("threads").get<std::size_t>()) + " threads, " +
+           in_words("%.0f", machine.at("memory_GiB")) + " GiB";
+}
+
 std::uint64_t peak_memory() {
     const std::string peak = line_after("/proc/self/status", "VmHWM");
     return peak.empty() ? 0 : std::stoull(peak) * 1024;
@@ -171,6 +166,18 @@ void reset_peak_memory() {
     ::malloc_trim(0);
     std::ofstream("/proc/self/clear_refs")
         << "5\n";  // where that is not allowed, the peak is that of the process
+}
+
+double length_of(const Spline& spline) {
+    constexpr double places[]{0.0694318442029737, 0.3300094782075719, 0.6699905217924281, 0.9305681557970263};
+    constexpr double weights[]{0.1739274225687269, 0.3260725774312731, 0.3260725774312731,
+                               0.1739274225687269};
+    double length = 0;
+    for (std::size_t s = 0; s < spline.segments(); ++s) {
+        for (std::size_t g = 0; g < 4; ++g)
+            length += weights[g] * spline.tangent(static_cast<double>(s) + places[g]).norm();
+    }
+    return length;
 }
 
 Control control_of(const sim::SimScene& scene) {

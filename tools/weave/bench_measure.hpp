@@ -22,10 +22,15 @@ inline constexpr std::array<double, 5> told_residuals{1e-1, 1e-2, 1e-3, 1e-5, 1e
 
 /// Processor, cores, memory, and the threads that are used.
 Json machine_json(std::size_t threads);
+/// The same in words.
+std::string machine_line(const Json& machine);
 
 /// The greatest memory of the process since reset_peak_memory(), in bytes; 0 where the system does not say.
 std::uint64_t peak_memory();
 void reset_peak_memory();
+
+/// Length of a centreline, mm.
+double length_of(const Spline& spline);
 
 /// Control points of every yarn.
 using Control = std::vector<std::vector<Vec3>>;

@@ -41,16 +41,9 @@ std::string error_cell(const Json& run) {
            number(error->at("place_rms_radii"), "%.3f");
 }
 
-std::string machine_line(const Json& machine) {
-    return machine.at("processor").get<std::string>() + ", " +
-           std::to_string(machine.at("cores").get<std::size_t>()) + " cores, " +
-           std::to_string(machine.at("threads").get<std::size_t>()) + " threads, " +
-           number(machine.at("memory_GiB"), "%.0f") + " GiB";
-}
-
 std::string runs_table(const Json& structure) {
     std::string text = "\n## " + structure.at("name").get<std::string>() +
-                       "\n\nMachine: " + machine_line(structure.at("machine")) + ". `standard` has " +
+                       "\n\n" + machine_line(structure.at("machine")) + ". `standard` has " +
                        std::to_string(structure.at("standard_points").get<std::size_t>()) +
                        " points (the paper " + number(structure.at("paper_points"), "%.0f") +
                        "): " + number(structure.at("points_per_key"), "%.3g") +
