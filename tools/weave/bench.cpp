@@ -70,8 +70,10 @@ Status finish(CommandOutcome& outcome, Json answer, std::string words, bool whol
 Status write_report(const std::string& folder, const Json& structures) {
     if (folder.empty() || structures.empty()) return {};
     WEAVE_CHECK_OK(write_file(fs::path(folder) / "tradeoff.md", tradeoff_table(structures)));
-    WEAVE_TRY(const std::string plot, tradeoff_plot(structures));
-    return write_file(fs::path(folder) / "tradeoff.svg", plot);
+    WEAVE_TRY(const std::string crimp, tradeoff_plot(structures, PlottedError::crimp));
+    WEAVE_CHECK_OK(write_file(fs::path(folder) / "tradeoff.svg", crimp));
+    WEAVE_TRY(const std::string thickness, tradeoff_plot(structures, PlottedError::thickness));
+    return write_file(fs::path(folder) / "tradeoff-thickness.svg", thickness);
 }
 
 /// Results as the table lists them.
@@ -118,9 +120,8 @@ Status run_tradeoff(CommandOutcome& outcome, const TradeoffWish& wish) {
     std::vector<std::string> asked;
     for (const std::string& name : structure_names()) {
         WEAVE_TRY(Json json, earlier(options.folder, name));
-        const bool named = options.only.empty()
-                               ? !is_whole_product(name)
-                               : std::ranges::find(options.only, name) != options.only.end();
+        const bool named = options.only.empty() ? !is_whole_product(name)
+                                                : std::ranges::find(options.only, name) != options.only.end();
         if (named && !(wish.missing && !json.is_null())) asked.push_back(name);
         if (!json.is_null()) known[name] = std::move(json);
     }
@@ -175,8 +176,8 @@ Result<Json> measure_each(std::size_t count, const MeasureOne& measure) {
 }
 
 /// A list of cases told and kept; findings where one has a `fault`.
-Status finish_cases(CommandOutcome& outcome, const BenchOptions& options, const Json& cases, std::size_t asked,
-                    const std::string& name, const std::string& what, std::string words) {
+Status finish_cases(CommandOutcome& outcome, const BenchOptions& options, const Json& cases,
+                    std::size_t asked, const std::string& name, const std::string& what, std::string words) {
     const auto bad = std::ranges::count_if(cases, [](const Json& one) { return one.at("fault") != ""; });
     if (bad > 0) outcome.found_something();
     Json answer{{"machine", machine_json(options.threads)}, {what + "s", cases}, {"bad", bad}};
@@ -220,7 +221,9 @@ void add_shared_options(CLI::App* command, BenchOptions& options, const std::str
         ->check(positive_number())
         ->capture_default_str()
         ->type_name("N");
-    add_threads(command, options.threads);
+    CLI::Option* threads = add_threads(command, options.threads);
+    threads->description(threads->get_description() +
+                         "; with 1 seconds are the processor's, so that what runs beside it hardly counts");
     command->footer(
         "Ctrl-C ends it (exit 1), says how much was done, and writes no table of less than that over a whole "
         "one; "
@@ -237,8 +240,8 @@ void add_tradeoff(CLI::App& bench, CommandOutcome& outcome) {
     const auto wish = std::make_shared<TradeoffWish>();
     command
         ->add_option("-o,--out", wish->options.folder,
-                     "a folder for tradeoff-NAME.json, tradeoff.md and tradeoff.svg; what it holds already "
-                     "of other structures goes into the table too")
+                     "a folder for tradeoff-NAME.json, tradeoff.md, tradeoff.svg (crimp) and "
+                     "tradeoff-thickness.svg; what it holds already of other structures goes into them too")
         ->type_name("FOLDER");
     command
         ->add_option("--only", wish->options.only,
@@ -290,13 +293,15 @@ void add_stability(CLI::App& bench, CommandOutcome& outcome) {
 }
 
 void add_savings(CLI::App& bench, CommandOutcome& outcome) {
-    CLI::App* command = add_command(
-        bench, outcome, "savings",
-        "What a scene does not need is left out: each term kept and left out in turns, what that saves, and how far "
-        "both results lie apart (exit 1: by more than a hundredth of a radius)");
+    CLI::App* command = add_command(bench, outcome, "savings",
+                                    "What a scene does not need is left out: each term kept and left out in "
+                                    "turns, what that saves, and how far "
+                                    "both results lie apart (exit 1: by more than a hundredth of a radius)");
     const auto options = std::make_shared<BenchOptions>();
-    command->add_option("-o,--out", options->folder, "a folder for savings.json and savings.md")->type_name("FOLDER");
-    command->add_option("--only", options->only, "only this term (again for more), such as friction or repeat")
+    command->add_option("-o,--out", options->folder, "a folder for savings.json and savings.md")
+        ->type_name("FOLDER");
+    command
+        ->add_option("--only", options->only, "only this term (again for more), such as friction or repeat")
         ->type_name("NAME");
     add_shared_options(command, *options, "cap of each run");
     on_run(command, outcome, [=, &outcome] { return run_savings(outcome, *options); });

@@ -14,7 +14,6 @@
 #include <weave/sim/starts.hpp>
 
 #include <algorithm>
-#include <chrono>
 #include <cmath>
 #include <limits>
 #include <utility>
@@ -22,10 +21,6 @@
 namespace weave::program {
 
 namespace {
-
-double now() {
-    return std::chrono::duration<double>(std::chrono::steady_clock::now().time_since_epoch()).count();
-}
 
 /// One relaxation of a cloth, with a term or without it.
 struct Side {
@@ -79,13 +74,13 @@ using Once =
 Side relaxed(const sim::SimScene& scene, const sim::RelaxOptions& options, std::size_t threads,
              const Once& once) {
     Side side;
-    const double began = now();
+    const double began = seconds_now(threads);
     const sim::Executor executor(threads);
     const sim::Fabric<double> fabric(scene);
     sim::Energy<double> energy(fabric, executor);
     std::vector<double> state = fabric.state();
     const sim::RelaxResult result = once(energy, state, options);
-    side.seconds = now() - began;
+    side.seconds = seconds_now(threads) - began;
     side.points = fabric.points();
     side.steps = result.iterations;
     side.at_rest = result.ending == sim::Ending::converged;
@@ -141,7 +136,7 @@ Result<sim::Plan> plan_of(const std::string& sample) {
 Run simulation_of(const Saving& saving, const Cloth& cloth, const sim::SimulationRequest& request) {
     return [=](const RunLimits& limits) {
         Side side;
-        const double began = now();
+        const double began = seconds_now(limits.threads);
         const sim::Plan plan = sim::make_plan(cloth.design, *cloth.block, request).value();
         sim::SimulationOptions options;
         options.threads = limits.threads;
@@ -150,7 +145,7 @@ Run simulation_of(const Saving& saving, const Cloth& cloth, const sim::Simulatio
         options.most_seconds = limits.seconds;
         options.watch = [](const sim::Progress&) { return !interrupted(); };
         Yarns yarns = sim::simulate(cloth.design, plan, options);
-        side.seconds = now() - began;
+        side.seconds = seconds_now(limits.threads) - began;
         side.points = points_of(plan.scene);
         side.steps = yarns.report.at("iterations").get<std::size_t>();
         side.at_rest = yarns.report.at("converged").get<bool>();
@@ -285,7 +280,15 @@ Result<Saving> friction() {
 Result<Saving> transition() {
     WEAVE_TRY(const sim::Plan plan, plan_of("sateen-8"));
     sim::SimScene scene = plan.scene;
-    scene.transition = {.yarn = {0, scene.yarns.size() - 1}, .at = {2, 2}, .reach = {2, 2}, .contact = 1};
+    const Crossing& crossing = plan.curves.crossings.front();
+    const auto yarn_of = [&](std::size_t curve) {
+        return static_cast<std::size_t>(std::ranges::find(plan.curve_of, curve) - plan.curve_of.begin());
+    };
+    const auto point_of = [&](std::size_t key) { return plan.points_per_key * static_cast<double>(key); };
+    scene.transition = {.yarn = {yarn_of(crossing.weft), yarn_of(crossing.warp)},
+                        .at = {point_of(crossing.weft_key), point_of(crossing.warp_key)},
+                        .reach = {2, 2},
+                        .contact = 1};
     return both_ways({.term = "transition",
                       .cloth = "sateen-8",
                       .kept = "a crossing as in a flip, its spring 0 and its contact whole"},
@@ -307,12 +310,12 @@ Result<Saving> periods() {
         sim::relax(energy, state, options);
         const std::array<double, 2> pull = energy.period_gradient(state);
         Side side;
-        const double began = now();
+        const double began = seconds_now(limits.threads);
         sim::SimScene relaxing =
             sim::with_periods(scene, {1.01 * scene.period_mm[0], 1.01 * scene.period_mm[1]});
         const sim::PeriodsResult result =
             sim::relax_periods(relaxing, {pull[0], pull[1]}, options, 1e-6, executor);
-        side.seconds = now() - began;
+        side.seconds = seconds_now(limits.threads) - began;
         side.points = fabric.points();
         side.steps = result.last.iterations;
         side.at_rest = result.balanced && result.last.ending == sim::Ending::converged;
@@ -375,12 +378,12 @@ std::pair<Side, Side> in_turns(const Saving& saving, const RunLimits& limits) {
     constexpr std::size_t most_turns = 5;
     constexpr double enough_seconds = 10;
     std::pair<Side, Side> best;
-    const double began = now();
+    const double began = seconds_now(limits.threads);
     for (std::size_t turn = 0; turn < most_turns && !interrupted(); ++turn) {
         Side lean = saving.lean(limits), full = saving.full(limits);
         if (turn == 0 || lean.seconds < best.first.seconds) best.first = std::move(lean);
         if (turn == 0 || full.seconds < best.second.seconds) best.second = std::move(full);
-        if (now() - began > enough_seconds) break;
+        if (seconds_now(limits.threads) - began > enough_seconds) break;
     }
     return best;
 }

@@ -139,9 +139,8 @@ Result<Json> measure_scale(const BenchOptions& options, const ScaleOptions& scal
 
 std::string scale_table(const Json& result) {
     std::string text = "# How time and memory grow\n\nWritten by `weave bench scale`. " +
-                       machine_line(result.at("machine")) + ". " +
-                       result.at("structure").get<std::string>() + ", `relax` to " +
-                       in_words("%.0e", result.at("goal")) + ".\n\n" +
+                       machine_line(result.at("machine")) + ". " + result.at("structure").get<std::string>() +
+                       ", `relax` to " + in_words("%.0e", result.at("goal")) + ".\n\n" +
                        "| Points | At rest | s | µs a point | Steps | CG steps | Evaluations | Memory, MB | "
                        "Bytes a point | Lost |\n"
                        "|---|---|---|---|---|---|---|---|---|---|\n";

@@ -57,12 +57,7 @@ class Tradeoff {
             say(std::string(grades[g].name) + ", relax: " + told(m_raw.back()));
         }
         find_truth();
-        for (std::size_t g = 0; g < m_plans.size(); ++g) continue_from_truth(g);
-        sweep();
-        for (std::size_t g = 0; g < m_plans.size(); ++g) {
-            m_paper.push_back(measured(g, sim::Solver::paper, m_best, 1e-8, m_options.seconds, nullptr));
-            say(std::string(grades[g].name) + ", paper: " + told(m_paper.back()));
-        }
+        if (m_raw[1].seconds_to(grades[0].goal)) go_on();
         if (interrupted())
             return Error{ErrorCode::system, "interrupted; what was measured of it is not kept",
                          m_structure.name};
@@ -70,6 +65,16 @@ class Tradeoff {
     }
 
   private:
+    /// What is of use only where `standard` comes as far as a draft at least.
+    void go_on() {
+        for (std::size_t g = 0; g < m_plans.size(); ++g) continue_from_truth(g);
+        sweep();
+        for (std::size_t g = 0; g < m_plans.size(); ++g) {
+            m_paper.push_back(measured(g, sim::Solver::paper, m_best, 1e-8, m_options.seconds, nullptr));
+            say(std::string(grades[g].name) + ", paper: " + told(m_paper.back()));
+        }
+    }
+
     void say(const std::string& line) const { tell(m_structure.name + ": " + line); }
 
     [[nodiscard]] Measured measured(std::size_t grade, sim::Solver solver, const sim::PaperOptions& paper,
@@ -170,8 +175,13 @@ class Tradeoff {
     [[nodiscard]] Json ratios() const {
         Json ratios = Json::object();
         for (const double residual : told_residuals) {
-            const std::optional<double> fast = m_raw[1].seconds_to(residual),
-                                        slow = m_paper[1].seconds_to(residual);
+            const std::optional<double> fast = m_raw[1].seconds_to(residual);
+            if (m_paper.empty()) {
+                ratios[in_words("%.0e", residual)] = {
+                    {"relax_s", fast ? Json(*fast) : Json()}, {"paper_s", nullptr}, {"ratio", nullptr}};
+                continue;
+            }
+            const std::optional<double> slow = m_paper[1].seconds_to(residual);
             Json ratio = {{"relax_s", fast ? Json(*fast) : Json()},
                           {"paper_s", slow ? Json(*slow) : Json()},
                           {"ratio", nullptr}};
@@ -187,6 +197,7 @@ class Tradeoff {
     /// Whether both solvers came from the same raw start to the same rest, as far as residuals of 1e-3 tell;
     /// if not, how they differ.
     [[nodiscard]] Json basins() const {
+        if (m_paper.empty()) return {{"comparable", false}};
         const Shape fast = shape_of(m_plans[1], m_raw[1].control),
                     slow = shape_of(m_plans[1], m_paper[1].control);
         Json basins = error_json(m_plans[1], slow, fast);
@@ -214,6 +225,7 @@ class Tradeoff {
                      {"runs", Json::array()}};
         for (std::size_t g = 0; g < m_plans.size(); ++g) {
             json["runs"].push_back(run_json(g, "relax", "raw", m_raw[g]));
+            if (m_paper.empty()) continue;
             json["runs"].push_back(run_json(g, "paper", "raw", m_paper[g]));
             json["runs"].push_back(run_json(g, "relax", "reference", m_continued[g]));
         }
