@@ -16,7 +16,7 @@ TEST_CASE("bench tradeoff measures a structure, keeps it, and goes on from what 
     REQUIRE(said.at("structures").size() == 1);
     const Json& one = said.at("structures").at(0);
     CHECK(one.at("name") == "plain-pinned");
-    CHECK(one.at("runs").size() == 9);
+    CHECK(one.at("runs").size() == 12);
     CHECK(one.at("sweep").size() == 9);
     CHECK(one.at("machine").at("cores").get<int>() >= 1);
     for (const Json& run : one.at("runs")) {
@@ -54,12 +54,12 @@ TEST_CASE("bench tradeoff measures any sample, and tells the errors of a fidelit
         CHECK(one.at("reference").at("residual").get<double>() <= 1e-8);
         for (const Json& run : one.at("runs")) {
             if (run.at("solver") != "relax") continue;
+            INFO(run.at("fidelity") << " from " << run.at("start"));
             REQUIRE(run.at("ending") == "converged");
-            // The last place that was looked at is the end itself.
-            const Json& last = run.at("errors").back();
-            CHECK(last.at("residual") == 1e-8);
-            CHECK(std::abs(last.at("to_its_end").at("crimp_warp_pp").get<double>()) < 1e-3);
-            CHECK(std::abs(last.at("crimp_warp_pp").get<double>()) < 1);
+            CHECK(std::abs(run.at("end").at("crimp_warp_pp").get<double>()) < 1);
+            // To 1e-8 it ends where it ends; its goal is not far from there.
+            const double left = std::abs(run.at("end").at("to_its_end").at("crimp_warp_pp").get<double>());
+            CHECK(left < (run.at("start") == "raw" ? 1e-9 : 0.5));
         }
     }
     const std::string table = shop.get("kept/tradeoff.md");
@@ -71,7 +71,7 @@ TEST_CASE("a structure that comes to no rest is measured as far as it comes, and
     const Workshop shop;
     const Json said = shop.json({"bench", "tradeoff", "--only", "satin-e", "--seconds", "1e-3", "--threads", "1", "-o", "kept"});
     const Json& one = said.at("structures").at(0);
-    CHECK(one.at("runs").size() == 3);
+    CHECK(one.at("runs").size() == 6);
     CHECK(one.at("basins").at("comparable") == false);
     CHECK(one.at("ratios").at("1e-03").at("ratio").is_null());
     CHECK(shop.get("kept/tradeoff.md").find(": not at rest |") != std::string::npos);
