@@ -5,6 +5,8 @@ export CCACHE_BASEDIR=$PWD
 
 say() { echo "== $*"; }
 
+in_html() { sed 's/&/\&amp;/g; s/</\&lt;/g'; }
+
 # Runs a step; its output is shown when it fails, or as it comes where VERBOSE is set.
 step() { # WHAT COMMAND...
     local what=$1 log status=0 began=$SECONDS

@@ -1,18 +1,16 @@
-# A mill in a folder: a site of loomlink with its first people, of whom one saves and submits a design, another approves and
-# releases it, and the loom's operator pulls it and holds every byte to what was signed. Sourced by tools/demo, with $loomlink the
-# program and $made the folder that is being made.
+# A mill in a folder: a site of loomlink with its first people and two looms. Sourced by tools/demo and tests/checks/release_test, with
+# $loomlink the program, $made the folder that is being made and $scratch one that nobody else sees.
 
 # Serves the mill until stop_mill. Answers of the program go to one file, since the next step needs parts of them.
 serve_mill() {
-    mill_private=$(mktemp -d)
-    mill_answer=$mill_private/answer
+    mill_answer=$scratch/mill-answer
     (umask 077 && printf 'warp and weft and warp\n' > "$made/mill-password")
-    "$loomlink" serve "$made/mill" --site mill --host 127.0.0.1 --host localhost --port 0 --json > "$mill_answer" 2> "$mill_private/log" &
+    "$loomlink" serve "$made/mill" --site mill --host 127.0.0.1 --host localhost --port 0 --json > "$mill_answer" 2> "$scratch/mill-log" &
     mill_server=$!
     local tries
     for tries in {1..600}; do
         [ ! -s "$mill_answer" ] || break
-        kill -0 $mill_server 2> /dev/null || { cat "$mill_private/log" >&2; return 5; }
+        kill -0 $mill_server 2> /dev/null || { cat "$scratch/mill-log" >&2; return 5; }
         sleep 0.1
     done
     mill_fingerprint=$(answered certificate_sha256)
@@ -22,14 +20,22 @@ stop_mill() {
     kill $mill_server 2> /dev/null || true
     wait $mill_server 2> /dev/null || true
     mill_server=
-    rm -rf "$mill_private"
 }
 
 answered() { sed -nE "s/.*\"$1\":\"([^\"]*)\".*/\1/p" "$mill_answer"; } # MEMBER of the last answer
 
-# A command of one of the people, and one that this person signs with the password.
+# A command from the account of one of the people, whose home is a folder here: each has a session, and a loom a state, of their own, and
+# who has a token for simd there shows it.
+at_desk() ( # NAME COMMAND...
+    export HOME=$scratch/home/$1
+    unset XDG_CONFIG_HOME XDG_STATE_HOME WEAVE_TOKEN
+    mkdir -p "$HOME"
+    [ ! -f "$HOME/token" ] || { WEAVE_TOKEN=$(< "$HOME/token") && export WEAVE_TOKEN; }
+    "${@:2}"
+)
+# A command of loomlink by one of the people, and one that this person signs with the password.
 as() { # NAME COMMAND...
-    "$loomlink" "${@:2}" --json --session "$mill_private/$1" > "$mill_answer"
+    at_desk "$1" "$loomlink" "${@:2}" --json > "$mill_answer"
 }
 signed() { # NAME COMMAND...
     as "$@" --password-file "$made/mill-password"
@@ -42,27 +48,20 @@ invite_to_mill() { # NAME 'FULL NAME' ROLE...
     join_mill "$1" "$2" "$(answered link)"
 }
 
-# The mill's people, its loom `EP 1` with otto at it, and a trust document, by whose fingerprint the loom knows the mill.
+# The mill's people, its looms with otto at them, and a trust document, by whose fingerprint the looms know the mill. Dora may approve
+# what others draw; a release needs a simulation, as it does where nothing else is said.
 set_up_mill() {
     join_mill mary 'Mary Miller' "$(answered invitation)"
-    invite_to_mill dora 'Dora Draft' designer
+    invite_to_mill dora 'Dora Draft' designer approver
     invite_to_mill abel 'Abel Reed' approver
     invite_to_mill otto 'Otto Shed' operator
-    as mary policy --simulation optional
+    invite_to_mill edda 'Edda Proof' engineer
+    as mary loom add TC2 db/looms/tc2.json
     as mary loom add 'EP 1' db/looms/ep-2688.json
+    as mary loom operators TC2 otto
     as mary loom operators 'EP 1' otto
     signed mary trust publish
+    as mary trust show -o "$made/trust.json"
     as mary trust show
     mill_trust=$(answered fingerprint)
-}
-
-# From a design to the folder of the loom.
-release_design() { # FILE NAME
-    as dora design make "$2"
-    as dora save "$1" "$2" --message "As drawn"
-    signed dora submit "$2" 1 --loom 'EP 1' --reason "Ready to weave"
-    signed abel approve "$2" 1 --reason "Looked at, face and back"
-    signed abel release "$2" 1 --loom 'EP 1' --reason "For the autumn trial"
-    as otto pull 'EP 1' --to "$made/at-the-loom" --trust "$mill_trust" --state "$mill_private/state"
-    "$loomlink" verify-files "$made"/at-the-loom/* --state "$mill_private/state"
 }

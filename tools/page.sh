@@ -1,5 +1,5 @@
-# The pages that tools/demo and tools/gallery make: pictures with the sentence that says what each shows. Sourced by them, with
-# $weave the program, $made the folder that is being made, and $page the page in it.
+# The page that tools/paper makes: pictures with the sentence that says what each shows. Sourced by it, with $weave the program,
+# $made the folder that is being made, and $page the page in it.
 
 page_head() { # TITLE COMMAND
     cat > "$page" <<PAGE
@@ -13,12 +13,15 @@ img{width:100%;height:280px;object-fit:contain}figcaption{font-size:14px;color:#
 PAGE
 }
 
-in_html() { sed 's/&/\&amp;/g; s/</\&lt;/g'; }
-
 # A picture by `weave render`, which takes the options.
 picture() { # FILE VIEW NAME CAPTION [OPTION...]
     "$weave" render "$made/$1" --view "$2" -o "$made/$3.png" "${@:5}" > /dev/null
-    echo "<figure><a href=\"$3.png\"><img src=\"$3.png\" alt=\"$4\"></a><figcaption>$4</figcaption></figure>" >> "$page"
+    shown "$3" "$4"
+}
+
+# A picture that is there.
+shown() { # NAME CAPTION
+    echo "<figure><a href=\"$1.png\"><img src=\"$1.png\" alt=\"$2\"></a><figcaption>$2</figcaption></figure>" >> "$page"
 }
 
 # Relaxes NAME.weave into RUN.yarns and puts what was said, and what `weave inspect` tells a weaver, on the page. Yarns that did

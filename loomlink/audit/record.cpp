@@ -1,7 +1,6 @@
 #include <loomlink/audit/record.hpp>
 
 #include <weave/core/json_reader.hpp>
-#include <weave/core/text.hpp>
 #include <weave/keys/hex.hpp>
 
 #include <algorithm>

@@ -2,7 +2,7 @@
 
 #include <weave/core/text.hpp>
 
-#include <loomlink/store/store.hpp>
+#include <loomlink/store/server.hpp>
 #include <utility>
 
 namespace weave::loomlink {

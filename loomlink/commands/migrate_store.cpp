@@ -2,12 +2,12 @@
 
 #include <weave/command/serving.hpp>
 #include <weave/core/text.hpp>
-#include <weave/keys/hex.hpp>
 #include <weave/keys/private_file.hpp>
 
 #include <loomlink/commands/command.hpp>
 #include <loomlink/commands/site_copy.hpp>
 #include <loomlink/store/copy.hpp>
+#include <loomlink/store/server.hpp>
 #include <memory>
 
 namespace weave::loomlink {

@@ -6,6 +6,7 @@
 
 #include <cerrno>
 #include <cstring>
+#include <loomlink/store/server.hpp>
 #include <loomlink/workflow/retelling.hpp>
 #include <sys/stat.h>
 #include <utility>

@@ -7,7 +7,6 @@
 #include <loomlink/commands/command.hpp>
 #include <loomlink/commands/names.hpp>
 #include <loomlink/commands/puller.hpp>
-#include <loomlink/commands/words.hpp>
 #include <memory>
 
 namespace weave::loomlink {

@@ -6,6 +6,7 @@
 #include <cstring>
 #include <fcntl.h>
 #include <loomlink/store/copy.hpp>
+#include <loomlink/store/server.hpp>
 #include <loomlink/store/store.hpp>
 #include <unistd.h>
 

@@ -6,7 +6,7 @@
 #include <bit>
 #include <loomlink/store/backup.hpp>
 #include <loomlink/store/migrations.hpp>
-#include <loomlink/store/store.hpp>
+#include <loomlink/store/server.hpp>
 
 namespace weave::loomlink {
 

@@ -116,11 +116,6 @@ Reader::Maybe<Revision> Reader::revision(Id id) const {
     return filled(connection(), connection().one(WEAVE_REVISION_COLUMNS "WHERE r.id = ?", revision_of, id));
 }
 
-Reader::Maybe<Revision> Reader::revision(const Hash& hash) const {
-    return filled(connection(),
-                  connection().one(WEAVE_REVISION_COLUMNS "WHERE r.hash = ?", revision_of, hash));
-}
-
 Reader::Maybe<Revision> Reader::revision(Id design, std::int64_t number) const {
     return filled(connection(), connection().one(WEAVE_REVISION_COLUMNS "WHERE r.design = ? AND r.number = ?",
                                                  revision_of, design, number));

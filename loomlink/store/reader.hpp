@@ -81,7 +81,6 @@ class Reader {
     /// All of a design, oldest first, with parents, authors and state.
     [[nodiscard]] List<Revision> revisions(Id design) const;
     [[nodiscard]] Maybe<Revision> revision(Id id) const;
-    [[nodiscard]] Maybe<Revision> revision(const Hash& hash) const;
     [[nodiscard]] Maybe<Revision> revision(Id design, std::int64_t number) const;
     [[nodiscard]] List<Revision> revisions_in(RevisionState state) const;
     [[nodiscard]] List<Step<RevisionState>> revision_steps(Id revision) const;

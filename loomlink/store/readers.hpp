@@ -35,8 +35,6 @@ class Readers {
     /// away meanwhile are forgotten. A new one is held to the mark.
     Result<Lease> take(const LogMark& mark);
 
-    [[nodiscard]] const std::string& place() const { return m_place; }
-
   private:
     Result<std::unique_ptr<sql::Connection>> open(const LogMark& mark);
     std::unique_ptr<sql::Connection> wait_for_one();

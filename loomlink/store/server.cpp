@@ -2,7 +2,6 @@
 
 #include <weave/sql/postgres.hpp>
 
-#include <loomlink/store/store.hpp>
 #include <thread>
 
 namespace weave::loomlink {
@@ -27,6 +26,10 @@ Status refuse_two_primaries(const std::string& place) {
 }
 
 }  // namespace
+
+bool is_database(const std::string& place) {
+    return sql::engine_of(place) == sql::Engine::postgres;
+}
 
 Status check_clock(sql::Connection& connection, milliseconds now) {
     WEAVE_TRY(const std::int64_t theirs,

@@ -12,6 +12,13 @@ namespace weave::loomlink {
 
 // What holds only for a store on a server, which others use too.
 
+/// Whether a place is a connection string of PostgreSQL, not the path of a file.
+bool is_database(const std::string& place);
+
+/// Refused: a store that programs of loomlink have open, on whatever machine. A file's program is known by the lock of its
+/// folder instead.
+Status refuse_in_use(const std::string& place);
+
 /// Clocks may differ by so much; a record tells when it was written by the clock of the machine that serves.
 inline constexpr std::chrono::minutes clock_allowance{5};
 

@@ -48,8 +48,6 @@ class Store::Core {
         return call(ask, Reader(lease.connection()));
     }
 
-    [[nodiscard]] const std::string& place() const { return m_readers.place(); }
-
   private:
     /// The standby with a view that holds all that was acknowledged before, by whomever; else the reason is logged, once.
     std::optional<Readers::Lease> take_standby() {
@@ -130,14 +128,6 @@ Status Store::view(const std::function<Status(const Reader&)>& ask) const {
 
 Status Store::last_write() const {
     return m_core->last_write();
-}
-
-Status Store::backup(const std::filesystem::path& to) const {
-    return back_up_store(m_core->place(), to);
-}
-
-bool is_database(const std::string& place) {
-    return sql::engine_of(place) == sql::Engine::postgres;
 }
 
 Status back_up_store(const std::string& place, const std::filesystem::path& to) {

@@ -54,10 +54,6 @@ class Store {
     /// How the disk took the last write: an error of the system while it is full or fails.
     [[nodiscard]] Status last_write() const;
 
-    /// A copy of the store as it is now, while it is in use: a file of SQLite, whatever the store is. Refused where the
-    /// file exists.
-    Status backup(const std::filesystem::path& to) const;
-
   private:
     class Core;
     explicit Store(std::unique_ptr<Core> core);
@@ -80,15 +76,8 @@ class Store {
     std::unique_ptr<Core> m_core;
 };
 
-/// Whether a place is a connection string of PostgreSQL, not the path of a file.
-bool is_database(const std::string& place);
-
 /// Asks a store on one unchanging view; changes nothing, also while it is in use.
 Status look_into(const std::string& place, const std::function<Status(const Reader&)>& ask);
-
-/// Refused: a store that programs of loomlink have open, on whatever machine. A file's program is known by the lock of its
-/// folder instead.
-Status refuse_in_use(const std::string& place);
 
 /// Copies a store, in use or not, into a new file of SQLite. Refused where it exists.
 Status back_up_store(const std::string& place, const std::filesystem::path& to);

@@ -1,7 +1,6 @@
 #include <loomlink/terminal/state.hpp>
 
 #include <weave/core/file.hpp>
-#include <weave/core/text.hpp>
 #include <weave/keys/members.hpp>
 #include <weave/keys/private_file.hpp>
 

@@ -1,7 +1,6 @@
 #include <loomlink/workflow/desk.hpp>
 
 #include <weave/core/log.hpp>
-#include <weave/core/text.hpp>
 #include <weave/keys/codes.hpp>
 
 #include <algorithm>

@@ -1,6 +1,5 @@
 #include <loomlink/workflow/evidence.hpp>
 
-#include <weave/core/text.hpp>
 #include <weave/keys/codes.hpp>
 #include <weave/keys/hex.hpp>
 

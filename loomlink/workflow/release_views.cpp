@@ -4,7 +4,6 @@
 #include <algorithm>
 #include <loomlink/workflow/policy.hpp>
 #include <loomlink/workflow/releases.hpp>
-#include <loomlink/workflow/validation.hpp>
 #include <set>
 
 namespace weave::loomlink {

@@ -3,7 +3,7 @@
 #include <algorithm>
 #include <loomlink/workflow/accounts.hpp>
 #include <loomlink/workflow/looms.hpp>
-#include <loomlink/workflow/missing.hpp>
+#include <loomlink/workflow/evidence.hpp>
 #include <loomlink/workflow/names.hpp>
 #include <loomlink/workflow/policy.hpp>
 #include <loomlink/workflow/release_files.hpp>
@@ -52,7 +52,16 @@ Status check_superseded(const Reader& reader, Id loom, Id design, const ReleaseW
     if (now == wish.supersedes) return {};
     if (!now) return deny(Denial::conflict, "the loom has no release of this design to supersede");
     return deny(Denial::conflict, "the loom has release " + std::to_string(*now) +
-                                      " of this design: say that the new one supersedes it");
+                                      " of this design: say that the new one supersedes it (supersedes " +
+                                      std::to_string(*now) + ")");
+}
+
+/// The design whose history tells what becomes of a release; empty where the caller has no such release, as is then refused.
+std::string design_of(const Reader& reader, const Caller& caller, const std::string& loom, std::int64_t number) {
+    const auto found = find_release(reader, caller, loom, number);
+    if (!found) return {};
+    const auto revision = revision_of(reader, found->release);
+    return revision ? revision->design.name : std::string();
 }
 
 /// Whether a revision has files on any loom, or is about to.
@@ -269,6 +278,7 @@ Result<Json> ReleaseDesk::sign(const Caller& caller, const Ask& ask, const std::
             return text.value_or("");
         };
         WEAVE_TRY(const std::string body, m_desk->store().read(unsigned_body));
+        deed.subject = design;
         deed.data["manifest_body_sha256"] = hash_hex(sha256(body));
         deed.also = {{Purpose::release_manifest, body}};
         return m_desk->commit(
@@ -283,7 +293,10 @@ Result<Json> ReleaseDesk::sign(const Caller& caller, const Ask& ask, const std::
 
 Result<Json> ReleaseDesk::withdraw(const Caller& caller, const Ask& ask, const std::string& loom,
                                    std::int64_t number, const std::string& reason) {
-    Deed deed{"release.withdrawn", {}, reason, {{"loom", loom}, {"release", number}}};
+    WEAVE_TRY(std::string design, m_desk->store().read([&](const Reader& reader) -> Result<std::string> {
+        return design_of(reader, caller, loom, number);
+    }));
+    Deed deed{"release.withdrawn", std::move(design), reason, {{"loom", loom}, {"release", number}}};
     deed.is_signed = true;
     return m_desk->take(
         caller, ask, deed,

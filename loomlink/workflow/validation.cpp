@@ -5,7 +5,6 @@
 
 #include <algorithm>
 #include <array>
-#include <loomlink/workflow/denial.hpp>
 
 namespace weave::loomlink {
 
@@ -46,13 +45,6 @@ Result<ProfileInForce> profile_in_force(const Reader& reader, Id loom) {
     if (versions.empty()) return system_fault("the store is damaged: a loom has no profile");
     WEAVE_TRY(LoomProfile profile, read_stored(reader, versions.back().object));
     return ProfileInForce{versions.back().version, std::move(profile)};
-}
-
-Result<LoomProfile> profile_of_version(const Reader& reader, Id loom, std::int64_t version) {
-    WEAVE_TRY(const auto versions, reader.profiles(loom));
-    for (const LoomProfileVersion& one : versions)
-        if (one.version == version) return read_stored(reader, one.object);
-    return system_fault("the store is damaged: a loom profile is missing");
 }
 
 FeederMap straight_map(const weave::Design& design) {

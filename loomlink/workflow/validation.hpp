@@ -19,8 +19,6 @@ struct ProfileInForce {
     LoomProfile profile;
 };
 Result<ProfileInForce> profile_in_force(const Reader& reader, Id loom);
-/// A version that was in force once.
-Result<LoomProfile> profile_of_version(const Reader& reader, Id loom, std::int64_t version);
 
 /// What the server found when it held a revision to a loom: evidence of the kind `validation`.
 struct Validation {

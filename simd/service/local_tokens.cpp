@@ -1,6 +1,5 @@
 #include <simd/service/local_tokens.hpp>
 
-#include <weave/core/text.hpp>
 #include <weave/keys/codes.hpp>
 #include <weave/keys/hex.hpp>
 #include <weave/keys/private_file.hpp>

@@ -1,6 +1,5 @@
 #include <studio/jobs/mill_desk.hpp>
 
-#include <weave/core/text.hpp>
 #include <weave/design/document.hpp>
 #include <weave/keys/secret_bytes.hpp>
 #include <weave/picture/diff_view.hpp>

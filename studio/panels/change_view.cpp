@@ -110,10 +110,6 @@ void ChangeView::say(const QString& words) {
     m_more->setVisible(false);
 }
 
-QString ChangeView::headline() const {
-    return m_headline->text();
-}
-
 /// A window beside the others, which holds nothing up.
 void ChangeView::open_large() {
     auto* window = new QDialog(this);

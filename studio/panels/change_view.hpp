@@ -28,7 +28,6 @@ class ChangeView : public QWidget {
     void show(const MillComparison& comparison);
     /// Words in place of a comparison, such as why there is none.
     void say(const QString& words);
-    [[nodiscard]] QString headline() const;
 
   Q_SIGNALS:
     void other_wanted();

@@ -1,6 +1,5 @@
 #include <studio/panels/findings_panel.hpp>
 
-#include <weave/core/file.hpp>
 
 #include <QComboBox>
 #include <QDir>

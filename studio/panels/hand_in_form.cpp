@@ -152,8 +152,4 @@ QString HandInForm::note() const {
     return m_note->toPlainText().trimmed();
 }
 
-void HandInForm::focus_password() {
-    m_password->setFocus();
-}
-
 }  // namespace weave::studio

@@ -30,7 +30,6 @@ class HandInForm : public QWidget {
     /// The note has gone into a revision.
     void clear_note();
     [[nodiscard]] QString note() const;
-    void focus_password();
 
   Q_SIGNALS:
     void save_wanted(const QString& note);

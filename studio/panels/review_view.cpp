@@ -150,10 +150,6 @@ std::optional<std::int64_t> ReviewView::number() const {
     return number.isValid() ? std::optional<std::int64_t>(number.toLongLong()) : std::nullopt;
 }
 
-QString ReviewView::state_words() const {
-    return m_state->text();
-}
-
 void ReviewView::take_commented() {
     m_comment->clear();
 }

@@ -28,7 +28,6 @@ class ReviewView : public QWidget {
     /// No design with revisions is meant.
     void clear();
     [[nodiscard]] std::optional<std::int64_t> number() const;
-    [[nodiscard]] QString state_words() const;
     /// The comment that was sent stands at the mill.
     void take_commented();
 

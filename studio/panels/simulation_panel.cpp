@@ -76,10 +76,6 @@ void SimulationPanel::set_cloth(const BlockGrid& grid) {
     m_region->set_cloth(grid);
 }
 
-void SimulationPanel::set_cloth_size(std::size_t rows, std::size_t columns) {
-    set_cloth(BlockGrid(std::vector<std::uint32_t>(rows, 1), std::vector<std::uint32_t>(columns, 1)));
-}
-
 /// The run has it before the owner of the design does; both come to the same.
 void SimulationPanel::edit_scene(bool is_dragging) {
     Scene scene = m_design.scene;

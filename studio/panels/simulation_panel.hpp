@@ -44,7 +44,6 @@ class SimulationPanel : public QWidget {
     void clear_design();
     /// Rows and columns of stacks of its cloth, for the part that is simulated.
     void set_cloth(const BlockGrid& grid);
-    void set_cloth_size(std::size_t rows, std::size_t columns);  ///< of one pick and one end each
     /// Leads a crossing of the running simulation to its other side.
     void flip(const Flip& flip);
 

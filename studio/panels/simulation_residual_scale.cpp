@@ -45,10 +45,6 @@ double ResidualScale::step_at(double x) const {
     return std::clamp((x - m_area.left()) / m_area.width(), 0.0, 1.0) * static_cast<double>(m_last_step);
 }
 
-double ResidualScale::residual_at(double y) const {
-    return std::pow(10, m_lowest + (m_area.bottom() - y) / m_area.height() * (m_highest - m_lowest));
-}
-
 std::vector<int> ResidualScale::decades(int most) const {
     const int every = std::max(1, (m_highest - m_lowest + most - 1) / std::max(1, most));
     std::vector<int> list;

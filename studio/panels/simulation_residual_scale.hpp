@@ -18,7 +18,6 @@ class ResidualScale {
     /// What lies beyond the plot is drawn at its rim.
     [[nodiscard]] double y_of(double residual) const;
     [[nodiscard]] double step_at(double x) const;
-    [[nodiscard]] double residual_at(double y) const;
 
     [[nodiscard]] int lowest_decade() const { return m_lowest; }
     [[nodiscard]] int highest_decade() const { return m_highest; }

@@ -1,6 +1,5 @@
 #include <studio/viewport/viewer_panel.hpp>
 
-#include <studio/viewport/words.hpp>
 
 #include <QComboBox>
 #include <QLabel>
@@ -184,7 +183,6 @@ void ViewerPanel::set_mode(Mode mode) {
     }
     show_caption();
     make_model();
-    Q_EMIT mode_changed(mode);
 }
 
 void ViewerPanel::set_colour(ColourBy colour) {

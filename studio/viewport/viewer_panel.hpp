@@ -57,7 +57,6 @@ class ViewerPanel : public QWidget {
     Status set_state(const Json& json);
 
   Q_SIGNALS:
-    void mode_changed(weave::studio::ViewerPanel::Mode mode);
     /// A model that was asked for is shown, or cannot be.
     void model_shown();
     /// A picture of what is seen is to be saved, twice as fine as on a plain display.

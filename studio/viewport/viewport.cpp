@@ -97,13 +97,6 @@ Status Viewport::update_points(const std::vector<std::vector<Vec3>>& control) {
     return {};
 }
 
-void Viewport::set_colour(ColourBy colour) {
-    if (m_model == nullptr || m_model->colour() == colour) return;
-    m_model->set_colour(colour);
-    m_painter.touch_knots();
-    look_again();
-}
-
 void Viewport::set_repeat(std::array<std::size_t, 2> repeat) {
     for (std::size_t axis = 0; axis < 2; ++axis) {
         const bool repeats = m_model == nullptr || m_model->is_periodic()[axis];

@@ -58,7 +58,6 @@ class Viewport : public QWidget {
     [[nodiscard]] const TubeModel* model() const { return m_model.get(); }
     /// New places of the yarns that are shown, as from a simulation that runs: see TubeModel::update().
     Status update_points(const std::vector<std::vector<Vec3>>& control);
-    void set_colour(ColourBy colour);
     /// Pieces along the ends and along the picks, 1 to most_repeats each; 1 where the piece is not periodic.
     void set_repeat(std::array<std::size_t, 2> repeat);
     void set_clip(std::optional<Plane> clip);

@@ -131,9 +131,9 @@ TEST_CASE("a stack that is wrong names its yarns as they count through the block
     CHECK_THAT(error({1}, {1, 2}, {plain, Stack({Slot::weft(0), Slot::warp(0), Slot::warp(0)})}),
                Catch::EndsWith("stacks[0][1]: holds P1 twice"));
     CHECK_THAT(error({1, 1}, {1}, {plain, Stack({Slot::weft(1), Slot::warp(0)})}),
-               Catch::EndsWith("stacks[1][0]: holds T2, but the only pick of this cell is T1"));
+               Catch::EndsWith("stacks[1][0]: holds T2, but the only pick of this stack is T1"));
     CHECK_THAT(error({1}, {1, 2}, {plain, Stack({Slot::weft(0), Slot::warp(4), Slot::warp(0)})}),
-               Catch::EndsWith("stacks[0][1]: holds P5, but the ends of this cell are P1 to P2"));
+               Catch::EndsWith("stacks[0][1]: holds P5, but the ends of this stack are P1 to P2"));
 }
 
 TEST_CASE(

@@ -8,6 +8,7 @@
 #include <sched.h>
 #include <semaphore.h>
 #include <support/memory.hpp>
+#include <support/temporary_folder.hpp>
 #include <sys/mount.h>
 #include <sys/resource.h>
 #include <sys/stat.h>
@@ -20,25 +21,7 @@ namespace fs = std::filesystem;
 
 namespace {
 
-/// A fresh folder that goes away with the test.
-struct Folder {
-    fs::path path;
-    Folder() {
-        std::string name = (fs::temp_directory_path() / "weave-test-XXXXXX").string();
-        REQUIRE(::mkdtemp(name.data()) != nullptr);
-        path = name;
-    }
-    ~Folder() {
-        std::error_code ignored;
-        fs::remove_all(path, ignored);
-    }
-    Folder(const Folder&) = delete;
-    Folder& operator=(const Folder&) = delete;
-    [[nodiscard]] std::size_t entries() const {
-        return static_cast<std::size_t>(
-            std::distance(fs::directory_iterator(path), fs::directory_iterator()));
-    }
-};
+using Folder = testing::TemporaryFolder;
 
 }  // namespace
 

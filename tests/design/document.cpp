@@ -464,5 +464,5 @@ TEST_CASE("a stack that is wrong names its yarns as the document writes them") {
     };
     CHECK(error(R"([["T0 P0", "T0 P1 P1"]])") == "blocks.a.stacks[0][1]: holds P1 twice");
     CHECK(error(R"([["T0 P0"], ["T2 P0"]])") ==
-          "blocks.a.stacks[1][0]: holds T2, but the only pick of this cell is T1");
+          "blocks.a.stacks[1][0]: holds T2, but the only pick of this stack is T1");
 }

@@ -71,6 +71,19 @@ NodePtr random_square(Random& random, const std::vector<std::string>& blocks) {
     }
 }
 
+/// Six blocks, each made from those before it, and their names; the last one is the cloth.
+std::pair<Design, std::vector<std::string>> random_tree(Random& random) {
+    Design design;
+    std::vector<std::string> names;
+    for (std::size_t k = 0; k < 6; ++k) {
+        const std::string name = "b" + std::to_string(k);
+        design.blocks[name] = random_square(random, names);
+        names.push_back(name);
+    }
+    design.root = names.back();
+    return {design, names};
+}
+
 /// All blocks of which `name` is a part, itself included.
 std::set<std::string> dependents(const Design& design, const std::string& name) {
     std::set<std::string> found;
@@ -322,14 +335,7 @@ TEST_CASE("the evaluator forgets old versions and removed blocks, and stays righ
 TEST_CASE("remembering never changes the cloth, and computes no more than what depends on an edit") {
     for_all(
         [](Random& random) {
-            Design design;
-            std::vector<std::string> names;
-            for (std::size_t k = 0; k < 6; ++k) {
-                const std::string name = "b" + std::to_string(k);
-                design.blocks[name] = random_square(random, names);
-                names.push_back(name);
-            }
-            design.root = names.back();
+            auto [design, names] = random_tree(random);
             Evaluator evaluator;
             static_cast<void>(cloth_of(evaluator, design));
             for (std::size_t step = 0; step < 6; ++step) {
@@ -497,13 +503,7 @@ TEST_CASE("flips made one after the other, and taken back, come to what they com
 TEST_CASE("whatever the budget, the cloth and its lost flips are the same") {
     for_all(
         [](Random& random) {
-            Design design;
-            std::vector<std::string> names;
-            for (std::size_t k = 0; k < 6; ++k) {
-                const std::string name = "b" + std::to_string(k);
-                design.blocks[name] = random_square(random, names);
-                names.push_back(name);
-            }
+            auto [design, names] = random_tree(random);
             Evaluator frugal(random.between(0, 60));
             for (std::size_t step = 0; step < 8; ++step) {
                 const std::size_t at = random.between(0, names.size() - 1);

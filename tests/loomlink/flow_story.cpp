@@ -64,6 +64,9 @@ TEST_CASE("from a saved design to a released file, its successor, a new profile 
     got(flow.releases().withdraw(people.at("enno"), site.ask("enno"), "EP 1", 3, "wrong yarn"));
     CHECK(site.state(2) == "withdrawn");
     CHECK(denied(flow.releases().manifest(people.at("otto"), "EP 1", 3)) == Denial::conflict);
+    const auto of_the_shoe = got(flow.store().read([](const Reader& reader) { return reader.events({0, 100, "release.withdrawn", "shoe"}); }));
+    REQUIRE(of_the_shoe.size() == 1);
+    CHECK(got(parse_record(of_the_shoe.front().second)).statement.reason == "wrong yarn");
 
     const auto log_key = site.keys.log.public_key();
     const BundleReport report = verify_bundle(

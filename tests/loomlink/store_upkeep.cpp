@@ -49,12 +49,12 @@ TEST_CASE("a backup of a store in use is a store as of one moment") {
     });
     for (int k = 0; k < 3; ++k) {
         const auto copy = mill.folder / ("copy" + std::to_string(k) + ".db");
-        REQUIRE(text_of(mill.store.backup(copy)).empty());
+        REQUIRE(text_of(back_up_store(mill.path, copy)).empty());
         REQUIRE(all_text(verify_store(copy).value()).empty());
     }
     stop = true;
     writer.join();
-    REQUIRE_THAT(text_of(mill.store.backup(mill.folder / "copy0.db")), Catch::Contains("exists already"));
+    REQUIRE_THAT(text_of(back_up_store(mill.path, mill.folder / "copy0.db")), Catch::Contains("exists already"));
 }
 
 TEST_CASE("a restore is whole or not at all, and never under a running store") {
@@ -67,7 +67,7 @@ TEST_CASE("a restore is whole or not at all, and never under a running store") {
     {
         Store store = Store::create(path, "mill").value();
         REQUIRE(store.write([](Writer& writer) { return note(writer); }));
-        REQUIRE(store.backup(copy));
+        REQUIRE(back_up_store(path, copy));
         REQUIRE(store.write([](Writer& writer) { return note(writer); }));
         REQUIRE_THAT(text_of(restore_store(copy, path)), Catch::Contains("in use"));
         REQUIRE(store.write([](Writer& writer) { return note(writer); }));

@@ -70,7 +70,7 @@ struct Original {
     void keep_copy(Store& store, std::uint64_t records) {
         older_heads[records] = sign_log(store);
         older[records] = folder / ("older-" + std::to_string(records) + ".db");
-        REQUIRE(store.backup(older[records]));
+        REQUIRE(back_up_store(path.string(), older[records]));
     }
 };
 

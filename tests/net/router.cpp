@@ -15,7 +15,7 @@ Route route(const std::string& method, const std::string& pattern) {
             pattern,
             "Does something",
             0,
-            [](const Request&) { return empty_answer(); },
+            [](const Request&) { return Response{204, {}, nullptr}; },
             {}};
 }
 

@@ -11,6 +11,7 @@
 #include <netinet/in.h>
 #include <poll.h>
 #include <string>
+#include <support/temporary_folder.hpp>
 #include <sys/socket.h>
 #include <sys/un.h>
 #include <unistd.h>
@@ -83,20 +84,8 @@ class RawSocket {
     std::string m_read;
 };
 
-/// A folder that goes away with the test.
-struct Folder {
-    std::filesystem::path path;
-    Folder() {
-        std::string name = (std::filesystem::temp_directory_path() / "weave-net-XXXXXX").string();
-        REQUIRE(::mkdtemp(name.data()) != nullptr);
-        path = name;
-    }
-    ~Folder() {
-        std::error_code ignored;
-        std::filesystem::remove_all(path, ignored);
-    }
-    Folder(const Folder&) = delete;
-    Folder& operator=(const Folder&) = delete;
+/// A folder that goes away with the test, and the files of a certificate in it.
+struct Folder : weave::testing::TemporaryFolder {
     [[nodiscard]] TlsFiles tls() const { return {path / "server.pem", path / "server.key"}; }
 };
 

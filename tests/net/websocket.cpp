@@ -74,7 +74,7 @@ class Echo : public WebSocketHandler {
 Router with_echo(std::shared_ptr<Seen> seen) {
     Router router = usual_routes();
     const auto admit = [seen](const Request& request) -> WebSocketAdmission {
-        if (request.query_value("token") == "bad") return error_answer({ErrorCode::refused, "no", {}}, 401);
+        if (!request.query.empty()) return error_answer({ErrorCode::refused, "no", {}}, 401);
         return std::make_unique<Echo>(seen);
     };
     REQUIRE(router.add({"socket", "GET", "/socket", "Repeats", 10000, {}, admit}));

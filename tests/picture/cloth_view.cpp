@@ -8,6 +8,7 @@
 #include <picture/pictures.hpp>
 #include <support/demo_yarns.hpp>
 #include <support/random.hpp>
+#include <support/straight_yarn.hpp>
 
 using namespace weave;
 using namespace weave::testing;
@@ -22,25 +23,12 @@ ClothView view_of(const ClothWords& words) {
     return *view;
 }
 
-SimulatedYarn straight(System system, std::size_t number, const Vec3& from, const Vec3& to, Colour colour) {
-    SimulatedYarn yarn;
-    yarn.system = system;
-    yarn.number = number;
-    yarn.radius_mm = 0.5;
-    yarn.colour = colour;
-    yarn.spline.control = {from, to};
-    yarn.planned = yarn.spline.control;
-    yarn.strain = {0, 0.1};
-    yarn.contact_N = {2, 2};
-    return yarn;
-}
-
 /// A red warp along x over a blue weft along y, both 10 mm long, crossing in the middle.
 Yarns cross(double warp_height = 1) {
     Yarns yarns;
     yarns.size_mm = {10, 10};
-    yarns.yarns = {straight(System::weft, 0, {5, 0, 0}, {5, 10, 0}, blue),
-                   straight(System::warp, 0, {0, 5, warp_height}, {10, 5, warp_height}, red)};
+    yarns.yarns = {straight_yarn(System::weft, 0, {5, 0, 0}, {5, 10, 0}, blue),
+                   straight_yarn(System::warp, 0, {0, 5, warp_height}, {10, 5, warp_height}, red)};
     return yarns;
 }
 
@@ -110,9 +98,9 @@ TEST_CASE("where two yarns cross the nearer one is seen, from every side") {
 TEST_CASE("the named sides show the cloth as its face and back are drawn") {
     // A marker at the first pick and first end, one at the last end.
     Yarns yarns;
-    yarns.yarns = {straight(System::weft, 0, {0, 0, 0}, {0, 1, 0}, red),
-                   straight(System::weft, 0, {0, 9, 0}, {0, 10, 0}, blue),
-                   straight(System::warp, 0, {9, 0, 0}, {10, 0, 0}, blue)};
+    yarns.yarns = {straight_yarn(System::weft, 0, {0, 0, 0}, {0, 1, 0}, red),
+                   straight_yarn(System::weft, 0, {0, 9, 0}, {0, 10, 0}, blue),
+                   straight_yarn(System::warp, 0, {9, 0, 0}, {10, 0, 0}, blue)};
     const auto screen = [&](const char* side, const Vec3& place) {
         const Shot shot(yarns, view_of({.side = side}));
         const Rectangle box = shot.camera.on_screen(shot.camera.box_of(shot.camera.to_camera(place), 1e-9));
@@ -172,7 +160,7 @@ TEST_CASE("yarns are drawn in their own colours, or the paper's where nobody cho
     CHECK(Shot(plain, view_of({})).scene.colours == std::vector<Colour>{paper_weft, paper_warp});
 }
 
-TEST_CASE("strain, contact and movement colour the yarns between the ends of the bar") {
+TEST_CASE("strain, contact, movement and height colour the yarns between the ends of the bar") {
     Yarns yarns = cross();
     yarns.yarns[1].planned = {{0, 5, 1}, {10, 5, 4}};
     const Shot strain(yarns, view_of({.side = "top", .colour = "strain"}));
@@ -187,6 +175,24 @@ TEST_CASE("strain, contact and movement colour the yarns between the ends of the
     CHECK(moved.at({5, 1, 0}).green < 60);
     yarns.yarns[0].contact_N = yarns.yarns[1].contact_N = {0, 0};
     CHECK_NOTHROW(drawn(yarns, view_of({.colour = "contact"})));
+    yarns.yarns[0].spline.control = {{5, 0, -2}, {5, 10, -2}};
+    const Shot height(yarns, view_of({.side = "top", .colour = "height"}));
+    CHECK((height.scene.low == -2 && height.scene.high == 1));
+    CHECK(height.at({5, 1, -2}).green < 60);
+    CHECK(height.at({9.7, 5, 1}).green > height.at({9.7, 5, 1}).blue + 60);
+}
+
+TEST_CASE("a picture says whether its yarns are as planned, at rest or not") {
+    Yarns yarns = cross();
+    const auto picture = [&](const Json& report) {
+        yarns.report = report;
+        return drawn(yarns, view_of({}));
+    };
+    const std::string relaxed = picture({{"converged", true}, {"iterations", 7}}),
+                      moving = picture({{"converged", false}, {"iterations", 7}}),
+                      planned = picture({{"converged", false}, {"iterations", 0}});
+    CHECK(picture(Json::object()) == relaxed);
+    CHECK((moving != relaxed && planned != relaxed && planned != moving));
 }
 
 TEST_CASE("the colour map is evenly lighter from end to end") {

@@ -146,7 +146,7 @@ TEST_CASE("bench scale measures sizes from the least to the most and fits expone
     CHECK(said.at("exponent_time").get<double>() > 0);
     const std::string table = shop.get("kept/scale.md");
     CHECK(table.find("Bytes a point") != std::string::npos);
-    CHECK(table.find("one cell, has 800 points: it stands for the 500 asked for") != std::string::npos);
+    CHECK(table.find("one repeat, has 800 points: it stands for the 500 asked for") != std::string::npos);
     CHECK(Json::parse(shop.get("kept/scale.json")) == said);
 }
 
@@ -242,7 +242,7 @@ TEST_CASE("bench tells what it does not know") {
     refused({"bench", "scale", "--least", "5", "--most", "1"}, "--most 1: is less than --least 5");
     refused({"bench", "scale", "--most", "0"}, "--most 0");
     refused({"bench", "scale", "--least", "0"}, "--least 0");
-    refused({"bench", "scale", "--most", "600"}, "--most 600: the smallest cloth, one cell, has 800 points");
+    refused({"bench", "scale", "--most", "600"}, "--most 600: the smallest cloth, one repeat, has 800 points");
     refused({"bench", "tradeoff", "--missing"}, "--missing");
     refused({"bench", "savings", "--only", "twist"}, "there is no term 'twist'; there are repeat, ");
     for (const char* part : {"tradeoff", "scale", "stability", "savings"}) refused({"bench", part, "--threads", "1025"}, "--threads");

@@ -9,6 +9,7 @@
 #include <weave/sim/yarns_file.hpp>
 
 #include <filesystem>
+#include <support/temporary_folder.hpp>
 #include <sys/mount.h>
 #include <sys/stat.h>
 #include <unistd.h>
@@ -19,18 +20,7 @@ namespace {
 
 namespace fs = std::filesystem;
 
-struct Folder {
-    fs::path path;
-    Folder() {
-        std::string pattern = (fs::temp_directory_path() / "weave-ranks-XXXXXX").string();
-        if (::mkdtemp(pattern.data()) == nullptr) throw std::runtime_error("no temporary folder");
-        path = pattern;
-    }
-    ~Folder() {
-        std::error_code ignored;
-        fs::remove_all(path, ignored);
-    }
-};
+using Folder = weave::testing::TemporaryFolder;
 
 struct Ended {
     Json report;

@@ -182,6 +182,8 @@ TEST_CASE(
     yarns.report["strain_deviation"] = {{"warp", 0.0003}, {"weft", nullptr}};
     CHECK(says("Strain departs from what was asked for by at most 0.03 points in the warp\n"));
     CHECK(inspection_json(yarns, looked_over(yarns)).at("strain_deviation").at("warp") == 0.0003);
+    yarns.report["strain_deviation"] = {{"warp", 0.0003}, {"weft", 1.4}};
+    CHECK(says("0.03 points in the warp, 140 points in the weft\n"));
 }
 
 TEST_CASE("take-up of a sine and of circle arcs is that of their formulas") {

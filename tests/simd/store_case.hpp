@@ -4,29 +4,11 @@
 
 #include <filesystem>
 #include <simd/store/store.hpp>
-#include <unistd.h>
+#include <support/temporary_folder.hpp>
 
 namespace weave::simd::testing {
 
-/// A folder that goes away with the test.
-class Folder {
-  public:
-    Folder() {
-        std::string name = (std::filesystem::temp_directory_path() / "weave-simd-XXXXXX").string();
-        REQUIRE(::mkdtemp(name.data()) != nullptr);
-        m_path = name;
-    }
-    ~Folder() {
-        std::error_code ignored;
-        std::filesystem::remove_all(m_path, ignored);
-    }
-    Folder(const Folder&) = delete;
-    Folder& operator=(const Folder&) = delete;
-    [[nodiscard]] std::filesystem::path operator/(const std::string& name) const { return m_path / name; }
-
-  private:
-    std::filesystem::path m_path;
-};
+using Folder = weave::testing::TemporaryFolder;
 
 inline std::unique_ptr<Store> opened(const std::filesystem::path& path) {
     auto store = Store::open(path);

@@ -1,5 +1,7 @@
 // Pictures of the window for the guide (tests/studio/guide).
 
+#include "screen_file.hpp"
+
 #include <studio/panels/design_tree.hpp>
 #include <studio/panels/message_bar.hpp>
 #include <studio/panels/simulation_panel.hpp>
@@ -10,7 +12,6 @@
 #include <QtTest>
 
 #include <catch2/catch.hpp>
-#include <cstdlib>
 #include <filesystem>
 #include <string>
 
@@ -24,8 +25,7 @@ namespace {
 
 void keep(QWidget& window, const char* name) {
     QTest::qWait(1500);  // pictures, not what is tested: long enough for all that is drawn in the background
-    const char* folder = std::getenv("WEAVE_SCREENS");
-    window.grab().toImage().convertToFormat(QImage::Format_RGB888).save(QString("%1/%2.png").arg(folder == nullptr ? "/tmp" : folder, name), "PNG", 0);
+    window.grab().toImage().convertToFormat(QImage::Format_RGB888).save(screen_file(QString("%1.png").arg(name)), "PNG", 0);
 }
 
 }  // namespace

@@ -1,5 +1,7 @@
 // The simulation panel, by mouse and keys.
 
+#include "screen_file.hpp"
+
 #include <studio/panels/simulation_panel.hpp>
 
 #include <weave/core/file.hpp>
@@ -264,7 +266,7 @@ TEST_CASE("a part of the cloth is what the simulation panel simulates when that 
     const OwnSettings settings;
     Shown shown(sample("satin-e"));
     SimulationPanel& panel = *shown.panel;
-    panel.set_cloth_size(10, 5);
+    panel.set_cloth(BlockGrid(std::vector<std::uint32_t>(10, 1), std::vector<std::uint32_t>(5, 1)));
     panel.tabs()->setCurrentIndex(2);
     QTest::mouseClick(panel.region()->part(), Qt::LeftButton, {}, {8, panel.region()->part()->height() / 2});
     CHECK(panel.region()->last_row()->maximum() == 10);
@@ -473,7 +475,7 @@ TEST_CASE("the simulation panel as it looks", "[.screens]") {
     Shown shown(sample("angle-interlock-b"));
     SimulationPanel& panel = *shown.panel;
     const auto save = [&](const char* name) {
-        shown.window.grab().save(QStringLiteral("/tmp/st-sim-%1.png").arg(QLatin1String(name)));
+        shown.window.grab().save(screen_file(QStringLiteral("simulation-%1.png").arg(QLatin1String(name))));
     };
     panel.fidelity()->choice()->setCurrentIndex(1);
     save("idle");
@@ -506,5 +508,5 @@ TEST_CASE("the simulation panel as it looks", "[.screens]") {
     ServersDialog dialog({{"box:8444", "/home/dora/token", ""}, {"unix:/run/simd/simd.sock", "", ""}});
     dialog.show();
     REQUIRE(QTest::qWaitForWindowExposed(&dialog));
-    dialog.grab().save("/tmp/st-sim-servers.png");
+    dialog.grab().save(screen_file("simulation-servers.png"));
 }

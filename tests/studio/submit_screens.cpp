@@ -1,6 +1,5 @@
+#include "screen_file.hpp"
 #include "submit_case.hpp"
-
-#include <cstdlib>
 
 using namespace weave;
 using namespace weave::studio;
@@ -9,8 +8,7 @@ using namespace weave::studio::test;
 TEST_CASE("submit screens", "[.screens]") {
     const auto keep = [](QWidget& widget, const char* name) {
         QTest::qWait(500);
-        const char* folder = std::getenv("WEAVE_SCREENS");
-        widget.grab().save(QString("%1/%2.png").arg(folder == nullptr ? "/tmp" : folder, name));
+        widget.grab().save(screen_file(QString("%1.png").arg(name)));
     };
     Mill mill;
     {

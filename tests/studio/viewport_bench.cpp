@@ -3,14 +3,15 @@
 #include <weave/samples/samples.hpp>
 
 #include <QElapsedTimer>
-#include <QOffscreenSurface>
 #include <QOpenGLFramebufferObject>
+#include <QOpenGLFunctions>
 #include <QtTest>
 
 #include <catch2/catch.hpp>
 
 #include <cstdio>
 #include <ctime>
+#include <studio/support/offscreen_gl.hpp>
 
 using namespace weave;
 using namespace weave::studio;
@@ -72,16 +73,7 @@ Cost time_of(TubePainter& painter, QOpenGLFramebufferObject& target, QOpenGLCont
 }  // namespace
 
 TEST_CASE("how fast the viewer draws", "[.bench]") {
-    QSurfaceFormat format;
-    format.setVersion(3, 3);
-    format.setProfile(QSurfaceFormat::CoreProfile);
-    QOpenGLContext context;
-    context.setFormat(format);
-    REQUIRE(context.create());
-    QOffscreenSurface surface;
-    surface.setFormat(context.format());
-    surface.create();
-    REQUIRE(context.makeCurrent(&surface));
+    test::OffscreenGl gl;
     TubePainter painter;
     REQUIRE(painter.start().isEmpty());
     QOpenGLFramebufferObject target(1280, 800);
@@ -105,8 +97,8 @@ TEST_CASE("how fast the viewer draws", "[.bench]") {
                             frame.scale = scale;
                             frame.hollows = hollows;
                             frame.coarse = !finest;
-                            const Cost cost = time_of(painter, target, context, frame, 6);
-                            const Cost light = time_of(painter, target, context, frame, 4, false);
+                            const Cost cost = time_of(painter, target, gl.context, frame, 6);
+                            const Cost light = time_of(painter, target, gl.context, frame, 4, false);
                             std::printf(
                                 "%s: %zu capsules, %s, zoom %g, scale %g%s: %zu drawn, %.1f ms a frame (%.1f "
                                 "of processors; %.1f "

@@ -1,4 +1,4 @@
-
+#include "screen_file.hpp"
 
 #include <weave/design/evaluate.hpp>
 #include <weave/samples/samples.hpp>
@@ -34,13 +34,14 @@ TEST_CASE("pictures of the viewer to look at", "[.screens]") {
     REQUIRE(QTest::qWaitForWindowExposed(&viewport));
     const auto save = [&](const char* name) {
         QTest::qWait(300);
-        viewport.yarns_on_screen().save(QString("/tmp/vp_%1.png").arg(name));
+        viewport.yarns_on_screen().save(test::screen_file(QString("viewer-%1.png").arg(name)));
     };
     save("planned");
     auto relaxed = std::make_shared<TubeModel>(*TubeModel::relaxed(yarns, ColourBy::contact));
     viewport.set_model(relaxed);
     save("contact");
-    viewport.set_colour(ColourBy::yarn);
+    relaxed->set_colour(ColourBy::yarn);
+    viewport.set_model(relaxed);
     viewport.turn_to(StandardView::face);
     save("face");
     viewport.turn_to(StandardView::corner);
@@ -70,5 +71,5 @@ TEST_CASE("a picture of the panel to look at", "[.screens]") {
     REQUIRE(QTest::qWaitFor([&] { return panel.viewport()->model() != nullptr; }));
     panel.viewport()->set_locked(true);
     panel.viewport()->set_caption("angle-interlock-b: whole cloth");
-    panel.grab().save("/tmp/vp_panel.png");
+    panel.grab().save(test::screen_file("viewer-panel.png"));
 }

@@ -1,3 +1,4 @@
+#include <studio/support/offscreen_gl.hpp>
 #include <studio/support/viewport_samples.hpp>
 #include <studio/viewport/viewer_panel.hpp>
 
@@ -5,8 +6,6 @@
 
 #include <QApplication>
 #include <QLabel>
-#include <QOffscreenSurface>
-#include <QOpenGLContext>
 #include <QOpenGLFramebufferObject>
 #include <QSignalSpy>
 #include <QTemporaryDir>
@@ -417,16 +416,7 @@ TEST_CASE("without OpenGL the panel says so in words and goes on") {
 }
 
 TEST_CASE("the shaders see what the processor's own finder sees, cut or whole, in both kinds of view") {
-    QOpenGLContext context;
-    QSurfaceFormat format;
-    format.setVersion(3, 3);
-    format.setProfile(QSurfaceFormat::CoreProfile);
-    context.setFormat(format);
-    REQUIRE(context.create());
-    QOffscreenSurface surface;
-    surface.setFormat(context.format());
-    surface.create();
-    REQUIRE(context.makeCurrent(&surface));
+    const test::OffscreenGl gl;
     TubePainter painter;
     REQUIRE(painter.start().isEmpty());
     const auto model = model_of(sample_yarns());

@@ -19,10 +19,10 @@ using weave::testing::TemporaryFolder;
 
 namespace {
 
-/// A server that answers one connection after another as it is told: an empty answer breaks it off.
-class ScriptedServer {
+/// Takes connections, and by itself never reads.
+class Listener {
   public:
-    explicit ScriptedServer(std::vector<std::string> answers) {
+    Listener() {
         m_socket = ::socket(AF_INET, SOCK_STREAM, 0);
         struct sockaddr_in place {};
         place.sin_family = AF_INET;
@@ -33,19 +33,33 @@ class ScriptedServer {
         REQUIRE(::listen(m_socket, 8) == 0);
         REQUIRE(::getsockname(m_socket, address, &size) == 0);
         m_port = ntohs(place.sin_port);
-        m_thread = std::thread([this, answers = std::move(answers)] {
-            for (const std::string& answer : answers) serve_one(answer);
-        });
     }
+    ~Listener() { ::close(m_socket); }
+    Listener(const Listener&) = delete;
+    Listener& operator=(const Listener&) = delete;
+    [[nodiscard]] std::string origin() const { return "http://127.0.0.1:" + std::to_string(m_port); }
+
+  protected:
+    int m_socket = -1;
+
+  private:
+    std::uint16_t m_port = 0;
+};
+
+/// A server that answers one connection after another as it is told: an empty answer breaks it off.
+class ScriptedServer : public Listener {
+  public:
+    explicit ScriptedServer(std::vector<std::string> answers)
+        : m_thread([this, answers = std::move(answers)] {
+              for (const std::string& answer : answers) serve_one(answer);
+          }) {}
     ~ScriptedServer() {
         ::shutdown(m_socket, SHUT_RDWR);
         m_thread.join();
-        ::close(m_socket);
     }
     ScriptedServer(const ScriptedServer&) = delete;
     ScriptedServer& operator=(const ScriptedServer&) = delete;
 
-    [[nodiscard]] std::string origin() const { return "http://127.0.0.1:" + std::to_string(m_port); }
     /// The bodies that came.
     std::vector<std::string> bodies;
 
@@ -70,34 +84,7 @@ class ScriptedServer {
         ::close(connection);
     }
 
-    int m_socket = -1;
-    std::uint16_t m_port = 0;
     std::thread m_thread;
-};
-
-/// Takes connections and never reads.
-class SilentServer {
-  public:
-    SilentServer() {
-        m_socket = ::socket(AF_INET, SOCK_STREAM, 0);
-        struct sockaddr_in place {};
-        place.sin_family = AF_INET;
-        place.sin_addr.s_addr = htonl(INADDR_LOOPBACK);
-        socklen_t size = sizeof place;
-        auto* const address = reinterpret_cast<struct sockaddr*>(&place);
-        REQUIRE(::bind(m_socket, address, size) == 0);
-        REQUIRE(::listen(m_socket, 8) == 0);
-        REQUIRE(::getsockname(m_socket, address, &size) == 0);
-        m_port = ntohs(place.sin_port);
-    }
-    ~SilentServer() { ::close(m_socket); }
-    SilentServer(const SilentServer&) = delete;
-    SilentServer& operator=(const SilentServer&) = delete;
-    [[nodiscard]] std::string origin() const { return "http://127.0.0.1:" + std::to_string(m_port); }
-
-  private:
-    int m_socket = -1;
-    std::uint16_t m_port = 0;
 };
 
 std::string http(const std::string& status, const std::string& body) {
@@ -193,7 +180,7 @@ TEST_CASE("a call that is given up between two tries is not made again", "[mill]
 }
 
 TEST_CASE("a silent server is left when the caller gives up", "[mill]") {
-    SilentServer server;
+    Listener server;
     wire::MillClient client = wire::MillClient::of({server.origin(), {}, "dora", "token", {}}).value();
     std::atomic<bool> gives_up{false};
     std::size_t most_sent = 0, whole = 0;

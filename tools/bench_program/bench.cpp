@@ -6,7 +6,6 @@
 
 #include <weave/block/operations.hpp>
 #include <weave/block/preset.hpp>
-#include <weave/core/file.hpp>
 #include <weave/design/document.hpp>
 #include <weave/design/edit.hpp>
 #include <weave/design/evaluate.hpp>
@@ -178,7 +177,7 @@ Json simulation_s(const Design& design, const Block& cloth) {
     return median(seconds);
 }
 
-/// A sample tiled 4 × 4 against the single cell: planning, relaxing and copying back.
+/// A sample tiled 4 × 4 against its single repeat: planning, relaxing and copying back.
 Json tiled() {
     Json answer;
     for (const char* name : {"satin-e", "twill-g"}) {
@@ -235,7 +234,7 @@ constexpr Case cases[] = {{"shoe", "The full-size shoe from its file to the card
                           {"shoe-edit", "One crossing of it flipped, and evaluated again", shoe_edit},
                           {"stencil-20000", "A stencil of 20,000 x 20,000 stacks", stencil_20000},
                           {"mixed-radii", "One evaluation of satin with wefts three times as thick", mixed_radii},
-                          {"tiled", "Tiled cloth, reduced, against its cell", tiled},
+                          {"tiled", "Tiled cloth, reduced, against its repeat", tiled},
                           {"flip", "One flip in relaxed cloth against starting over", flip_settles},
                           {"settling", "Points that need no step any more", bench::settling},
                           {"loomlink-load", "Pulls and saves of many people at once", bench::loomlink_load},

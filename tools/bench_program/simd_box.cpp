@@ -1,6 +1,5 @@
 #include "simd_box.hpp"
 
-#include <weave/block/operations.hpp>
 #include <weave/design/document.hpp>
 #include <weave/design/evaluate.hpp>
 #include <weave/samples/samples.hpp>

@@ -1,6 +1,5 @@
 #include "simd.hpp"
 #include "simd_box.hpp"
-#include "spread.hpp"
 #include "table.hpp"
 
 #include <algorithm>

@@ -261,7 +261,7 @@ void add_scale(CLI::App& bench, CommandOutcome& outcome) {
     command
         ->add_option(
             "--least", wish->scale.least,
-            "the smallest size in points; cloth is made of whole cells, the next smaller or larger number "
+            "the smallest size in points; cloth is made of whole repeats, the next smaller or larger number "
             "of them, and has one at least")
         ->transform(whole_number())
         ->capture_default_str()

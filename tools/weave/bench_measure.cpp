@@ -188,12 +188,6 @@ double length_of(const Spline& spline) {
     return length;
 }
 
-Control control_of(const sim::SimScene& scene) {
-    Control control;
-    for (const sim::SimYarn& yarn : scene.yarns) control.push_back(yarn.control);
-    return control;
-}
-
 std::size_t points_of(const sim::SimScene& scene) {
     std::size_t points = 0;
     for (const sim::SimYarn& yarn : scene.yarns) points += yarn.control.size();

@@ -38,7 +38,6 @@ double length_of(const Spline& spline);
 
 /// Control points of every yarn.
 using Control = std::vector<std::vector<Vec3>>;
-Control control_of(const sim::SimScene& scene);
 std::size_t points_of(const sim::SimScene& scene);
 
 /// One state of a plan's yarns as a weaver measures it.

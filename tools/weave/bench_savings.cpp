@@ -59,10 +59,10 @@ sim::RelaxOptions options_of(const Saving& saving, const RunLimits& limits) {
     return options;
 }
 
-void tell_yarns(Side& side, const sim::SimScene& scene, const Control& control) {
-    for (std::size_t y = 0; y < control.size(); ++y) {
-        const sim::SimYarn& yarn = scene.yarns[y];
-        side.yarns.push_back({control[y], yarn.is_periodic, yarn.shift});
+/// The yarns of a scene as they lie in it.
+void tell_yarns(Side& side, const sim::SimScene& scene) {
+    for (const sim::SimYarn& yarn : scene.yarns) {
+        side.yarns.push_back({yarn.control, yarn.is_periodic, yarn.shift});
         side.crimp_pc.push_back(100 * length_of(side.yarns.back()) /
                                 (yarn.is_periodic ? yarn.shift.norm() : yarn.rest_mm));
     }
@@ -84,7 +84,10 @@ Side relaxed(const sim::SimScene& scene, const sim::RelaxOptions& options, std::
     side.points = fabric.points();
     side.steps = result.iterations;
     side.at_rest = result.ending == sim::Ending::converged;
-    tell_yarns(side, scene, fabric.control(state));
+    sim::SimScene rested = scene;
+    const Control control = fabric.control(state);
+    for (std::size_t y = 0; y < control.size(); ++y) rested.yarns[y].control = control[y];
+    tell_yarns(side, rested);
     return side;
 }
 
@@ -162,7 +165,7 @@ Run simulation_of(const Saving& saving, const Cloth& cloth, const sim::Simulatio
 
 Result<Saving> repeat_of(const std::string& sample) {
     WEAVE_TRY(const Cloth cloth, cloth_of(sample, 4));
-    Saving saving{.term = "repeat", .cloth = sample + ", 4 × 4 side by side", .kept = "all 16 cells relaxed"};
+    Saving saving{.term = "repeat", .cloth = sample + ", 4 × 4 side by side", .kept = "all 16 repeats relaxed"};
     sim::SimulationRequest request;
     WEAVE_TRY(const sim::Plan plan, sim::make_plan(cloth.design, *cloth.block, request));
     saving.radius_mm = plan.scene.yarns.front().radius_mm;
@@ -319,7 +322,7 @@ Result<Saving> periods() {
         side.points = fabric.points();
         side.steps = result.last.iterations;
         side.at_rest = result.balanced && result.last.ending == sim::Ending::converged;
-        tell_yarns(side, relaxing, control_of(relaxing));
+        tell_yarns(side, relaxing);
         return side;
     };
     return saving;

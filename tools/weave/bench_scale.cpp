@@ -110,7 +110,7 @@ Result<Json> measure_scale(const BenchOptions& options, const ScaleOptions& scal
     const std::size_t cell_points = points_of(cell.scene);
     if (scale.most < cell_points)
         return Error{ErrorCode::usage,
-                     "the smallest cloth, one cell, has " + std::to_string(cell_points) + " points",
+                     "the smallest cloth, one repeat, has " + std::to_string(cell_points) + " points",
                      "--most " + std::to_string(scale.most)};
     const std::vector<Cells> all = cells_of(scale, cell_points);
     Json sizes = Json::array(), asked = Json::array();
@@ -155,7 +155,7 @@ std::string scale_table(const Json& result) {
                 in_words("%.0f", size.at("lost_crossings")) + " |\n";
     const Json &asked = result.at("asked_points"), &sizes = result.at("sizes");
     if (asked.front() < result.at("cell_points"))
-        text += "\nThe smallest cloth, one cell, has " + in_words("%.0f", result.at("cell_points")) +
+        text += "\nThe smallest cloth, one repeat, has " + in_words("%.0f", result.at("cell_points")) +
                 " points: it stands for the " + in_words("%.0f", asked.front()) + " asked for.\n";
     if (!sizes.empty() && !sizes.back().at("converged").get<bool>())
         text +=

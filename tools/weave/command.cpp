@@ -2,7 +2,6 @@
 
 #include "progress.hpp"
 
-#include <weave/block/flip.hpp>
 #include <weave/core/file.hpp>
 #include <weave/core/text.hpp>
 #include <weave/design/document.hpp>

@@ -237,7 +237,7 @@ void add_render(CLI::App& app, CommandOutcome& outcome) {
         ->type_name("SIDE");
     command->add_option("--cut", wish->cloth.cut, "3d: cut away what lies before a plane: x=N, y=N or z=N in mm, or PX,PY,PZ:NX,NY,NZ")
         ->type_name("PLANE");
-    command->add_option("--colour", wish->cloth.colour, "3d: yarn, strain, contact or moved")->type_name("WORD");
+    command->add_option("--colour", wish->cloth.colour, "3d: yarn, strain, contact, moved or height")->type_name("WORD");
     command->add_option("--repeat", wish->cloth.repeat, "3d: NxM periodic pieces side by side")->type_name("NxM");
     command->add_option("--size", wish->cloth.size, "3d: WIDTHxHEIGHT in pixels")->type_name("WxH");
     command->add_flag("--perspective", wish->cloth.perspective, "3d: a mild perspective");

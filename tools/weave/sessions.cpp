@@ -2,9 +2,9 @@
 
 #include "command.hpp"
 #include "on_server.hpp"
-#include "remote_job.hpp"
 
 #include <weave/core/text.hpp>
+#include <weave/wire/remote_job.hpp>
 
 #include <chrono>
 #include <cstdio>

@@ -15,7 +15,6 @@
 #include <weave/core/sha256.hpp>
 #include <weave/core/text.hpp>
 #include <weave/design/document.hpp>
-#include <weave/picture/cloth_view.hpp>
 #include <weave/ranks/mpi/mpi_comm.hpp>
 #include <weave/sim/exports.hpp>
 #include <weave/sim/run.hpp>

@@ -1,7 +1,6 @@
 #include <weave/block/slice_moves.hpp>
 
 #include <weave/block/slice_draft.hpp>
-#include <weave/core/text.hpp>
 
 #include <algorithm>
 

@@ -32,8 +32,8 @@ Status Stack::check(std::size_t first_pick, std::size_t first_end) const {
         if (slot.index() >= seen.size()) {
             const std::string yarns = weft ? "pick" : "end";
             return bad_input("holds " + name(slot.index()) + ", but the " +
-                             (seen.size() == 1 ? "only " + yarns + " of this cell is " + name(0)
-                                               : yarns + "s of this cell are " + name(0) + " to " +
+                             (seen.size() == 1 ? "only " + yarns + " of this stack is " + name(0)
+                                               : yarns + "s of this stack are " + name(0) + " to " +
                                                      name(seen.size() - 1)));
         }
         if (seen[slot.index()]) return bad_input("holds " + name(slot.index()) + " twice");

@@ -1,5 +1,7 @@
 #include <weave/curve/spline.hpp>
 
+#include <weave/curve/wrapped.hpp>
+
 #include <algorithm>
 #include <cassert>
 #include <cmath>
@@ -84,8 +86,8 @@ Vec3 Spline::at(std::ptrdiff_t index) const {
     assert(n > 0);
     if (index >= 0 && index < n) return control[static_cast<std::size_t>(index)];
     if (is_periodic) {
-        const std::ptrdiff_t round = index >= 0 ? index / n : -((n - 1 - index) / n);
-        return control[static_cast<std::size_t>(index - round * n)] + static_cast<double>(round) * shift;
+        const Wrapped there = wrapped(index, n);
+        return control[static_cast<std::size_t>(there.index)] + static_cast<double>(there.round) * shift;
     }
     if (n == 1) return control.front();
     if (index < 0) return control.front() + static_cast<double>(index) * (control[1] - control[0]);

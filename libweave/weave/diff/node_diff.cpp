@@ -1,7 +1,6 @@
 #include <weave/diff/node_diff.hpp>
 
 #include <weave/core/text.hpp>
-#include <weave/design/node_json.hpp>
 #include <weave/diff/card_diff.hpp>
 #include <weave/diff/list_diff.hpp>
 

@@ -1,7 +1,6 @@
 #include <weave/diff/tree_diff.hpp>
 
 #include <weave/core/sha256.hpp>
-#include <weave/core/text.hpp>
 #include <weave/design/node_json.hpp>
 #include <weave/design/tree.hpp>
 #include <weave/diff/node_diff.hpp>

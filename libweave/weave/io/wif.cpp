@@ -1,6 +1,5 @@
 #include <weave/io/wif.hpp>
 
-#include <weave/core/text.hpp>
 #include <weave/io/wif_plans.hpp>
 #include <weave/io/wif_private.hpp>
 

@@ -1,6 +1,5 @@
 #include <weave/core/file.hpp>
 #include <weave/core/json.hpp>
-#include <weave/core/text.hpp>
 #include <weave/io/raster.hpp>
 #include <weave/io/wif.hpp>
 #include <weave/io/wif_private.hpp>

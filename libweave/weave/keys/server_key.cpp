@@ -1,6 +1,5 @@
 #include <weave/keys/server_key.hpp>
 
-#include <weave/core/sha256.hpp>
 #include <weave/keys/hex.hpp>
 #include <weave/keys/private_file.hpp>
 #include <weave/keys/sodium.hpp>

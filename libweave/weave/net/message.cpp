@@ -88,12 +88,6 @@ const std::string& Request::place(std::string_view name) const {
     return found->second;
 }
 
-std::optional<std::string> Request::query_value(std::string_view name) const {
-    for (const auto& [key, value] : query)
-        if (key == name) return value;
-    return {};
-}
-
 std::optional<std::string> Request::cookie(std::string_view name) const {
     std::optional<std::string> found;
     bool contradicted = false;
@@ -119,10 +113,6 @@ Response answer(int status, std::string content_type, Bytes body) {
 Response json_answer(int status, const Json& value) {
     return answer(status, "application/json",
                   make_bytes(value.dump(-1, ' ', false, Json::error_handler_t::replace)));
-}
-
-Response empty_answer() {
-    return {204, {}, nullptr};
 }
 
 int status_of(ErrorCode code) {

@@ -68,8 +68,6 @@ struct Request {
 
     /// What stood for {name} in the route's pattern. The name must be one of the pattern.
     [[nodiscard]] const std::string& place(std::string_view name) const;
-    /// The first value of a query parameter; nothing if it is missing.
-    [[nodiscard]] std::optional<std::string> query_value(std::string_view name) const;
     /// The value of a cookie; nothing if it is missing, or given twice with different values.
     [[nodiscard]] std::optional<std::string> cookie(std::string_view name) const;
 };
@@ -87,9 +85,6 @@ Response answer(int status, std::string content_type, Bytes body);
 
 /// A JSON answer. Text that is no UTF-8 appears with replacement characters.
 Response json_answer(int status, const Json& value);
-
-/// An answer of 204 without a body.
-Response empty_answer();
 
 /// The HTTP status that an Error means: bad_input and usage 400, invalid 422, refused 403, system 500.
 int status_of(ErrorCode code);

@@ -6,6 +6,7 @@
 #include <weave/picture/scale_marks.hpp>
 #include <weave/picture/tube_render.hpp>
 #include <weave/picture/yarn_knots.hpp>
+#include <weave/sim/report_words.hpp>
 
 #include <algorithm>
 #include <cmath>
@@ -84,11 +85,17 @@ std::vector<std::string> notes_of(const Yarns& yarns, const ClothView& view, con
     return parts;
 }
 
+/// A report that does not say how its run ended is that of yarns at rest.
+std::string state_words(const Json& report) {
+    if (sim::part_of(report, "converged") != false) return "relaxed yarns";
+    return sim::part_of(report, "iterations") == 0 ? "planned yarns" : "yarns not at rest";
+}
+
 PageText words_of(const Yarns& yarns, const ClothView& view, const TubeScene& scene) {
     const double width = static_cast<double>(view.width) - 2 * Page::margin;
     PageText text;
     text.title = fitting(yarns.title.empty() ? "Relaxed cloth" : yarns.title, width, Page::title_size, true);
-    std::vector<std::string> lines = in_lines({"relaxed yarns, seen " + side_words(view),
+    std::vector<std::string> lines = in_lines({state_words(yarns.report) + ", seen " + side_words(view),
                                                counted(count_of(yarns, System::weft), "weft") + " × " +
                                                    counted(count_of(yarns, System::warp), "warp"),
                                                std::string("coloured by ") + words_of(view.colour).subtitle},

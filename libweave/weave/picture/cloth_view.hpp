@@ -16,6 +16,7 @@ enum class ClothColour : std::uint8_t {
     strain,   ///< local lengthening, %
     contact,  ///< size of the contact force on a control point, N
     moved,    ///< distance from the planned centreline at the same parameter, mm
+    height,   ///< of the centreline, from z = 0 of the plan up, mm: dents and ridges
 };
 
 /// A plane through the cloth. What lies on the side that the normal points to is cut away.
@@ -46,7 +47,7 @@ struct ClothWords {
     /// `x=N`, `y=N` or `z=N` in mm: what lies between the viewer and this plane is cut away. Or a point and a
     /// normal, `PX,PY,PZ:NX,NY,NZ`.
     std::string cut{};
-    std::string colour{};  ///< `yarn`, `strain`, `contact` or `moved`
+    std::string colour{};  ///< `yarn`, `strain`, `contact`, `moved` or `height`
     std::string repeat{};  ///< `NxM`, pieces along x and along y, 1 to 100 each
     std::string size{};    ///< `WIDTHxHEIGHT` in pixels, 400x300 to 8000x6000
     bool perspective = false;

@@ -18,7 +18,7 @@ struct NamedSide {
 
 constexpr NamedSide sides[]{{"top", 0, 90},   {"bottom", 180, -90}, {"front", 0, 0},   {"back", 180, 0},
                             {"left", -90, 0}, {"right", 90, 0},     {"corner", 32, 38}};
-constexpr std::string_view colours[]{"yarn", "strain", "contact", "moved"};
+constexpr std::string_view colours[]{"yarn", "strain", "contact", "moved", "height"};
 constexpr std::size_t most_repeats = 100;
 constexpr double farthest_mm = 1e9;
 
@@ -104,7 +104,7 @@ Status set_colour(ClothView& view, const std::string& text) {
         view.colour = static_cast<ClothColour>(k);
         return {};
     }
-    return usage("colour", text, "choose yarn, strain, contact or moved");
+    return usage("colour", text, "choose yarn, strain, contact, moved or height");
 }
 
 /// Two whole numbers with an x between them, within limits.

@@ -17,6 +17,8 @@ double value_of(const SimulatedYarn& yarn, const Spline& planned, ClothColour co
             return value_at(yarn.spline, yarn.contact_N, t);
         case ClothColour::moved:
             return (yarn.spline.place(t) - planned.place(t)).norm();
+        case ClothColour::height:
+            return yarn.spline.place(t).z();
         case ClothColour::yarn:
             break;
     }
@@ -58,7 +60,8 @@ std::vector<Colour> own_colours(const Yarns& yarns) {
 }
 
 ValueRange scale_of(ClothColour colour, double least, double most) {
-    const double low = colour == ClothColour::strain ? least : 0;
+    const bool has_zero = colour != ClothColour::strain && colour != ClothColour::height;
+    const double low = has_zero ? 0 : least;
     const double thinnest = 1e-9 + 1e-6 * std::max(std::abs(low), std::abs(most));
     return {low, std::max(most, low + thinnest)};
 }
@@ -71,6 +74,8 @@ ColourWords words_of(ClothColour colour) {
             return {"contact force", "contact, N"};
         case ClothColour::moved:
             return {"distance from the planned place", "moved, mm"};
+        case ClothColour::height:
+            return {"height", "height, mm"};
         case ClothColour::yarn:
             break;
     }

@@ -32,8 +32,8 @@ std::vector<Colour> own_colours(const Yarns& yarns);
 struct ValueRange {
     double low = 0, high = 1;
 };
-/// The scale for values between these two: none is the natural end of it, but for strain, which has two
-/// sides; and never empty.
+/// The scale for values between these two: none is the natural end of it, but for strain and height, which
+/// have two sides; and never empty.
 ValueRange scale_of(ClothColour colour, double least, double most);
 
 /// How colours are told to people: what they show, and with its unit, as over a colour bar.

@@ -1,6 +1,7 @@
 #include <weave/ranks/cut.hpp>
 
 #include <weave/core/sha256.hpp>
+#include <weave/curve/wrapped.hpp>
 
 #include <algorithm>
 #include <cmath>
@@ -129,7 +130,7 @@ class Dealer {
         std::vector<Point> points;
         const auto count = static_cast<std::int64_t>(m_cut.points[stretch.yarn]);
         for (std::size_t k = 0; k < stretch.control.size(); ++k) {
-            const std::int64_t index = ((stretch.begin + static_cast<std::int64_t>(k)) % count + count) % count;
+            const std::int64_t index = wrapped(stretch.begin + static_cast<std::int64_t>(k), count).index;
             points.push_back({static_cast<std::uint32_t>(stretch.yarn), static_cast<std::uint32_t>(index), m_cutter.block(stretch.control[k]),
                               stretch.frozen[k] != 0, stretch.control[k]});
         }
@@ -140,7 +141,7 @@ class Dealer {
             if (!has(block)) continue;
             part(block).own.push_back(at(i));
             for (std::int64_t j = std::max<std::int64_t>(i - reach, stretch.begin); j < std::min(i + reach + 1, end); ++j) {
-                const std::int64_t turns = j >= 0 ? j / count : -((count - 1 - j) / count);
+                const std::int64_t turns = wrapped(j, count).round;
                 if (turns == 0 && at(j).block == block) continue;
                 if (m_seen.emplace(block, j).second) part(block).along.push_back({at(j), static_cast<std::int32_t>(turns), {}});
             }

@@ -2,7 +2,6 @@
 
 #include <weave/core/file.hpp>
 #include <weave/core/sha256.hpp>
-#include <weave/core/text.hpp>
 #include <weave/design/document.hpp>
 #include <weave/ranks/split_cloth.hpp>
 #include <weave/ranks/split_yarns.hpp>

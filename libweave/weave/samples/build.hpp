@@ -45,13 +45,6 @@ inline Stack cell(std::size_t wefts, std::initializer_list<End> ends, Below loos
     return cell(wefts, std::span(ends.begin(), ends.size()), loose_wefts);
 }
 
-/// A step of a list that repeats for ever in both directions.
-template <class T>
-constexpr T cyclic(std::span<const T> list, std::ptrdiff_t step) {
-    const auto size = static_cast<std::ptrdiff_t>(list.size());
-    return list[static_cast<std::size_t>((step % size + size) % size)];
-}
-
 /// A leaf of `rows` x `columns` cells, `wefts` picks a row and `warps` ends a column; `stack_of_cell(i, j)`
 /// must be good.
 template <class StackOfCell>

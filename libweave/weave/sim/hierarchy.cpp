@@ -1,5 +1,7 @@
 #include <weave/sim/hierarchy.hpp>
 
+#include <weave/curve/wrapped.hpp>
+
 #include <algorithm>
 #include <cmath>
 #include <map>
@@ -164,7 +166,7 @@ bool Hierarchy::add_grid(std::size_t finer, double spacing, RowPlaces& places) {
             const auto right = static_cast<double>(k % 2), up = static_cast<double>(k / 2);
             std::array<std::int64_t, 2> node{std::llround(i + right), std::llround(j + up)};
             for (std::size_t axis = 0; axis < 2; ++axis) {
-                if (around[axis] > 0) node[axis] = ((node[axis] % around[axis]) + around[axis]) % around[axis];
+                if (around[axis] > 0) node[axis] = wrapped(node[axis], around[axis]).index;
             }
             const double weight = (k % 2 == 0 ? 1 - (x - i) : x - i) * (k / 2 == 0 ? 1 - (y - j) : y - j);
             if (weight == 0) {

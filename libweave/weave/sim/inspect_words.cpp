@@ -100,7 +100,7 @@ std::string rest_text(const Json& report) {
     for (const char* system : {"warp", "weft"}) {
         const Json share = sim::part_of(strain, system);
         if (share.is_number())
-            each += (each.empty() ? "" : ", ") + format("%.2g points in the ", 100 * share.get<double>()) +
+            each += (each.empty() ? "" : ", ") + format(share.get<double>() < 0.1 ? "%.2g points in the " : "%.0f points in the ", 100 * share.get<double>()) +
                     system;
     }
     return each.empty() ? text : text + "Strain departs from what was asked for by at most " + each + "\n";

@@ -1,5 +1,7 @@
 #include <weave/sim/linking.hpp>
 
+#include <weave/curve/wrapped.hpp>
+
 #include <algorithm>
 #include <cmath>
 #include <cstdint>
@@ -89,7 +91,7 @@ class Cells {
         return m_around[k] == 1 ? 1 : m_around[k] == 2 ? 0 : -1;
     }
     [[nodiscard]] std::int64_t folded(std::int64_t cell, std::size_t k) const {
-        return m_around[k] > 0 ? ((cell % m_around[k]) + m_around[k]) % m_around[k] : cell;
+        return m_around[k] > 0 ? wrapped(cell, m_around[k]).index : cell;
     }
     [[nodiscard]] std::array<std::int64_t, 2> cell_of(const Piece& piece) const {
         std::array<std::int64_t, 2> cell{};

@@ -17,17 +17,17 @@ namespace {
 /// How many planned crossings a crossing may have slid along its yarns.
 constexpr double farthest_keys = 3;
 
-double clamped(const Thread& thread, double t) {
-    return thread.spline.is_periodic ? t : std::clamp(t, 0.0, static_cast<double>(thread.spline.segments()));
+double clamped(const LaidYarn& yarn, double t) {
+    return yarn.spline.is_periodic ? t : std::clamp(t, 0.0, static_cast<double>(yarn.spline.segments()));
 }
 
-Thread thread_of(const Spline& spline, const YarnCurve& curve) {
+LaidYarn laid_yarn_of(const Spline& spline, const YarnCurve& curve) {
     const double keys = static_cast<double>(curve.is_periodic ? curve.keys.size() : curve.keys.size() - 1);
     return {spline, keys > 0 ? static_cast<double>(spline.segments()) / keys : 0};
 }
 
 /// Newton's method for the parameters at which two yarns cross, seen from above.
-std::optional<CrossingSpot> spot_by_newton(const Thread& weft, const Thread& warp, double t, double s) {
+std::optional<CrossingSpot> spot_by_newton(const LaidYarn& weft, const LaidYarn& warp, double t, double s) {
     const double t0 = t, s0 = s;
     for (int round = 0; round < 30; ++round) {
         const Vec3 apart = weft.spline.place(t) - warp.spline.place(s);
@@ -49,7 +49,7 @@ std::optional<CrossingSpot> spot_by_newton(const Thread& weft, const Thread& war
 }
 
 /// The crossing nearest to the planned place among those of two polylines along the yarns.
-std::optional<CrossingSpot> spot_by_search(const Thread& weft, const Thread& warp, double t0, double s0) {
+std::optional<CrossingSpot> spot_by_search(const LaidYarn& weft, const LaidYarn& warp, double t0, double s0) {
     constexpr int pieces = 96;
     std::array<Vec3, pieces + 1> a, b;
     for (int i = 0; i <= pieces; ++i) {
@@ -58,8 +58,8 @@ std::optional<CrossingSpot> spot_by_search(const Thread& weft, const Thread& war
         b[static_cast<std::size_t>(i)] = warp.spline.place(clamped(warp, s0 + share * warp.per_key));
     }
     std::optional<CrossingSpot> spot;
-    const auto parameter = [](const Thread& thread, double from, double piece) {
-        return clamped(thread, from + (2 * piece / pieces - 1) * farthest_keys * thread.per_key);
+    const auto parameter = [](const LaidYarn& yarn, double from, double piece) {
+        return clamped(yarn, from + (2 * piece / pieces - 1) * farthest_keys * yarn.per_key);
     };
     int nearest = 4 * pieces;
     for (int i = 0; i < pieces; ++i) {
@@ -83,7 +83,7 @@ std::optional<CrossingSpot> spot_by_search(const Thread& weft, const Thread& war
 }
 
 /// The places near their planned crossing at which two yarns are nearest.
-CrossingSpot nearest_spot(const Thread& weft, const Thread& warp, double t0, double s0) {
+CrossingSpot nearest_spot(const LaidYarn& weft, const LaidYarn& warp, double t0, double s0) {
     constexpr int pieces = 12;
     constexpr double farthest = 1.5;  ///< key points
     std::array<double, 2 * pieces + 1> t{}, s{};
@@ -107,13 +107,13 @@ CrossingSpot nearest_spot(const Thread& weft, const Thread& warp, double t0, dou
 }
 
 /// Upwards across both yarns where the cloth lies as woven, `weft_way` being 1 where the weft runs along y.
-Vec3 across_both(const Thread& weft, const Thread& warp, const CrossingSpot& at, double weft_way) {
+Vec3 across_both(const LaidYarn& weft, const LaidYarn& warp, const CrossingSpot& at, double weft_way) {
     return warp.spline.tangent(at.warp_at).cross(weft.spline.tangent(at.weft_at)) * weft_way;
 }
 
 /// Whether a crossing lies as the card says. Cloth that stands on edge or hangs over, as an opened pocket's
 /// does, shows nothing from above: there the yarns are looked at across both of them, where they are nearest.
-bool lies_as_planned(const Thread& weft, const Thread& warp, const Crossing& crossing,
+bool lies_as_planned(const LaidYarn& weft, const LaidYarn& warp, const Crossing& crossing,
                      const std::optional<CrossingSpot>& spot, double weft_way) {
     constexpr double steepest = 0.5;
     const auto shows = [&](const Vec3& up) { return up.z() > steepest * up.norm(); };
@@ -129,7 +129,7 @@ bool lies_as_planned(const Thread& weft, const Thread& warp, const Crossing& cro
 
 }  // namespace
 
-std::optional<CrossingSpot> find_crossing(const Thread& weft, const Thread& warp, std::size_t weft_key,
+std::optional<CrossingSpot> find_crossing(const LaidYarn& weft, const LaidYarn& warp, std::size_t weft_key,
                                           std::size_t warp_key) {
     const double t = weft.at(weft_key), s = warp.at(warp_key);
     const std::optional<CrossingSpot> spot = spot_by_newton(weft, warp, t, s);
@@ -138,8 +138,8 @@ std::optional<CrossingSpot> find_crossing(const Thread& weft, const Thread& warp
 
 std::optional<CrossingSpot> find_crossing(const ClothCurves& curves, const std::vector<Spline>& splines,
                                           const Crossing& crossing) {
-    return find_crossing(thread_of(splines[crossing.weft], curves.yarns[crossing.weft]),
-                         thread_of(splines[crossing.warp], curves.yarns[crossing.warp]), crossing.weft_key,
+    return find_crossing(laid_yarn_of(splines[crossing.weft], curves.yarns[crossing.weft]),
+                         laid_yarn_of(splines[crossing.warp], curves.yarns[crossing.warp]), crossing.weft_key,
                          crossing.warp_key);
 }
 
@@ -152,7 +152,7 @@ std::vector<LostCrossing> doubtful_crossings(const std::vector<Crossing>& crossi
     for (const Crossing& crossing : crossings) {
         if (subject.now[crossing.weft].control.empty() || subject.now[crossing.warp].control.empty())
             continue;
-        const Thread weft = subject.thread(subject.now, crossing.weft), warp = subject.thread(subject.now, crossing.warp);
+        const LaidYarn weft = subject.laid_yarn(subject.now, crossing.weft), warp = subject.laid_yarn(subject.now, crossing.warp);
         const double t = weft.at(crossing.weft_key);
         const Spline& planned = subject.planned[crossing.weft];
         const double weft_way =
@@ -177,7 +177,7 @@ namespace {
 
 /// Whether the plan itself has a crossing as the card says; a card that changed since has not.
 bool planned_so(const Crossing& crossing, const OrderSubject& subject) {
-    const auto spot = find_crossing(subject.thread(subject.planned, crossing.weft), subject.thread(subject.planned, crossing.warp),
+    const auto spot = find_crossing(subject.laid_yarn(subject.planned, crossing.weft), subject.laid_yarn(subject.planned, crossing.warp),
                                     crossing.weft_key, crossing.warp_key);
     return spot && (spot->height_mm > 0) == crossing.weft_over;
 }
@@ -201,7 +201,7 @@ CrossingOrder crossing_order(const std::vector<Crossing>& crossings, const Order
 CrossingOrder crossing_order(const ClothCurves& curves, const std::vector<Spline>& splines) {
     OrderSubject subject{{}, splines, {}, {}, {}};
     for (std::size_t y = 0; y < splines.size(); ++y) {
-        subject.per_key.push_back(thread_of(splines[y], curves.yarns[y]).per_key);
+        subject.per_key.push_back(laid_yarn_of(splines[y], curves.yarns[y]).per_key);
         Spline& planned = subject.planned.emplace_back();
         if (splines[y].control.empty()) continue;
         std::vector<Vec3> keys;

@@ -10,7 +10,7 @@
 namespace weave::sim {
 
 /// A yarn's centreline with what finds its key points again.
-struct Thread {
+struct LaidYarn {
     const Spline& spline;
     double per_key = 1;  ///< parameter from one key point to the next
     double begin = 0;    ///< of a piece of a yarn: the parameter of the whole at which it begins
@@ -26,7 +26,7 @@ struct CrossingSpot {
 
 /// The crossing of two yarns nearest to their key points, at most three key points away; nothing where they
 /// do not cross there.
-std::optional<CrossingSpot> find_crossing(const Thread& weft, const Thread& warp, std::size_t weft_key,
+std::optional<CrossingSpot> find_crossing(const LaidYarn& weft, const LaidYarn& warp, std::size_t weft_key,
                                           std::size_t warp_key);
 
 /// The same for a crossing of planned curves, from its planned place on. `splines` as for lost_crossings().
@@ -53,10 +53,10 @@ struct OrderSubject {
     std::vector<Spline> planned, now;
     std::vector<double> per_key;        ///< parameter from one key point of a yarn to the next
     std::array<double, 2> period_mm{};  ///< 0 in directions that do not repeat
-    std::vector<double> begin = {};     ///< Thread::begin, of each; empty: all are whole
+    std::vector<double> begin = {};     ///< LaidYarn::begin, of each; empty: all are whole
 
     /// One of `planned` or `now`.
-    [[nodiscard]] Thread thread(const std::vector<Spline>& splines, std::size_t yarn) const {
+    [[nodiscard]] LaidYarn laid_yarn(const std::vector<Spline>& splines, std::size_t yarn) const {
         return {splines[yarn], per_key[yarn], begin.empty() ? 0 : begin[yarn]};
     }
 };

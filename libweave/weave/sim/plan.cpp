@@ -5,7 +5,7 @@
 #include <weave/core/text.hpp>
 #include <weave/core/units.hpp>
 #include <weave/design/pins.hpp>
-#include <weave/loom/pick_table.hpp>
+#include <weave/design/picks.hpp>
 
 #include <algorithm>
 #include <cmath>
@@ -202,7 +202,7 @@ class Planner {
         WEAVE_TRY(ClothLayout layout, ClothLayout::make(m_design, cells > 1 ? *m_made.m_repeat : m_block, options));
         m_made.m_layout = std::make_unique<const ClothLayout>(std::move(layout));
         if (cells > 1)
-            tell("repeat", "1 of " + std::to_string(cells) + " cells",
+            tell("repeat", "1 of " + std::to_string(cells) + " repeats",
                  "rows repeat after " + std::to_string(repeat[0]) + " and columns after " + std::to_string(repeat[1]));
         else
             tell("repeat", "whole",

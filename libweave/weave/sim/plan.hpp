@@ -43,7 +43,7 @@ struct SimulationRequest {
 /// One thing that the plan does or saves, and why.
 struct PlanLine {
     std::string term;    ///< such as `repeat`, `friction`, `radii`
-    std::string choice;  ///< such as `off`, `1 of 16 cells`
+    std::string choice;  ///< such as `off`, `1 of 16 repeats`
     std::string reason;
 };
 

@@ -1,5 +1,7 @@
 #include <weave/sim/plan_in_stretches.hpp>
 
+#include <weave/curve/wrapped.hpp>
+
 #include <algorithm>
 
 namespace weave::sim {
@@ -20,7 +22,7 @@ Stretch PlanInStretches::stretch(std::size_t yarn, std::size_t first) const {
     Stretch stretch{yarn, first, static_cast<std::size_t>(last), begin, {}, {}};
     const std::vector<Vec3> control = m_points->control(curve, own, last);
     for (std::ptrdiff_t i = begin; i < end; ++i) {
-        const std::ptrdiff_t index = ((i % whole) + whole) % whole;
+        const std::ptrdiff_t index = wrapped(i, whole).index;
         stretch.control.push_back(index >= own && index < last ? control[static_cast<std::size_t>(index - own)] : m_points->control(curve, index, index + 1).front());
     }
     stretch.frozen = m_points->frozen(curve, begin, end);

@@ -1,6 +1,7 @@
 #include <weave/sim/planned_points.hpp>
 
 #include <weave/curve/spline.hpp>
+#include <weave/curve/wrapped.hpp>
 
 #include <algorithm>
 #include <cmath>
@@ -13,15 +14,10 @@ namespace {
 constexpr std::size_t rim_points = 2;  ///< control points held at a frozen end
 constexpr std::size_t most_made = 4;
 
-struct Wrapped {
-    std::size_t index = 0;
-    std::ptrdiff_t round = 0;
-};
-
-Wrapped wrapped(std::ptrdiff_t at, std::size_t count) {
-    const auto n = static_cast<std::ptrdiff_t>(count);
-    const std::ptrdiff_t round = at >= 0 ? at / n : -((n - 1 - at) / n);
-    return {static_cast<std::size_t>(at - round * n), round};
+/// A key point or control point beyond a periodic yarn's ends: which one it is, and how many times round.
+std::pair<std::size_t, double> wrapped_point(std::ptrdiff_t at, std::size_t count) {
+    const Wrapped there = wrapped(at, static_cast<std::ptrdiff_t>(count));
+    return {static_cast<std::size_t>(there.index), static_cast<double>(there.round)};
 }
 
 }  // namespace
@@ -61,9 +57,9 @@ void PlannedPoints::each_key(std::size_t curve, const std::function<bool(const K
 std::vector<Vec3> PlannedPoints::places(std::size_t curve, std::ptrdiff_t first, std::ptrdiff_t last) const {
     std::vector<Vec3> found;
     for (std::ptrdiff_t at = first; at < last;) {
-        const auto [index, round] = wrapped(at, m_keys[curve]);
+        const auto [index, round] = wrapped_point(at, m_keys[curve]);
         const std::size_t until = std::min(m_keys[curve], index + static_cast<std::size_t>(last - at));
-        for (const KeyPoint& key : key_points(curve, index, until)) found.emplace_back(key.place + static_cast<double>(round) * m_curves.yarns[curve].shift);
+        for (const KeyPoint& key : key_points(curve, index, until)) found.emplace_back(key.place + round * m_curves.yarns[curve].shift);
         at += static_cast<std::ptrdiff_t>(until - index);
     }
     return found;
@@ -73,10 +69,10 @@ std::vector<Vec3> PlannedPoints::control(std::size_t curve, std::ptrdiff_t first
     if (is_short(curve)) return of_whole(curve, first, last);
     std::vector<Vec3> control;
     for (std::ptrdiff_t at = first; at < last;) {
-        const auto [index, round] = wrapped(at, count(curve));
+        const auto [index, round] = wrapped_point(at, count(curve));
         const std::size_t number = index / m_most_at_once;
         const std::vector<Vec3>& from = made(curve, number);
-        const Vec3 moved = static_cast<double>(round) * m_curves.yarns[curve].shift;
+        const Vec3 moved = round * m_curves.yarns[curve].shift;
         for (std::size_t i = index - number * m_most_at_once; i < from.size() && at < last; ++i, ++at) control.emplace_back(from[i] + moved);
     }
     return control;
@@ -128,7 +124,7 @@ std::vector<std::uint8_t> PlannedPoints::frozen(std::size_t curve, std::ptrdiff_
     if (first < 0 || last > static_cast<std::ptrdiff_t>(points)) {
         std::vector<std::uint8_t> all;
         for (std::ptrdiff_t at = first; at < last;) {
-            const std::size_t from = wrapped(at, points).index, to = std::min(points, from + static_cast<std::size_t>(last - at));
+            const std::size_t from = wrapped_point(at, points).first, to = std::min(points, from + static_cast<std::size_t>(last - at));
             const std::vector<std::uint8_t> some = frozen(curve, static_cast<std::ptrdiff_t>(from), static_cast<std::ptrdiff_t>(to));
             all.insert(all.end(), some.begin(), some.end());
             at += static_cast<std::ptrdiff_t>(to - from);
@@ -179,7 +175,7 @@ void PlannedPoints::hold(std::size_t curve, std::size_t key, std::size_t first, 
     const auto at = static_cast<std::ptrdiff_t>(std::lround(per_key * static_cast<double>(key)));
     for (std::ptrdiff_t i = at - 1; i <= at + 1; ++i) {
         if (!is_periodic && (i < 0 || i >= static_cast<std::ptrdiff_t>(points))) continue;
-        const std::size_t index = wrapped(i, points).index;
+        const std::size_t index = wrapped_point(i, points).first;
         if (index >= first && index < first + frozen.size()) frozen[index - first] = 1;
     }
 }

@@ -2,7 +2,7 @@
 
 #include <weave/core/text.hpp>
 #include <weave/design/document.hpp>
-#include <weave/loom/pick_table.hpp>
+#include <weave/design/picks.hpp>
 #include <weave/sim/report_words.hpp>
 
 #include <algorithm>

@@ -1,6 +1,6 @@
 #include <weave/wire/shown.hpp>
 
-#include <weave/loom/pick_table.hpp>
+#include <weave/design/picks.hpp>
 
 #include <algorithm>
 

@@ -1,7 +1,7 @@
 // Talks to /api/v1. A failure is an ApiError whose text can be shown as it is.
 import { sentence } from './dom.js';
 
-export class ApiError extends Error {
+class ApiError extends Error {
     constructor(status, error) {
         super(sentence(error?.message ?? `The server answered ${status}`));
         this.status = status;
@@ -26,7 +26,7 @@ export function remember(signed_in) {
 export const may_be_known = () => localStorage.getItem(known) !== null;
 
 /** Every call that changes something has an id of its own, so that a repeated one changes nothing twice. */
-export function request_id() {
+function request_id() {
     return [...crypto.getRandomValues(new Uint8Array(16))].map(byte => byte.toString(16).padStart(2, '0')).join('');
 }
 

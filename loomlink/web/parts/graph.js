@@ -6,7 +6,7 @@ const step = 56, lane_width = 22, lanes_shown = 8;
 const lane_colours = ['#1f3a4d', '#c8641b', '#4a7c59', '#7a4f9a', '#a8893b', '#2a7f9e', '#9e3d52', '#5b6770'];
 
 /** Lane of each revision, newest first: the first parent keeps its child's lane. */
-export function lanes_of(revisions) {
+function lanes_of(revisions) {
     const lane = new Map(), open = [];
     for (const revision of revisions) {
         let mine = open.indexOf(revision.number);

@@ -2,6 +2,7 @@
 
 #include "../box.hpp"
 #include "../results.hpp"
+#include "../submitted.hpp"
 
 #include <weave/core/file.hpp>
 
@@ -113,6 +114,15 @@ inline wire::Simulation lasting_run() {
     simulation.plan.reduce = false;
     simulation.residual = 1e-4;
     return simulation;
+}
+
+/// The yarns of such a run of the long cloth as a daemon of this machine makes them, without Slurm.
+inline std::string yarns_made_here(const wire::Simulation& simulation) {
+    const Box here;
+    wire::Follower follower = here.follower();
+    const std::uint64_t job = submit(follower, document_of(long_cloth), simulation);
+    REQUIRE(end_of(follower, job).phase == wire::JobPhase::done);
+    return yarns_of(follower, job);
 }
 
 /// Waits until something is so; whether it came to that.

@@ -1,6 +1,5 @@
 // What happens to jobs in Slurm when copies go astray, disks are full, clocks are wrong, and what is between daemon and nodes is cut.
 
-#include "../submitted.hpp"
 #include "cluster.hpp"
 
 #include <weave/core/sha256.hpp>
@@ -38,18 +37,10 @@ std::unique_ptr<weave::testing::Program> stray_copy(const Cluster& cluster, cons
     return program;
 }
 
-std::string wanted_yarns() {
-    const Box here;
-    wire::Follower follower = here.follower();
-    const std::uint64_t job = submit(follower, document_of(long_cloth), lasting_run());
-    REQUIRE(end_of(follower, job).phase == wire::JobPhase::done);
-    return yarns_of(follower, job);
-}
-
 }  // namespace
 
 TEST_CASE("of two copies of a job the later one counts and the stale one ends itself with that reason") {
-    const std::string wanted = wanted_yarns();
+    const std::string wanted = yarns_made_here(lasting_run());
     const Cluster cluster;
     const Box box(cluster.config());
     wire::Follower follower = box.follower();
@@ -71,7 +62,7 @@ TEST_CASE("of two copies of a job the later one counts and the stale one ends it
 }
 
 TEST_CASE("a stale copy that writes its result all the same is refused by its token") {
-    const std::string wanted = wanted_yarns();
+    const std::string wanted = yarns_made_here(lasting_run());
     const Cluster cluster;
     Box box(cluster.config());
     wire::Follower follower = box.follower();
@@ -132,7 +123,7 @@ TEST_CASE("a result that is not of the order or not what its report tells is ref
 }
 
 TEST_CASE("a job that Slurm puts back goes on soon from its checkpoint and ends with the same bits") {
-    const std::string wanted = wanted_yarns();
+    const std::string wanted = yarns_made_here(lasting_run());
     const Cluster cluster;
     const Box box(cluster.config());
     wire::Follower follower = box.follower();
@@ -175,7 +166,7 @@ TEST_CASE("while Slurm does not answer that is told and jobs that run end well a
 }
 
 TEST_CASE("a node that dies while its job goes on costs nothing") {
-    const std::string wanted = wanted_yarns();
+    const std::string wanted = yarns_made_here(lasting_run());
     const Cluster cluster;
     const Box box(cluster.config());
     wire::Follower follower = box.follower();
@@ -188,7 +179,7 @@ TEST_CASE("a node that dies while its job goes on costs nothing") {
 }
 
 TEST_CASE("a node that is cut off from all others loses its job to another and does not count when it is back") {
-    const std::string wanted = wanted_yarns();
+    const std::string wanted = yarns_made_here(lasting_run());
     const Cluster cluster;
     const Box box(cluster.config());
     wire::Follower follower = box.follower();

@@ -1,6 +1,5 @@
 // Jobs in Slurm: handed over in arrays, run on nodes, brought home, cancelled, and found again by a daemon that was killed.
 
-#include "../submitted.hpp"
 #include "cluster.hpp"
 
 #include <fstream>
@@ -61,14 +60,7 @@ std::string put_before_sbatch(const Cluster& cluster, const std::string& script)
 }  // namespace
 
 TEST_CASE("jobs run in Slurm as they do on this machine with a GPU of their own each and leave nothing behind") {
-    std::string wanted;
-    {
-        const Box here;
-        wire::Follower follower = here.follower();
-        const std::uint64_t job = submit(follower, document_of(long_cloth), lasting_run());
-        CHECK(end_of(follower, job).phase == wire::JobPhase::done);
-        wanted = yarns_of(follower, job);
-    }
+    const std::string wanted = yarns_made_here(lasting_run());
     const Cluster cluster;
     const Box box(cluster.config());
     wire::Follower follower = box.follower();
@@ -178,14 +170,7 @@ TEST_CASE("a daemon that dies while Slurm takes its jobs finds them by their nam
 }
 
 TEST_CASE("jobs that Slurm has twice because a call that failed was only slow end once with the same bits") {
-    std::string wanted;
-    {
-        const Box here;
-        wire::Follower follower = here.follower();
-        const std::uint64_t job = submit(follower, document_of(long_cloth), long_run());
-        REQUIRE(end_of(follower, job).phase == wire::JobPhase::done);
-        wanted = yarns_of(follower, job);
-    }
+    const std::string wanted = yarns_made_here(long_run());
     const Cluster cluster;
     // What the first call asks for comes to pass after the second was answered.
     const std::string path = put_before_sbatch(cluster, R"(if mkdir "$here/first"; then

@@ -1,7 +1,5 @@
 // Many jobs in Slurm, while copies of them, the nodes, Slurm's controller and simd itself are killed. Seeds are printed.
 
-#include "../results.hpp"
-#include "../submitted.hpp"
 #include "cluster.hpp"
 
 #include <weave/core/sha256.hpp>

@@ -5,6 +5,7 @@
 #include <weave/samples/samples.hpp>
 #include <weave/sim/simulate.hpp>
 #include <studio/viewport/tube_model.hpp>
+#include <support/straight_yarn.hpp>
 
 #include <catch2/catch.hpp>
 
@@ -32,19 +33,7 @@ inline std::shared_ptr<const Yarns> sample_yarns() {
     return yarns;
 }
 
-inline SimulatedYarn straight_yarn(System system, std::size_t number, const Vec3& from, const Vec3& to,
-                                   Colour colour) {
-    SimulatedYarn yarn;
-    yarn.system = system;
-    yarn.number = number;
-    yarn.radius_mm = 0.5;
-    yarn.colour = colour;
-    yarn.spline.control = {from, to};
-    yarn.planned = yarn.spline.control;
-    yarn.strain = {0, 0.1};
-    yarn.contact_N = {2, 2};
-    return yarn;
-}
+using testing::straight_yarn;
 
 /// A red end along x over a blue pick along y, both 10 mm long, crossing in the middle; and a second end, on
 /// the right, that crosses the pick as well.
