@@ -63,7 +63,7 @@ TEST_CASE("bench tradeoff measures any sample, and tells the errors of a fidelit
         }
     }
     const std::string table = shop.get("kept/tradeoff.md");
-    for (const char* row : {"| reference | points alone | 2 |", "| draft | stopped at its goal | 2 |", "| rib | 64 |"})
+    for (const char* row : {"| reference | points alone | 2 |", "| draft | stopped at its goal | 2 |", "| rib | 64 |", "On the middle cloth `standard` takes "})
         CHECK(table.find(row) != std::string::npos);
 }
 

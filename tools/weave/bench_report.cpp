@@ -166,6 +166,31 @@ std::string way_row(const Json& structures, const std::string& fidelity, const W
            band(crimp, "%.3f") + " | " + band(thickness, "%.2f") + " | " + band(place, "%.3f") + " |\n";
 }
 
+double middle(std::vector<double> numbers) {
+    std::ranges::sort(numbers);
+    return numbers.empty() ? 0 : numbers[numbers.size() / 2];
+}
+
+/// What the finer of two fidelities costs and gains on the middle cloth.
+std::string step_words(const Json& structures, const char* coarse, const char* fine) {
+    std::vector<double> seconds, errors;
+    for (const Json& structure : structures) {
+        if (!is_measured(structure)) continue;
+        const auto error = [&](const char* fidelity, const char* start) {
+            const Json* run = run_of(structure, fidelity, "relax", start);
+            return run != nullptr ? error_at_goal(*run) : nullptr;
+        };
+        const Json *from = error(coarse, "plan"), *to = error(fine, "plan");
+        const Json *more = error(coarse, "reference"), *less = error(fine, "reference");
+        if (from == nullptr || to == nullptr || more == nullptr || less == nullptr) continue;
+        seconds.push_back(to->at("seconds").get<double>() / from->at("seconds").get<double>());
+        errors.push_back(crimp_error(*more) / crimp_error(*less));
+    }
+    return std::string("`") + fine + "` takes " + in_words("%.1f", middle(std::move(seconds))) +
+           " times as long as `" + coarse + "`, and its points err " +
+           in_words("%.1f", middle(std::move(errors))) + " times less";
+}
+
 std::string errors_summary(const Json& structures) {
     std::string text =
         "\n## How far each fidelity errs, all cloths together\n\n"
@@ -181,7 +206,8 @@ std::string errors_summary(const Json& structures) {
     for (const char* fidelity : fidelities) {
         for (const Way& way : ways) text += way_row(structures, fidelity, way);
     }
-    return text;
+    return text + "\nOn the middle cloth " + step_words(structures, "draft", "standard") + "; " +
+           step_words(structures, "standard", "reference") + ".\n";
 }
 
 /// Seconds from the plan to the goal, and the error of its points alone.

@@ -391,12 +391,12 @@ void add_resolutions(List& list) {
                        : Expected::told);
     for (const bool in_float : {true, false}) {
         Plain far;
-        far.origin_mm = 1e6;  // two cells a millimetre
+        far.origin_mm = 1e6;  // a repeat is a millimetre
         const SimScene scene = far.scene();
         const auto run = [=](const ExtremeLimits& limits) {
             return in_float ? relaxed<float>(scene, limits) : relaxed<double>(scene, limits);
         };
-        add(list, in_float ? "origin at 1e6 cells, float32" : "origin at 1e6 cells, double",
+        add(list, in_float ? "origin at 1e6 repeats, float32" : "origin at 1e6 repeats, double",
             in_float ? "a kilometre away a float is 0.06 mm from the next" : "the same place in double", run,
             in_float ? Expected::told : Expected::rest);
     }
