@@ -15,15 +15,15 @@ namespace {
 const char* const remembered_fidelity = "simulation/fidelity";
 const char* const remembered_draft_first = "simulation/draft_first";
 
-/// The seven measured structures that come to rest: Satin E, Twill G, layer to layer, angle interlock A and
-/// B, hexagon tubes, TL013 corrected. Seconds: docs/simulation/tradeoff.md, `relax` from the raw start, to
-/// the fidelity's own goal. Errors of draft and standard: docs/simulation/README.md, "Errors on the
-/// reference's branch"; of reference the rows `reference | relax | reference` there.
-QString seconds_source(const QString& points, const QString& goal) {
+/// Figures of the 18 cloths that come to rest in docs/tradeoff/tradeoff.md: the most seconds of "What each
+/// cloth costs", and the errors of "points alone", middle and most, of "How far each fidelity errs".
+QString figures_source(const QString& points, const QString& goal, const QString& errors) {
     return FidelityGroup::tr(
-               "Seconds: docs/simulation/tradeoff.md, solver relax from the plan to residual %2, seven "
-               "structures of %1 control points, one thread of a busy AMD EPYC of 2 cores.")
-        .arg(points, goal);
+               "Source: docs/tradeoff/tradeoff.md. Seconds: solver relax from the plan to residual %2, 18 "
+               "cloths of %1 control "
+               "points, the processor's of one thread, AMD EPYC.\nErrors of the points alone, the middle "
+               "cloth and the most: %3")
+        .arg(points, goal, errors);
 }
 
 }  // namespace
@@ -31,36 +31,37 @@ QString seconds_source(const QString& points, const QString& goal) {
 FidelityWords words_of(sim::Fidelity fidelity) {
     switch (fidelity) {
         case sim::Fidelity::draft:
-            return {
-                FidelityGroup::tr("Draft"),
-                FidelityGroup::tr(
-                    "For editing: 2 points a crossing, at rest within 0.01. Small structures took 0.1 to 2.4 "
-                    "s. Crimp is off by up to 0.4 points (1.7 on layer to layer), thickness by up to 13 %."),
-                seconds_source(FidelityGroup::tr("350 to 2,248"), QStringLiteral("0.01")) +
-                    QLatin1Char('\n') +
-                    FidelityGroup::tr(
-                        "Errors: docs/simulation/README.md, on the reference's branch: draft 0.43 percentage "
-                        "points of crimp, 1.7 on layer to layer, thickness 0.0 to 13 %.")};
+            return {FidelityGroup::tr("Draft"),
+                    FidelityGroup::tr("For editing: 2 points a crossing, at rest within 0.01. Small cloths "
+                                      "took up to 1.7 s. Crimp is off by 0.2 "
+                                      "points as a rule and 2.7 at most, thickness by up to 18 %."),
+                    figures_source(
+                        FidelityGroup::tr("16 to 2,248"), QStringLiteral("0.01"),
+                        FidelityGroup::tr(
+                            "0.193 and 2.693 percentage points of crimp (orthogonal), 1.79 and 18.06 % of "
+                            "thickness (stitched layers)."))};
         case sim::Fidelity::standard:
             return {FidelityGroup::tr("Standard"),
                     FidelityGroup::tr("For judging cloth: 4 points a crossing, at rest within 0.001. Small "
-                                      "structures took 0.2 to 3.1 s. Crimp is off by up to 0.1 points (0.5 "
-                                      "on layer to layer), thickness by up to 3.4 %."),
-                    seconds_source(FidelityGroup::tr("690 to 4,472"), QStringLiteral("0.001")) +
-                        QLatin1Char('\n') +
+                                      "cloths took up to 3.4 s. Crimp is off by "
+                                      "0.01 points as a rule and 0.8 at most, thickness by up to 2 %."),
+                    figures_source(
+                        FidelityGroup::tr("32 to 4,472"), QStringLiteral("0.001"),
                         FidelityGroup::tr(
-                            "Errors: docs/simulation/README.md, on the reference's branch: standard 0.08 "
-                            "percentage points of crimp, 0.46 on layer to layer, thickness 0.0 to 3.4 %.")};
+                            "0.013 and 0.822 percentage points of crimp (orthogonal), 0.11 and 1.96 % of "
+                            "thickness (layer to layer)."))};
         case sim::Fidelity::reference:
             break;
     }
-    return {FidelityGroup::tr("Reference"),
-            FidelityGroup::tr("For evidence: 8 points a crossing, at rest within 1e-8. Small structures took "
-                              "0.7 to 20 s. Crimp is off by up to 0.05 points, thickness by up to 0.3 %."),
-            seconds_source(FidelityGroup::tr("1,390 to 9,000"), QStringLiteral("1e-8")) + QLatin1Char('\n') +
-                FidelityGroup::tr(
-                    "Errors: docs/simulation/tradeoff.md, rows reference, relax, start reference: at most "
-                    "0.053 percentage points of crimp and 0.30 % of thickness (layer to layer).")};
+    return {
+        FidelityGroup::tr("Reference"),
+        FidelityGroup::tr("For evidence: 8 points a crossing, at rest within 1e-8. Small cloths took up to "
+                          "16 s. Crimp is off "
+                          "by up to 0.1 points, thickness by up to 0.3 %."),
+        figures_source(FidelityGroup::tr("64 to 9,000"), QStringLiteral("1e-8"),
+                       FidelityGroup::tr(
+                           "0.001 and 0.081 percentage points of crimp (plain, pinned), 0.01 and 0.24 % of "
+                           "thickness (orthogonal)."))};
 }
 
 FidelityGroup::FidelityGroup(QWidget* parent)
@@ -77,7 +78,7 @@ FidelityGroup::FidelityGroup(QWidget* parent)
     m_words->setWordWrap(true);
     m_draft_first->setToolTip(
         tr("Yarns are relaxed in few points first, so there is something to look at after 29 to 52 % of the "
-           "time; in all it takes 0.7 to 1.4 times the work.\nSource: docs/simulation/README.md, Starting in "
+           "time; in all it takes 0.7 to 1.4 times the work.\nSource: docs/simulation.md, Starting in "
            "fewer points."));
     auto* lines = new QVBoxLayout(this);
     lines->addWidget(m_choice);
@@ -100,7 +101,7 @@ sim::Fidelity FidelityGroup::fidelity() const {
 }
 
 /// A reference begins at standard where nothing else is said: sooner as a rule, and its rest is that of
-/// standard in finer points (docs/simulation).
+/// standard in finer points (docs/simulation.md).
 std::optional<sim::Fidelity> FidelityGroup::start_from() const {
     if (fidelity() == sim::Fidelity::draft) return {};
     if (m_draft_first->isChecked()) return sim::Fidelity::draft;

@@ -46,7 +46,7 @@ SceneGroup::SceneGroup(QWidget* parent)
            "an end catches it (wraparound)."));
     m_friction->name(tr("Friction"),
                      tr("Coefficient of friction between yarns (Coulomb): 0 is none; yarns are said to have "
-                        "0.2 to 0.5, which was measured here (docs/simulation, Friction). Range 0 to 1."));
+                        "0.2 to 0.5, which was measured here (docs/simulation.md, Friction). Range 0 to 1."));
     m_gravity->setToolTip(
         tr("Whether the yarns' own weight pulls them down. It is off as a rule: tension is far greater."));
     for (QWidget* box : {m_boundary_x, m_boundary_y, m_weft_mode})

@@ -1,7 +1,7 @@
 #pragma once
 
 // Samples on a device against the processor, from the same start near the same rest: cloth has many rests, and from its planned start
-// one rounding decides between them (docs/simulation).
+// one rounding decides between them (docs/simulation.md).
 
 #include "support/relaxed.hpp"
 
@@ -125,7 +125,7 @@ TEMPLATE_TEST_CASE("agreement: every sample of up to 100000 points that the proc
                              "angle-interlock-a", "angle-interlock-b", "orthogonal", "stitched-layers", "tl013-wrong", "tl013-corrected"}) {
         DYNAMIC_SECTION(name) { CHECK(device_tests::check_agreement<TestType>(name, 120)); }
     }
-    // Hexagon tubes have many rests within a hundredth of a radius (docs/simulation); the others do not come to rest in that time here.
+    // Hexagon tubes have many rests within a hundredth of a radius (docs/simulation.md); the others do not come to rest in that time here.
     for (const char* name : {"hexagon-tubes", "i-beam", "pocket", "three-colour-stencil", "shoe-baby"}) {
         DYNAMIC_SECTION(name) { device_tests::check_agreement<TestType>(name, 120); }
     }

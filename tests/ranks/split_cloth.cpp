@@ -172,7 +172,7 @@ TEST_CASE("any number of ranks comes to the same bits") {
 }
 
 TEST_CASE("near a rest of the whole the blocks come to that rest") {
-    // Hexagon tubes leave for a rest 0.04 radii away, as they do on a device (docs/simulation): they are not among these.
+    // Hexagon tubes leave for a rest 0.04 radii away, as they do on a device (docs/simulation.md): they are not among these.
     for (Case of : {Case{"satin-5", 50}, Case{"angle-interlock-b", 200}, Case{"orthogonal", 100}, Case{"twill-g", 100, true},
                            Case{"twill-g", 90, true, {}, Region{0, 4, 1, 6}}, Case{"satin-e", 60, true, {}, Region{0, 7, 0, 4}}}) {
         of.fidelity = sim::Fidelity::standard;

@@ -42,7 +42,7 @@ TEST_CASE("extremes have names of their own, and a bad end is told from a good o
     rest.report = "at rest";
     std::string why;
     const auto good = [&](Expected expected, const ExtremeEnd& end) {
-        return is_good({"", expected, false, {}}, end, why);
+        return is_good({"", "", expected, false, {}}, end, why);
     };
     CHECK(good(Expected::rest, rest));
     CHECK(good(Expected::told, rest));

@@ -1,16 +1,17 @@
 // Benchmarks of the simulator.
 
+#include "bench_savings.hpp"
 #include "bench_scale.hpp"
+#include "bench_stability.hpp"
 #include "bench_tradeoff.hpp"
 #include "command.hpp"
 #include "interrupt.hpp"
 
 #include <weave/core/file.hpp>
 #include <weave/core/text.hpp>
-#include <weave/sim/extremes.hpp>
-
 #include <algorithm>
 #include <filesystem>
+#include <functional>
 #include <map>
 
 namespace weave::program {
@@ -52,12 +53,27 @@ std::string tell_interrupted(CommandOutcome& outcome, Json& answer, std::size_t 
     return "\nINTERRUPTED: " + std::to_string(done) + " of " + counted(asked, what) + " done.\n";
 }
 
+/// The answer of a benchmark that is whole or nothing, and its two files in the folder, where one was named.
+Status finish(CommandOutcome& outcome, Json answer, std::string words, bool whole, const std::string& folder,
+              const std::string& name) {
+    if (whole && !folder.empty()) {
+        WEAVE_CHECK_OK(make_folder(folder));
+        WEAVE_CHECK_OK(write_file(fs::path(folder) / (name + ".json"), answer.dump(1) + "\n"));
+        WEAVE_CHECK_OK(write_file(fs::path(folder) / (name + ".md"), words));
+    }
+    if (!whole && !folder.empty()) words += "Nothing is written to " + on_one_line(folder) + ".\n";
+    outcome.answer(answer, words);
+    return {};
+}
+
 /// Table and plot are written anew after every structure, so that what was measured is there whatever comes.
 Status write_report(const std::string& folder, const Json& structures) {
     if (folder.empty() || structures.empty()) return {};
     WEAVE_CHECK_OK(write_file(fs::path(folder) / "tradeoff.md", tradeoff_table(structures)));
-    WEAVE_TRY(const std::string plot, tradeoff_plot(structures));
-    return write_file(fs::path(folder) / "tradeoff.svg", plot);
+    WEAVE_TRY(const std::string crimp, tradeoff_plot(structures, PlottedError::crimp));
+    WEAVE_CHECK_OK(write_file(fs::path(folder) / "tradeoff.svg", crimp));
+    WEAVE_TRY(const std::string thickness, tradeoff_plot(structures, PlottedError::thickness));
+    return write_file(fs::path(folder) / "tradeoff-thickness.svg", thickness);
 }
 
 /// Results as the table lists them.
@@ -104,8 +120,8 @@ Status run_tradeoff(CommandOutcome& outcome, const TradeoffWish& wish) {
     std::vector<std::string> asked;
     for (const std::string& name : structure_names()) {
         WEAVE_TRY(Json json, earlier(options.folder, name));
-        const bool named =
-            options.only.empty() || std::ranges::find(options.only, name) != options.only.end();
+        const bool named = options.only.empty() ? !is_whole_product(name)
+                                                : std::ranges::find(options.only, name) != options.only.end();
         if (named && !(wish.missing && !json.is_null())) asked.push_back(name);
         if (!json.is_null()) known[name] = std::move(json);
     }
@@ -142,15 +158,44 @@ Status run_scale(CommandOutcome& outcome, const ScaleWish& wish) {
     if (!whole)
         words += tell_interrupted(outcome, result, result.at("sizes").size(),
                                   result.at("asked_points").size(), "size");
-    if (whole && !wish.options.folder.empty()) {
-        WEAVE_CHECK_OK(make_folder(wish.options.folder));
-        WEAVE_CHECK_OK(write_file(fs::path(wish.options.folder) / "scale.json", result.dump(1) + "\n"));
-        WEAVE_CHECK_OK(write_file(fs::path(wish.options.folder) / "scale.md", words));
+    return finish(outcome, std::move(result), std::move(words), whole, wish.options.folder, "scale");
+}
+
+/// What one of a list of cases came to; `at` counts from 0.
+using MeasureOne = std::function<Result<Json>(std::size_t at)>;
+
+/// Measures one after the other, until interrupted.
+Result<Json> measure_each(std::size_t count, const MeasureOne& measure) {
+    Json measured = Json::array();
+    for (std::size_t k = 0; k < count && !interrupted(); ++k) {
+        Result<Json> one = measure(k);
+        if (!one && !interrupted()) return std::move(one).error();
+        if (one) measured.push_back(std::move(one).value());
     }
-    if (!whole && !wish.options.folder.empty())
-        words += "Nothing is written to " + on_one_line(wish.options.folder) + ".\n";
-    outcome.answer(result, words);
-    return {};
+    return measured;
+}
+
+/// A list of cases told and kept; findings where one has a `fault`.
+Status finish_cases(CommandOutcome& outcome, const BenchOptions& options, const Json& cases,
+                    std::size_t asked, const std::string& name, const std::string& what, std::string words) {
+    const auto bad = std::ranges::count_if(cases, [](const Json& one) { return one.at("fault") != ""; });
+    if (bad > 0) outcome.found_something();
+    Json answer{{"machine", machine_json(options.threads)}, {what + "s", cases}, {"bad", bad}};
+    const bool whole = cases.size() == asked;
+    if (!whole) words += tell_interrupted(outcome, answer, cases.size(), asked, what);
+    return finish(outcome, std::move(answer), std::move(words), whole, options.folder, name);
+}
+
+Status run_savings(CommandOutcome& outcome, const BenchOptions& options) {
+    const std::vector<std::string> asked = options.only.empty() ? saving_names() : options.only;
+    for (const std::string& name : asked) WEAVE_CHECK_OK(check_saving(name));
+    const HeldInterrupt held(what_follows_an_interrupt);
+    WEAVE_TRY(const Json savings, measure_each(asked.size(), [&](std::size_t k) {
+                  tell("savings: " + asked[k]);
+                  return measure_saving(asked[k], options);
+              }));
+    return finish_cases(outcome, options, savings, asked.size(), "savings", "saving",
+                        savings_table(savings, machine_json(options.threads)));
 }
 
 struct StabilityWish {
@@ -158,51 +203,17 @@ struct StabilityWish {
     bool with_long = false;
 };
 
-constexpr const char* expectations[]{"rest", "told", "no rest", "refused"};
-
-Json extreme_json(const sim::Extreme& extreme, const sim::ExtremeEnd& end, const std::string& why) {
-    return {{"name", extreme.name},
-            {"expected", expectations[static_cast<std::size_t>(extreme.expected)]},
-            {"good", why.empty()},
-            {"fault", why},
-            {"converged", end.converged},
-            {"refused", end.refused},
-            {"residual", end.residual},
-            {"overlap", end.overlap},
-            {"passed_through", end.passed_through},
-            {"points", end.points},
-            {"steps", end.iterations},
-            {"seconds", end.seconds},
-            {"report", end.report}};
-}
-
 Status run_stability(CommandOutcome& outcome, const StabilityWish& wish) {
-    Json cases = Json::array();
-    std::string table = "| Case | Must | Points | Steps | s | Ended |\n|---|---|---|---|---|---|\n";
-    std::size_t bad = 0;
     const HeldInterrupt held(
         "the case under way is the last; again to end at once, without a word on what was done");
     std::vector<sim::Extreme> asked = sim::extremes();
     if (!wish.with_long) std::erase_if(asked, [](const sim::Extreme& extreme) { return extreme.is_long; });
-    for (const sim::Extreme& extreme : asked) {
-        if (interrupted()) break;
-        tell("stability: " + extreme.name);
-        const sim::ExtremeEnd end =
-            extreme.run({.most_seconds = wish.options.seconds, .threads = wish.options.threads});
-        std::string why;
-        bad += sim::is_good(extreme, end, why) ? 0 : 1;
-        cases.push_back(extreme_json(extreme, end, why));
-        table += "| " + extreme.name + " | " + expectations[static_cast<std::size_t>(extreme.expected)] +
-                 " | " + std::to_string(end.points) + " | " + std::to_string(end.iterations) + " | " +
-                 in_words("%.2f", end.seconds) + " | " + end.report +
-                 (why.empty() ? "" : " **BAD: " + why + "**") + " |\n";
-    }
-    Json answer{{"machine", machine_json(wish.options.threads)}, {"cases", cases}, {"bad", bad}};
-    if (cases.size() < asked.size())
-        table += tell_interrupted(outcome, answer, cases.size(), asked.size(), "case");
-    outcome.answer(answer, table);
-    if (bad > 0) outcome.found_something();
-    return {};
+    WEAVE_TRY(const Json cases, measure_each(asked.size(), [&](std::size_t k) -> Result<Json> {
+                  tell("stability: " + asked[k].name);
+                  return measure_extreme(asked[k], wish.options);
+              }));
+    return finish_cases(outcome, wish.options, cases, asked.size(), "stability", "case",
+                        stability_table(cases, machine_json(wish.options.threads)));
 }
 
 void add_shared_options(CLI::App* command, BenchOptions& options, const std::string& seconds_help) {
@@ -210,7 +221,9 @@ void add_shared_options(CLI::App* command, BenchOptions& options, const std::str
         ->check(positive_number())
         ->capture_default_str()
         ->type_name("N");
-    add_threads(command, options.threads);
+    CLI::Option* threads = add_threads(command, options.threads);
+    threads->description(threads->get_description() +
+                         "; with 1 seconds are the processor's, so that what runs beside it hardly counts");
     command->footer(
         "Ctrl-C ends it (exit 1), says how much was done, and writes no table of less than that over a whole "
         "one; "
@@ -221,17 +234,18 @@ void add_shared_options(CLI::App* command, BenchOptions& options, const std::str
 void add_tradeoff(CLI::App& bench, CommandOutcome& outcome) {
     CLI::App* command = add_command(
         bench, outcome, "tradeoff",
-        "Speed against accuracy, every solver and fidelity: the eight structures of the paper's Table 1, and "
-        "plain-pinned, a plain weave of 8 by 8 pinned yarns on which other simulators were measured");
+        "Speed against accuracy, every solver and fidelity: every sample but the shoes, those of the paper's "
+        "Table 1 in about its numbers of points, and plain-pinned, a plain weave of 8 by 8 pinned yarns on "
+        "which other simulators were measured");
     const auto wish = std::make_shared<TradeoffWish>();
     command
         ->add_option("-o,--out", wish->options.folder,
-                     "a folder for tradeoff-NAME.json, tradeoff.md and tradeoff.svg; what it holds already "
-                     "of other structures goes into the table too")
+                     "a folder for tradeoff-NAME.json, tradeoff.md, tradeoff.svg (crimp) and "
+                     "tradeoff-thickness.svg; what it holds already of other structures goes into them too")
         ->type_name("FOLDER");
     command
         ->add_option("--only", wish->options.only,
-                     "only this structure (again for more), such as satin-e or plain-pinned")
+                     "only this sample (again for more), such as satin-e or shoe-baby, or plain-pinned")
         ->type_name("NAME");
     command->add_flag("--missing", wish->missing, "only structures of which the folder holds nothing");
     add_shared_options(command, wish->options, "cap of each run");
@@ -271,9 +285,26 @@ void add_stability(CLI::App& bench, CommandOutcome& outcome) {
         "The extremes: each ends at rest, or with a report of what and where (exit 1: one did not)");
     const auto wish = std::make_shared<StabilityWish>();
     wish->options.seconds = 30;
+    command->add_option("-o,--out", wish->options.folder, "a folder for stability.json and stability.md")
+        ->type_name("FOLDER");
     command->add_flag("--long", wish->with_long, "the cases too that take minutes or gigabytes");
     add_shared_options(command, wish->options, "cap of each case");
     on_run(command, outcome, [=, &outcome] { return run_stability(outcome, *wish); });
+}
+
+void add_savings(CLI::App& bench, CommandOutcome& outcome) {
+    CLI::App* command = add_command(bench, outcome, "savings",
+                                    "What a scene does not need is left out: each term kept and left out in "
+                                    "turns, what that saves, and how far "
+                                    "both results lie apart (exit 1: by more than a hundredth of a radius)");
+    const auto options = std::make_shared<BenchOptions>();
+    command->add_option("-o,--out", options->folder, "a folder for savings.json and savings.md")
+        ->type_name("FOLDER");
+    command
+        ->add_option("--only", options->only, "only this term (again for more), such as friction or repeat")
+        ->type_name("NAME");
+    add_shared_options(command, *options, "cap of each run");
+    on_run(command, outcome, [=, &outcome] { return run_savings(outcome, *options); });
 }
 
 }  // namespace
@@ -284,6 +315,7 @@ void add_bench_commands(CLI::App& app, CommandOutcome& outcome) {
     add_tradeoff(*bench, outcome);
     add_scale(*bench, outcome);
     add_stability(*bench, outcome);
+    add_savings(*bench, outcome);
 }
 
 }  // namespace weave::program

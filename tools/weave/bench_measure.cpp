@@ -11,6 +11,7 @@
 #include <algorithm>
 #include <cmath>
 #include <cstdio>
+#include <ctime>
 #include <fstream>
 #include <limits>
 #include <malloc.h>
@@ -31,58 +32,47 @@ std::string line_after(const char* file, const std::string& name) {
     return "";
 }
 
-double length_of(const Spline& spline) {
-    constexpr double places[]{0.0694318442029737, 0.3300094782075719, 0.6699905217924281, 0.9305681557970263};
-    constexpr double weights[]{0.1739274225687269, 0.3260725774312731, 0.3260725774312731,
-                               0.1739274225687269};
-    double length = 0;
-    for (std::size_t s = 0; s < spline.segments(); ++s) {
-        for (std::size_t g = 0; g < 4; ++g)
-            length += weights[g] * spline.tangent(static_cast<double>(s) + places[g]).norm();
-    }
-    return length;
-}
-
-/// Keeps the states of a run at the residuals that are told.
+/// Keeps the states of a run at the residuals that are told, and ends it after its time.
 class Looker {
   public:
-    Looker(sim::Energy<double>& energy, const std::vector<double>& state, Measured& measured)
-        : m_energy(energy), m_state(state), m_measured(measured) {}
+    Looker(sim::Energy<double>& energy, const std::vector<double>& state, const RunLimits& limits,
+           Measured& measured)
+        : m_energy(energy), m_state(state), m_limits(limits), m_measured(measured) {}
 
     bool operator()(const sim::Progress& progress) {
-        const double began = now();
         // Of the last residual there is no later step to find it by.
         if (progress.iteration >= m_next || progress.residual <= told_residuals.back()) look(progress);
-        m_away += now() - began;
-        return !interrupted();
+        return !interrupted() && seconds() < m_limits.seconds;
     }
+
+    /// So long without looking.
+    [[nodiscard]] double seconds() const { return seconds_now(m_limits.threads) - m_began - m_away; }
 
   private:
-    static double now() {
-        return std::chrono::duration<double>(std::chrono::steady_clock::now().time_since_epoch()).count();
-    }
-
     /// A residual by an older reference force is taken as a hint; what counts is that of this very state.
     void look(const sim::Progress& progress) {
         std::vector<Snapshot>& snapshots = m_measured.snapshots;
         if (snapshots.size() == told_residuals.size() || progress.residual > told_residuals[snapshots.size()])
             return;
+        const double at = seconds();
         m_energy.evaluate(m_state, m_gradient);
         const double force = sim::greatest_force(m_energy.executor(), m_gradient);
         const double reference = sim::reference_force(m_energy, m_state),
                      residual = reference > 0 ? force / reference : 0;
         while (snapshots.size() < told_residuals.size() && residual <= told_residuals[snapshots.size()])
-            snapshots.push_back({told_residuals[snapshots.size()], residual, progress.seconds - m_away,
-                                 progress.energy, progress.iteration, m_energy.fabric().control(m_state)});
+            snapshots.push_back({told_residuals[snapshots.size()], residual, at, progress.energy,
+                                 progress.iteration, m_energy.fabric().control(m_state)});
         m_next = progress.iteration + 1 + progress.iteration / 50;
+        m_away += seconds() - at;
     }
 
     sim::Energy<double>& m_energy;
     const std::vector<double>& m_state;
+    RunLimits m_limits;
     Measured& m_measured;
     std::vector<double> m_gradient;
     std::size_t m_next = 0;
-    double m_away = 0;
+    double m_began = seconds_now(m_limits.threads), m_away = 0;
 };
 
 struct Printed {
@@ -162,6 +152,19 @@ Json machine_json(std::size_t threads) {
             {"memory_GiB", std::round(gib)}};
 }
 
+std::string machine_line(const Json& machine) {
+    return "Machine: " + machine.at("processor").get<std::string>() + ", " +
+           std::to_string(machine.at("cores").get<std::size_t>()) + " cores, " +
+           std::to_string(machine.at("threads").get<std::size_t>()) + " threads, " +
+           in_words("%.0f", machine.at("memory_GiB")) + " GiB";
+}
+
+double seconds_now(std::size_t threads) {
+    timespec now{};
+    ::clock_gettime(threads == 1 ? CLOCK_PROCESS_CPUTIME_ID : CLOCK_MONOTONIC, &now);
+    return static_cast<double>(now.tv_sec) + 1e-9 * static_cast<double>(now.tv_nsec);
+}
+
 std::uint64_t peak_memory() {
     const std::string peak = line_after("/proc/self/status", "VmHWM");
     return peak.empty() ? 0 : std::stoull(peak) * 1024;
@@ -171,6 +174,18 @@ void reset_peak_memory() {
     ::malloc_trim(0);
     std::ofstream("/proc/self/clear_refs")
         << "5\n";  // where that is not allowed, the peak is that of the process
+}
+
+double length_of(const Spline& spline) {
+    constexpr double places[]{0.0694318442029737, 0.3300094782075719, 0.6699905217924281, 0.9305681557970263};
+    constexpr double weights[]{0.1739274225687269, 0.3260725774312731, 0.3260725774312731,
+                               0.1739274225687269};
+    double length = 0;
+    for (std::size_t s = 0; s < spline.segments(); ++s) {
+        for (std::size_t g = 0; g < 4; ++g)
+            length += weights[g] * spline.tangent(static_cast<double>(s) + places[g]).norm();
+    }
+    return length;
 }
 
 std::size_t points_of(const sim::SimScene& scene) {
@@ -266,14 +281,15 @@ Measured measure(const sim::Plan& plan, sim::Solver solver, const sim::PaperOpti
     const sim::Fabric<double> fabric(scene);
     sim::Energy<double> energy(fabric, executor);
     std::vector<double> state = fabric.state();
-    Looker looker(energy, state, measured);
+    Looker looker(energy, state, limits, measured);
     sim::RelaxOptions options;
     options.residual = limits.residual;
     options.most_iterations = std::numeric_limits<std::size_t>::max();
-    options.most_seconds = limits.seconds;
     options.watch = [&](const sim::Progress& progress) { return looker(progress); };
     measured.result = solver == sim::Solver::paper ? sim::relax_in_time(energy, state, options, paper)
                                                    : sim::relax(energy, state, options);
+    measured.result.seconds = looker.seconds();
+    if (measured.result.ending == sim::Ending::stopped) measured.result.ending = sim::Ending::time;
     measured.control = fabric.control(state);
     measured.points = fabric.points();
     measured.samples = fabric.samples();
@@ -305,25 +321,31 @@ Control resampled_to(const sim::SimScene& scene, const sim::SimScene& from, cons
 
 std::vector<std::string> structure_names() {
     std::vector<std::string> names;
-    for (const Printed& printed : table_1) names.emplace_back(printed.name);
+    for (const Sample& sample : samples()) names.push_back(sample.name);
     names.emplace_back(pinned_plain);
     return names;
 }
 
+bool is_whole_product(const std::string& name) {
+    return name.rfind("shoe-", 0) == 0;
+}
+
 Result<Structure> make_structure(const std::string& name) {
     Structure structure;
-    const auto* printed = std::ranges::find_if(table_1, [&](const Printed& one) { return one.name == name; });
     if (name == pinned_plain) {
         structure = make_pinned_plain();
-    } else if (printed != std::end(table_1)) {
+    } else if (const Sample* sample = find_sample(name); sample != nullptr) {
         structure.name = name;
-        structure.design = find_sample(name)->make();
-        structure.paper_points = printed->points;
-        structure.paper_seconds = printed->seconds;
+        structure.design = sample->make();
     } else {
         std::string names;
         for (const std::string& one : structure_names()) names += (names.empty() ? "" : ", ") + one;
         return Error{ErrorCode::usage, "there is no structure '" + name + "'; there are " + names, "--only"};
+    }
+    const auto* printed = std::ranges::find_if(table_1, [&](const Printed& one) { return one.name == name; });
+    if (printed != std::end(table_1)) {
+        structure.paper_points = printed->points;
+        structure.paper_seconds = printed->seconds;
     }
     WEAVE_TRY(const Evaluation evaluation, evaluate(structure.design));
     structure.block = evaluation.block;

@@ -22,10 +22,19 @@ inline constexpr std::array<double, 5> told_residuals{1e-1, 1e-2, 1e-3, 1e-5, 1e
 
 /// Processor, cores, memory, and the threads that are used.
 Json machine_json(std::size_t threads);
+/// The same in words.
+std::string machine_line(const Json& machine);
+
+/// Seconds from anywhere: the processor's where one thread computes, so that what runs beside it hardly
+/// counts; else the clock's on the wall.
+double seconds_now(std::size_t threads);
 
 /// The greatest memory of the process since reset_peak_memory(), in bytes; 0 where the system does not say.
 std::uint64_t peak_memory();
 void reset_peak_memory();
+
+/// Length of a centreline, mm.
+double length_of(const Spline& spline);
 
 /// Control points of every yarn.
 using Control = std::vector<std::vector<Vec3>>;
@@ -72,7 +81,8 @@ struct Measured {
 };
 
 /// Relaxes a plan, from its own start or another, and looks on: at each of told_residuals the state is kept,
-/// its residual measured anew with the reference force of that very state. Looking is not counted as time.
+/// its residual measured anew with the reference force of that very state. Looking is not counted as time;
+/// seconds, and their limit, are those of seconds_now().
 Measured measure(const sim::Plan& plan, sim::Solver solver, const sim::PaperOptions& paper,
                  const RunLimits& limits, const Control* start = nullptr);
 
@@ -92,10 +102,12 @@ struct Structure {
     double points_per_key = 4;            ///< of `standard`
 };
 
-/// The eight structures of the paper's Table 1, and a plain weave of pinned yarns.
+/// Every sample, and a plain weave of pinned yarns.
 std::vector<std::string> structure_names();
-/// One of them, tiled and with points for each crossing so that `standard` has about the paper's number of
-/// points.
+/// The shoes: a hundred thousand points and more, measured only where they are asked for by name.
+bool is_whole_product(const std::string& name);
+/// One of them. Those of the paper's Table 1 are tiled and have points for each crossing so that `standard`
+/// has about the paper's number of points; the others are their smallest repeat in the usual points.
 Result<Structure> make_structure(const std::string& name);
 
 /// Options of `weave bench` that all its parts have.

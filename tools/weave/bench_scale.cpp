@@ -138,13 +138,9 @@ Result<Json> measure_scale(const BenchOptions& options, const ScaleOptions& scal
 }
 
 std::string scale_table(const Json& result) {
-    const Json& machine = result.at("machine");
-    std::string text = "# How time and memory grow\n\nWritten by `weave bench scale`. Machine: " +
-                       machine.at("processor").get<std::string>() + ", " +
-                       std::to_string(machine.at("cores").get<std::size_t>()) + " cores, " +
-                       std::to_string(machine.at("threads").get<std::size_t>()) + " threads. " +
-                       result.at("structure").get<std::string>() + ", `relax` to " +
-                       in_words("%.0e", result.at("goal")) + ".\n\n" +
+    std::string text = "# How time and memory grow\n\nWritten by `weave bench scale`. " +
+                       machine_line(result.at("machine")) + ". " + result.at("structure").get<std::string>() +
+                       ", `relax` to " + in_words("%.0e", result.at("goal")) + ".\n\n" +
                        "| Points | At rest | s | µs a point | Steps | CG steps | Evaluations | Memory, MB | "
                        "Bytes a point | Lost |\n"
                        "|---|---|---|---|---|---|---|---|---|---|\n";

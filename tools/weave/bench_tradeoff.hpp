@@ -5,11 +5,22 @@
 namespace weave::program {
 
 /// Everything that is measured of one structure. Nothing is thrown away when a run ends at its cap: what was
-/// not reached is null, and ratios then are lower bounds. An error where it was interrupted (held by the caller).
+/// not reached is null, and ratios then are lower bounds. An error where it was interrupted (held by the
+/// caller).
 Result<Json> measure_tradeoff(const Structure& structure, const BenchOptions& options);
 
-/// The results of several structures as a table (Markdown) and as a plot of error against time (SVG).
+inline constexpr const char* fidelities[]{"draft", "standard", "reference"};
+/// Whether the reference of a structure came to rest, so that errors against it say something.
+bool is_measured(const Json& structure);
+/// The errors of a run where it reached its goal; else null.
+const Json* error_at_goal(const Json& run);
+/// The greater of both crimp errors, percentage points.
+double crimp_error(const Json& error);
+
+/// The results of several structures as tables (Markdown).
 std::string tradeoff_table(const Json& structures);
-Result<std::string> tradeoff_plot(const Json& structures);
+enum class PlottedError : std::uint8_t { crimp, thickness };
+/// Error against seconds, a panel a structure (SVG).
+Result<std::string> tradeoff_plot(const Json& structures, PlottedError plotted);
 
 }  // namespace weave::program

@@ -54,7 +54,7 @@ Result<sim::Plan> plan_of(const Design& design, const Block& block, const sim::S
 Status check_flips_within(const sim::Plan& plan, const std::vector<Flip>& flips);
 
 /// Which fidelity's points a run begins in; empty: its own. `reference` refines the rest that `standard` comes to, so that the
-/// two can be compared, and is there sooner as a rule (docs/simulation).
+/// two can be compared, and is there sooner as a rule (docs/simulation.md).
 std::string first_points(const SimulateWish& wish);
 
 }  // namespace weave::program

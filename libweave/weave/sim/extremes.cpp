@@ -2,6 +2,7 @@
 
 #include <weave/block/operations.hpp>
 #include <weave/design/evaluate.hpp>
+#include <weave/sim/friction_rounds.hpp>
 #include <weave/sim/linking.hpp>
 #include <weave/sim/order.hpp>
 #include <weave/sim/paper.hpp>
@@ -197,6 +198,14 @@ std::string passed_words(const Linking& before, const Linking& after) {
     return "";
 }
 
+/// In rounds where there is friction; that is not computed in float.
+RelaxResult rested(Energy<double>& energy, std::vector<double>& state, const RelaxOptions& options) {
+    return relax_with_friction(energy, state, options).last;
+}
+RelaxResult rested(Energy<float>& energy, std::vector<float>& state, const RelaxOptions& options) {
+    return relax(energy, state, options);
+}
+
 /// Relaxes a scene and says what became of it. `control` receives the last state.
 template <class Real>
 ExtremeEnd relaxed(const SimScene& scene, const ExtremeLimits& limits, const Way& way = {},
@@ -211,7 +220,7 @@ ExtremeEnd relaxed(const SimScene& scene, const ExtremeLimits& limits, const Way
     options.most_iterations = limits.most_iterations * (way.in_time ? 3 : 1);
     options.most_seconds = limits.most_seconds;
     const RelaxResult result =
-        way.in_time ? relax_in_time(energy, state, options, way.paper) : relax(energy, state, options);
+        way.in_time ? relax_in_time(energy, state, options, way.paper) : rested(energy, state, options);
     const double value = energy.evaluate(state, gradient);
     ExtremeEnd end;
     end.converged = result.ending == Ending::converged;
@@ -258,9 +267,9 @@ std::function<ExtremeEnd(const ExtremeLimits&)> jump_case(const Plain& plain,
 
 using List = std::vector<Extreme>;
 
-void add(List& list, std::string name, std::function<ExtremeEnd(const ExtremeLimits&)> run,
+void add(List& list, std::string name, std::string about, std::function<ExtremeEnd(const ExtremeLimits&)> run,
          Expected expected = Expected::rest) {
-    list.push_back({std::move(name), expected, false, std::move(run)});
+    list.push_back({std::move(name), std::move(about), expected, false, std::move(run)});
 }
 
 void add_ratios(List& list) {
@@ -270,24 +279,25 @@ void add_ratios(List& list) {
     thin.weft.bending_N_mm2 *= 1e-8;  // and to the fourth power
     SimScene thin_scene = thin.scene();
     thin_scene.sample_spacing = 0.45;  // thin yarns have many samples
-    add(list, "radius ratio 1:100", scene_case(std::move(thin_scene)));
+    add(list, "radius ratio 1:100", "ends of 0.12 mm, picks of 0.0012 mm, as stiff as such yarns are", scene_case(std::move(thin_scene)));
     Plain stretch, bending, contact;
     stretch.warp.stretch_N *= 1e3, stretch.weft.stretch_N *= 1e-3;
     bending.warp.bending_N_mm2 *= 1e3, bending.weft.bending_N_mm2 *= 1e-3;
     contact.warp.contact_N_mm2 *= 1e3, contact.weft.contact_N_mm2 *= 1e-3;
-    add(list, "EA ratio 1e6", scene_case(stretch.scene()));
-    add(list, "EI ratio 1e6", scene_case(bending.scene()));
-    add(list, "k ratio 1e6", scene_case(contact.scene()));
+    add(list, "EA ratio 1e6", "ends a million times as hard to stretch as picks", scene_case(stretch.scene()));
+    add(list, "EI ratio 1e6", "ends a million times as hard to bend", scene_case(bending.scene()));
+    add(list, "k ratio 1e6", "ends a million times as hard to press", scene_case(contact.scene()));
 }
 
 void add_strains(List& list) {
     for (const double strain : {1.0, 1 + 1e-6, 1.5}) {
         Plain plain;
         plain.warp.strain = strain;
-        add(list, words("S = %.7g", strain), scene_case(plain.scene()));
+        add(list, words("S = %.7g", strain),
+            strain == 1 ? "ends without tension" : words("ends pulled to %.7g of their length", strain), scene_case(plain.scene()));
     }
     add(
-        list, "S = 0.999999",
+        list, "S = 0.999999", "ends that would be pushed",
         [](const ExtremeLimits&) {
             Design design = plain_design();
             design.scene.warp.strain = 1 - 1e-6;
@@ -302,41 +312,48 @@ void add_strains(List& list) {
 
 void add_jumps(List& list) {
     for (const double factor : {0.5, 1.5})
-        add(list, words("live jump: radius × %g", factor),
+        add(list, words("live jump: radius × %g", factor), "at rest, then every radius changes at once",
             jump_case({}, [=](SimYarn& yarn) { yarn.radius_mm *= factor; }));
     for (const double factor : {1e-3, 1e3}) {
-        add(list, words("live jump: EA and EI × %g", factor), jump_case({}, [=](SimYarn& yarn) {
+        add(list, words("live jump: EA and EI × %g", factor), "at rest, then every yarn's stiffness changes at once",
+            jump_case({}, [=](SimYarn& yarn) {
                 yarn.stretch_N *= factor;
                 yarn.bending_N_mm2 *= factor;
             }));
-        add(list, words("live jump: k × %g", factor),
+        add(list, words("live jump: k × %g", factor), "at rest, then contact changes at once",
             jump_case({}, [=](SimYarn& yarn) { yarn.contact_N_mm2 *= factor; }));
     }
-    for (const double strain : {1.0, 1.5})
-        add(list, words("live jump: S to %g", strain),
+    for (const double strain : {1.0, 1.5, 2.0})
+        add(list, words("live jump: S to %g", strain), "at rest under S = 1.02, then ends are fed otherwise at once",
             jump_case({}, [=](SimYarn& yarn) { yarn.strain = strain; }));
 }
 
 void add_degenerate_places(List& list) {
-    add(list, "near-parallel, 1e-7 rad", scene_case(two_yarns(1e-7, Vec3(0, 0, 0.1))));
-    add(list, "parallel, side by side", scene_case(two_yarns(0, Vec3(0, 0.1, 0))));
-    add(list, "collinear, one after the other", scene_case(two_yarns(0, Vec3(1.9, 0, 0))), Expected::told);
-    add(list, "coincident centrelines", scene_case(two_yarns(0, Vec3(0, 0, 0))), Expected::told);
-    add(list, "centrelines that meet", scene_case(two_yarns(1, Vec3(0, 0, 0))), Expected::told);
-    const auto spoilt = [&](const std::string& name, const std::function<void(std::vector<Vec3>&)>& spoil) {
+    add(list, "near-parallel, 1e-7 rad", "two yarns all but along one another, sunk into one another",
+        scene_case(two_yarns(1e-7, Vec3(0, 0, 0.1))));
+    add(list, "parallel, side by side", "two yarns sunk into one another all along", scene_case(two_yarns(0, Vec3(0, 0.1, 0))));
+    add(list, "collinear, one after the other", "the end of one yarn in the beginning of the next, on one line",
+        scene_case(two_yarns(0, Vec3(1.9, 0, 0))), Expected::told);
+    add(list, "coincident centrelines", "two yarns in one place", scene_case(two_yarns(0, Vec3(0, 0, 0))), Expected::told);
+    add(list, "centrelines that meet", "two yarns through one another at a point", scene_case(two_yarns(1, Vec3(0, 0, 0))),
+        Expected::told);
+    const auto spoilt = [&](const std::string& name, const std::string& about,
+                            const std::function<void(std::vector<Vec3>&)>& spoil) {
         SimScene scene = Plain().scene();
         for (SimYarn& yarn : scene.yarns) spoil(yarn.control);
-        add(list, name, scene_case(scene));
+        add(list, name, about, scene_case(scene));
     };
-    spoilt("duplicate points", [](std::vector<Vec3>& control) { control[3] = control[2]; });
-    spoilt("a segment of no length",
+    spoilt("duplicate points", "a control point of each yarn on the one before it",
+           [](std::vector<Vec3>& control) { control[3] = control[2]; });
+    spoilt("a segment of no length", "four control points of each yarn in one place",
            [](std::vector<Vec3>& control) { control[5] = control[4] = control[3] = control[2]; });
-    spoilt("a reversed segment", [](std::vector<Vec3>& control) { std::swap(control[2], control[3]); });
+    spoilt("a reversed segment", "two control points of each yarn in the wrong order",
+           [](std::vector<Vec3>& control) { std::swap(control[2], control[3]); });
     SimScene point;
     point.yarns = {laid(usual_yarn(), {0, 0, 0}, {0, 0, 0}, 4, false)};
     point.yarns[0].is_fed = false;
     point.yarns[0].rest_mm = 1;
-    add(list, "a whole yarn in one place", scene_case(point), Expected::told);
+    add(list, "a whole yarn in one place", "a yarn of 1 mm whose points all lie on one another", scene_case(point), Expected::told);
 }
 
 void add_periods(List& list) {
@@ -347,24 +364,26 @@ void add_periods(List& list) {
     narrow.yarns[0].turns = {1, 0};
     for (std::size_t i = 0; i < 8; ++i)
         narrow.yarns[0].control[i].z() = 0.02 * std::sin(2.0 * static_cast<double>(i));
-    add(list, "period below 2D: a yarn in its own images", scene_case(narrow), Expected::told);
+    add(list, "period below 2D: a yarn in its own images", "a yarn of 0.24 mm that repeats every 0.1 mm beside itself",
+        scene_case(narrow), Expected::told);
     SimScene beside = narrow;
     beside.period_mm = {1.2, 0.22};
-    add(list, "a yarn meeting its own image", scene_case(beside));
+    add(list, "a yarn meeting its own image", "the same every 0.22 mm", scene_case(beside));
     Plain tight;
     tight.pitch_mm = 0.2;
-    add(list, "plain weave with a pitch below its diameter", scene_case(tight.scene()), Expected::told);
+    add(list, "plain weave with a pitch below its diameter", "yarns of 0.24 mm every 0.2 mm", scene_case(tight.scene()),
+        Expected::told);
 }
 
 void add_resolutions(List& list) {
     Plain fine;
     fine.points_a_crossing = 64;
-    add(list, "radius 15 times the segments", scene_case(fine.scene()));
+    add(list, "radius 15 times the segments", "64 control points a crossing", scene_case(fine.scene()));
     Plain coarse;
     coarse.points_a_crossing = 1;
-    add(list, "one point a crossing", scene_case(coarse.scene()), Expected::told);
+    add(list, "one point a crossing", "as few control points as a weave can have", scene_case(coarse.scene()), Expected::told);
     for (const double step : {0.9, 1.0, 1.1})
-        add(list, words("paper: step %.1f of the stability limit", step),
+        add(list, words("paper: step %.1f of the stability limit", step), "the solver paper, in time",
             scene_case(Plain().scene(),
                        {.goal = 1e-3, .in_time = true, .paper = {.step = step, .damping = 0.01}}),
             step < 1   ? Expected::rest
@@ -372,14 +391,36 @@ void add_resolutions(List& list) {
                        : Expected::told);
     for (const bool in_float : {true, false}) {
         Plain far;
-        far.origin_mm = 1e6;  // two cells a millimetre
+        far.origin_mm = 1e6;  // a repeat is a millimetre
         const SimScene scene = far.scene();
         const auto run = [=](const ExtremeLimits& limits) {
             return in_float ? relaxed<float>(scene, limits) : relaxed<double>(scene, limits);
         };
-        add(list, in_float ? "origin at 1e6 cells, float32" : "origin at 1e6 cells, double", run,
+        add(list, in_float ? "origin at 1e6 repeats, float32" : "origin at 1e6 repeats, double",
+            in_float ? "a kilometre away a float is 0.06 mm from the next" : "the same place in double", run,
             in_float ? Expected::told : Expected::rest);
     }
+}
+
+void add_loads(List& list) {
+    for (const double friction : {1e-6, 1.0, 100.0}) {
+        SimScene scene = Plain().scene();
+        scene.friction = friction;
+        add(list, words("friction %g", friction),
+            friction < 1   ? "hardly any"
+            : friction > 1 ? "the most that a scene may ask for: nothing slips"
+                           : "rougher than any yarn",
+            scene_case(std::move(scene)), friction > 1 ? Expected::told : Expected::rest);
+    }
+    for (const double strength : {1e4, -1e4}) {
+        SimScene scene = Plain().scene();
+        scene.fields = {{{0.3, 0.3, 0}, 0.4, strength}};
+        add(list, words("field of %g N/mm", strength), strength > 0 ? "a sphere in the cloth bursts" : "a sphere draws all yarns into a point",
+            scene_case(std::move(scene)), Expected::told);
+    }
+    SimScene heavy = Plain().scene();
+    heavy.gravity_mm_ms2 = 1e3;
+    add(list, "gravity of 1e5 g", "nothing holds a periodic cloth up", scene_case(std::move(heavy)), Expected::told);
 }
 
 /// A tiled plain weave of about so many points.
@@ -420,13 +461,13 @@ ExtremeEnd large_cloth(const ExtremeLimits& limits, double points) {
 }
 
 void add_sizes(List& list) {
-    add(list, "empty scene", scene_case({}));
+    add(list, "empty scene", "no yarn at all", scene_case({}));
     SimScene one;
     one.yarns = {laid(usual_yarn(), {0, 0, 0}, {2, 0, 0}, 9, false)};
     one.yarns[0].is_fed = false;
     for (std::size_t i = 0; i < 9; ++i) one.yarns[0].control[i].z() = 0.1 * std::sin(static_cast<double>(i));
-    add(list, "one yarn", scene_case(one));
-    list.push_back({"one million points", Expected::told, true,
+    add(list, "one yarn", "a crooked yarn alone", scene_case(one));
+    list.push_back({"one million points", "plain weave side by side, not reduced", Expected::told, true,
                     [](const ExtremeLimits& limits) { return large_cloth(limits, 1e6); }});
 }
 
@@ -440,6 +481,7 @@ std::vector<Extreme> extremes() {
     add_degenerate_places(list);
     add_periods(list);
     add_resolutions(list);
+    add_loads(list);
     add_sizes(list);
     return list;
 }

@@ -40,6 +40,7 @@ enum class Expected : std::uint8_t {
 
 struct Extreme {
     std::string name;
+    std::string about;  ///< what it is, in words
     Expected expected = Expected::rest;
     bool is_long = false;  ///< takes minutes, or gigabytes
     std::function<ExtremeEnd(const ExtremeLimits&)> run;

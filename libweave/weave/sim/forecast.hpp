@@ -12,7 +12,7 @@ namespace weave::sim {
 std::size_t points_of(const Plan& plan);
 
 /// Memory that a cloth of so many control points is expected to take while it relaxes, bytes. Measured:
-/// 980,000 points took 5.7 kB each at their most (docs/simulation), 115,200 of a plain weave 4.6 kB, small ones some
+/// 980,000 points took 5.7 kB each at their most (docs/simulation.md), 115,200 of a plain weave 4.6 kB, small ones some
 /// 30 MiB in all; but 56,249 and 333,711 points of parts of the shoe, whose many layers begin close together, 11 to
 /// 13.6 kB.
 std::uint64_t expected_bytes(std::size_t points);
