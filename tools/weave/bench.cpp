@@ -296,7 +296,7 @@ void add_savings(CLI::App& bench, CommandOutcome& outcome) {
     CLI::App* command = add_command(bench, outcome, "savings",
                                     "What a scene does not need is left out: each term kept and left out in "
                                     "turns, what that saves, and how far "
-                                    "both results lie apart (exit 1: by more than a hundredth of a radius)");
+                                    "both results lie apart (exit 1: by more than a tenth of a radius)");
     const auto options = std::make_shared<BenchOptions>();
     command->add_option("-o,--out", options->folder, "a folder for savings.json and savings.md")
         ->type_name("FOLDER");

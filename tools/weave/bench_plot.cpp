@@ -138,12 +138,8 @@ std::string not_reached(const Json& structure) {
 void draw_structure(Canvas& canvas, const Panel& panel, const Json& structure, PlottedError plotted) {
     canvas.text({panel.x + left, panel.y + 16}, structure.at("name").get<std::string>(),
                 {.size = 12, .bold = true});
-    const bool measured = is_measured(structure);
-    canvas.text({panel.x + left, panel.y + 30},
-                measured ? not_reached(structure) : "its reference does not come to rest",
-                {.size = 9.5, .colour = faint});
+    canvas.text({panel.x + left, panel.y + 30}, not_reached(structure), {.size = 9.5, .colour = faint});
     draw_axes(canvas, panel);
-    if (!measured) return;
     for (const char* solver : {"paper", "relax"}) draw_solver(canvas, panel, structure, solver, plotted);
 }
 
@@ -175,16 +171,19 @@ void draw_key(Canvas& canvas, const Panel& panel, PlottedError plotted) {
 }  // namespace
 
 Result<std::string> tradeoff_plot(const Json& structures, PlottedError plotted) {
-    const std::size_t panels = structures.size() + 1, rows = (panels + panels_a_row - 1) / panels_a_row;
+    std::vector<const Json*> drawn;  // of the others there is no error to draw
+    for (const Json& structure : structures) {
+        if (is_measured(structure)) drawn.push_back(&structure);
+    }
+    const std::size_t panels = drawn.size() + 1, rows = (panels + panels_a_row - 1) / panels_a_row;
     WEAVE_TRY(Canvas canvas, Canvas::make(PictureFormat::svg, panels_a_row * panel_width,
                                           static_cast<double>(rows) * panel_height));
     const auto place = [](std::size_t k) {
         return Panel{static_cast<double>(k % panels_a_row) * panel_width,
                      static_cast<double>(k / panels_a_row) * panel_height};
     };
-    for (std::size_t k = 0; k < structures.size(); ++k)
-        draw_structure(canvas, place(k), structures.at(k), plotted);
-    draw_key(canvas, place(structures.size()), plotted);
+    for (std::size_t k = 0; k < drawn.size(); ++k) draw_structure(canvas, place(k), *drawn[k], plotted);
+    draw_key(canvas, place(drawn.size()), plotted);
     return std::move(canvas).finish();
 }
 

@@ -20,7 +20,7 @@ double crimp_error(const Json& error);
 /// The results of several structures as tables (Markdown).
 std::string tradeoff_table(const Json& structures);
 enum class PlottedError : std::uint8_t { crimp, thickness };
-/// Error against seconds, a panel a structure (SVG).
+/// Error against seconds, a panel a structure whose reference came to rest (SVG).
 Result<std::string> tradeoff_plot(const Json& structures, PlottedError plotted);
 
 }  // namespace weave::program
