@@ -2,6 +2,24 @@
 
 #include <loomlink/commands/command.hpp>
 
+namespace {
+
+/// Help lists commands by who needs them, as README.md does.
+void by_person(CLI::App& app) {
+    const std::pair<const char*, std::vector<const char*>> people[]{
+        {"A site, on its own machine", {"init", "serve", "verify", "backup", "restore", "migrate-store"}},
+        {"Who you are", {"login", "logout", "me", "token"}},
+        {"Administrators, and for everybody to join", {"user", "policy", "trust", "signer"}},
+        {"Designers", {"design", "save", "check", "submit", "comment", "faults"}},
+        {"Approvers", {"approve", "request-changes", "waive", "release", "sign", "withdraw"}},
+        {"At the loom", {"loom", "pull", "verify-files"}},
+        {"Engineers", {"export", "diff", "log", "audit", "key", "evidence"}}};
+    for (const auto& [who, names] : people)
+        for (const char* name : names) app.get_subcommand(name)->group(who);
+}
+
+}  // namespace
+
 int main(int count, char** words) {
     weave::CommandOutcome outcome("loomlink", weave::JsonLayout::on_one_line);
     CLI::App app("Keeps designs, their approval and their release to looms.\n", "loomlink");
@@ -15,5 +33,6 @@ int main(int count, char** words) {
                            weave::loomlink::add_pull_command, weave::loomlink::add_verify_files_command,
                            weave::loomlink::add_log_commands, weave::loomlink::add_upkeep_commands, weave::loomlink::add_migrate_store_command})
         add(app, outcome);
+    by_person(app);
     return weave::run_program(app, outcome, count, words);
 }

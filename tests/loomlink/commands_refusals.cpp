@@ -78,6 +78,7 @@ TEST_CASE("every command explains itself with an example or in words", "[command
     const TemporaryFolder folder;
     const Ended all = Running({"--help"}, folder.path).wait();
     CHECK(all.code == 0);
+    CHECK_THAT(all.out, Catch::Contains("\nAt the loom:\n") && !Catch::Contains("\nCommands:\n"));  // each has its people
     for (const char* command :
          {"init",   "serve",    "login",   "logout",          "me",           "user",    "loom",
           "key",    "submit",   "comment", "request-changes", "waive",        "approve", "release",
