@@ -20,7 +20,7 @@ Status list_designs(wire::MillClient& client, CommandOutcome& outcome) {
         lines.push_back({told(design, "name"), told(newest, "number"), told(newest, "state"),
                          told(newest, "at"), told(newest, "author"), told(newest, "message")});
     }
-    outcome.answer(answer, in_columns(lines));
+    outcome.answer(answer, as_list(in_columns(lines)));
     return {};
 }
 

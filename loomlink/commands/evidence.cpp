@@ -82,7 +82,7 @@ Status list_evidence(wire::MillClient& client, const RevisionPlace& place, Comma
     WEAVE_TRY(const Json revision, client.get(place.path()));
     const Json answer{{"evidence", entries(revision, "evidence")}};
     outcome.answer(answer,
-                   in_columns(answer, "evidence", {"kind", "covers", "result", "signer", "at", "stale"}));
+                   as_list(in_columns(answer, "evidence", {"kind", "covers", "result", "signer", "at", "stale"})));
     return {};
 }
 

@@ -56,7 +56,7 @@ Status tell_log(wire::MillClient& client, const LogWords& words, CommandOutcome&
     WEAVE_TRY(const auto found, records(client, words));
     std::vector<std::vector<std::string>> lines;
     for (const Json& record : found) lines.push_back(log_cells(record));
-    outcome.answer({{"events", found}}, in_columns(lines));
+    outcome.answer({{"events", found}}, as_list(in_columns(lines)));
     return {};
 }
 

@@ -18,7 +18,7 @@ Status list_looms(wire::MillClient& client, CommandOutcome& outcome) {
     for (const Json& loom : entries(answer, "looms"))
         lines.push_back({told(loom, "name"), told(loom, "profile_name"), told(loom, "released") + " released",
                          told(loom, "loaded").empty() ? "" : "loaded: " + told(loom, "loaded")});
-    outcome.answer(answer, in_columns(lines));
+    outcome.answer(answer, as_list(in_columns(lines)));
     return {};
 }
 
@@ -84,7 +84,7 @@ Status list_faults(wire::MillClient& client, const std::string& loom, CommandOut
         lines.push_back({told(fault, "at"), "release " + told(fault, "release"), place("pick"), place("end"),
                          told(fault, "by"), told(fault, "text")});
     }
-    outcome.answer(answer, in_columns(lines));
+    outcome.answer(answer, as_list(in_columns(lines)));
     return {};
 }
 

@@ -73,7 +73,7 @@ void add_signer_commands(CLI::App& app, CommandOutcome& outcome) {
         for (const Json& one : entries(answer, "signers"))
             lines.push_back({told(one, "name"), told(one, "key").substr(0, 16),
                              told(one, "revoked") == "true" ? "revoked" : ""});
-        outcome.answer(answer, in_columns(lines));
+        outcome.answer(answer, as_list(in_columns(lines)));
         return {};
     });
     const auto name = std::make_shared<std::string>();

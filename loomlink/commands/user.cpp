@@ -37,7 +37,7 @@ Status list_people(wire::MillClient& client, CommandOutcome& outcome) {
     for (const Json& person : entries(answer, "people"))
         lines.push_back({told(person, "name"), told(person, "full_name"), told(person, "roles"),
                          told(person, "active") == "true" ? "" : "may not sign in"});
-    outcome.answer(answer, in_columns(lines));
+    outcome.answer(answer, as_list(in_columns(lines)));
     return {};
 }
 

@@ -60,4 +60,8 @@ std::string in_columns(const Json& json, const std::string& list, const std::vec
     return in_columns(lines);
 }
 
+std::string as_list(const std::string& lines) {
+    return lines.empty() ? "none\n" : lines;
+}
+
 }  // namespace weave::loomlink

@@ -20,4 +20,7 @@ std::string in_columns(const std::vector<std::vector<std::string>>& lines);
 /// The entries of a list as lines of these members.
 std::string in_columns(const Json& json, const std::string& list, const std::vector<std::string>& members);
 
+/// What a person who asked for a list sees of it: that there is nothing, where there is nothing.
+std::string as_list(const std::string& lines);
+
 }  // namespace weave::loomlink

@@ -47,7 +47,7 @@ TEST_CASE("a call that makes no sense ends with 2 and says what is missing", "[c
         {{"user", "disable", ".."}, "'..' is no name"},
         {{"signer", "revoke", "../x"}, "'../x' is no name"},
         {{"log", "--design", "a/b"}, "'a/b' is no name"},
-        {{"serve", ""}, "folder: must not be empty"},
+        {{"serve", ""}, "FOLDER: must not be empty"},
     };
     for (const Call& call : calls) {
         const Ended ended = Running(call.words, folder.path).wait();
@@ -90,6 +90,17 @@ TEST_CASE("every command explains itself with an example or in words", "[command
         const Ended one = Running({command, "--help"}, folder.path).wait();
         CHECK(one.code == 0);
         CHECK_THAT(one.out, Catch::Contains("Exit status"));
+    }
+}
+
+TEST_CASE("a list of nothing says so", "[commands]") {
+    CommandMill mill;
+    mill.first_joins();
+    for (const char* list : {"loom", "signer"}) {
+        INFO(list);
+        const Ended ended = mill.run({list, "list", "--session", mill.at("mary")});
+        CHECK(ended.code == 0);
+        CHECK(ended.out == "none\n");
     }
 }
 
