@@ -34,15 +34,15 @@ stop_box() { # [SIGNAL]
     box_server=
 }
 
-# Waits until the box has a checkpoint of its first job, or whoever waits for that job has gone.
-wait_for_checkpoint() { # PID
+# Waits until the box has a checkpoint of its first job.
+wait_for_checkpoint() { # PID of who waits for that job
     local tries
     for tries in {1..2400}; do
         [ ! -f "$made/box/jobs/1/checkpoint" ] || return 0
-        kill -0 "$1" 2> /dev/null || return 0
+        kill -0 "$1" 2> /dev/null || break
         sleep 0.05
     done
-    echo "simd has written no checkpoint" >&2
+    { cat "$scratch/answer" "$scratch/progress"; echo "== FAILED: simd has written no checkpoint of the job"; } >&2
     return 5
 }
 
@@ -56,5 +56,6 @@ simulate_and_kill() { # COMMAND...
     stop_box -KILL
     serve_box
     wait $job || { cat "$scratch/progress" "$scratch/box/log" >&2; return 5; }
-    { grep -E 'trying again|connected again' "$scratch/progress" || true; cat "$scratch/answer"; } > "$scratch/said"
+    grep -E 'trying again|connected again' "$scratch/progress" > "$scratch/said" || { echo "== FAILED: nobody noticed that simd was killed" >&2; return 5; }
+    cat "$scratch/answer" >> "$scratch/said"
 }

@@ -88,7 +88,7 @@ relaxing() {
     set_up_box
     serve_box
     around_the_flaw
-    text "What does that float do in real cloth? Dora has the part round it relaxed on <code>simd</code>, which knows her by a token of the mill. \
+    text "How does the cloth lie there? Dora has the part round the float relaxed on <code>simd</code>, which knows her by a token of the mill. \
 Once her job has a first checkpoint the daemon is killed, as by a fault of the machine, and started again; the job goes on from there, and her command waits."
     local command=(weave simulate ginkgo.weave --region "$part" --residual 1e-4 -o part.yarns --on "$box_place" --fingerprint "$box_fingerprint")
     simulate_and_kill "${command[@]}"
@@ -96,13 +96,12 @@ Once her job has a first checkpoint the daemon is killed, as by a fault of the m
     text "The daemon that was killed (SIGKILL) was process $box_killed; the first lines are what Dora’s command noticed of it."
     say "   $(grep -m 1 'at rest' "$scratch/said")"
     tell dora 0 weave inspect part.yarns
-    local row_mm
     row_mm=$(place_mm "$scratch/said")
     pictures two
     draw part.yarns 3d part-top "The part at rest, from above. The long gold weft in the middle, with nothing over it, is pick $pick." big --side top --size 1400x1200
     draw part.yarns 3d part-corner "The same from a corner: the leaf ends at the lower right" big --side corner --size 1400x1200
     draw part.yarns 3d part-contact "How hard the yarns press on one another" "" --side top --colour contact
-    draw part.yarns 3d part-cut "Cut at pick $pick: gold above, blue below" "" --side front --cut "x=$row_mm"
+    draw part.yarns 3d part-cut "Cut at pick $pick: gold above, blue below" wide --size 1600x420 --side front --cut "x=$row_mm"
     pictures_end
 }
 
@@ -120,8 +119,13 @@ into the design as well."
     tell dora 0 weave simulate ginkgo.weave --region "$part" --resume part.yarns --flip "$pick,$end" --save-design mended.weave -o mended.yarns
     pictures two
     figure part-top.png "Before" big
-    draw mended.yarns 3d mended-top "After: end $end holds the weft down" big --side top --size 1400x1200
+    draw mended.yarns 3d mended-top "After: in the middle of the float end $end holds the weft down" big --side top --size 1400x1200
     pictures_end
+    pictures
+    figure part-cut.png "Before: the cloth cut at pick $pick" wide
+    draw mended.yarns 3d mended-cut "After: the gold weft dips under end $end" wide --size 1600x420 --side front --cut "x=$row_mm"
+    pictures_end
+    tell dora 0 weave inspect mended.yarns
     tell dora 1 weave diff ginkgo.weave mended.weave -o difference.png
     tell dora 0 weave check mended.weave --loom tc2.json
     ! long_float "$scratch/said" > /dev/null || { echo "== FAILED: the float is still there" >&2; return 5; }
@@ -138,8 +142,8 @@ into the design as well."
 
 approval() {
     chapter "Submitted with signed evidence, approved by another person"
-    text "The mill asks for a simulation of exactly what is released, signed by a machine that it knows. Dora has the mended cloth relaxed there once more, and gets \
-the signature with the yarns."
+    text "The mill asks for a simulation of this very design, signed by a machine that it knows; how much of the cloth it has to cover is the mill’s to say, and this one \
+takes a part. Dora has the part round the mended place relaxed there once more, and gets the signature with the yarns."
     tell dora 0 weave simulate mended.weave --region "$part" -o proof.yarns --on "$box_place" --fingerprint "$box_fingerprint" --evidence proof.evidence
     stop_box
     rm -rf "$made/box"

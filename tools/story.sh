@@ -11,7 +11,7 @@ h1{font-size:2.1rem;line-height:1.2;font-weight:600;color:var(--blue);margin:0}h
 h2 b{color:var(--gold);font-weight:600;margin-right:.6rem}p{max-width:44rem;margin:.7rem 0}.lead{font-size:1.1rem;color:var(--soft)}a{color:var(--blue)}code{font-size:.9em}
 pre{font:13px/1.5 "DejaVu Sans Mono",monospace;white-space:pre-wrap;overflow-wrap:anywhere;margin:0;padding:.75rem 1rem}pre:empty{display:none}
 .run{margin:1.1rem 0;border:1px solid var(--line);border-radius:6px;overflow:hidden;background:#fff}.run .command{background:var(--blue);color:#fff}.run .command i{color:#f0c66b;font-style:normal}
-.run.refused{border-color:var(--bad)}.run .status{color:var(--bad);padding-top:0}details{border-top:1px solid var(--line)}summary{cursor:pointer;padding:.4rem 1rem;font-size:.85rem;color:var(--soft)}
+.run.refused{border-color:var(--bad)}.run .status{color:var(--soft);padding-top:0}.run.refused .status{color:var(--bad)}details{border-top:1px solid var(--line)}summary{cursor:pointer;padding:.4rem 1rem;font-size:.85rem;color:var(--soft)}
 section{display:grid;grid-template-columns:repeat(auto-fill,minmax(300px,1fr));gap:1.1rem;margin:1.4rem 0}figure{margin:0;background:#fff;border:1px solid var(--line);border-radius:6px;padding:.8rem;min-width:0}
 figure.wide{grid-column:1/-1}img{display:block;width:100%;height:270px;object-fit:contain}figure.big img{height:430px}figure.true img{width:auto;max-width:100%;height:auto;margin:auto}section.two{grid-template-columns:repeat(auto-fit,minmax(420px,1fr))}
 figure.strip{overflow:hidden}figure.strip img{width:auto;max-width:none;height:230px}figure.drawn img{image-rendering:pixelated}figcaption{font-size:.88rem;line-height:1.45;color:var(--soft);margin-top:.6rem}
