@@ -31,10 +31,12 @@ def turn(at, bit):
 
 
 def expect(statuses, words, place):
+    """Status 1 is for what was found, 3 for what cannot be read, and each comes with its words: no crash counts as found."""
     command = ["tools/read_release", BAD, "--trust", BAD_TRUST, "--fingerprint", *sys.argv[4:]]
     done = subprocess.run(command, capture_output=True, text=True, check=False)
     said = done.stdout + done.stderr
-    if done.returncode not in statuses or words not in said:
+    told = {0: "all the same", 1: "WRONG  ", 3: "read_release: "}.get(done.returncode)
+    if done.returncode not in statuses or words not in said or told not in said or "Traceback" in said:
         sys.exit(f"{place}: ended with {done.returncode}, or does not say '{words}':\n{said}")
 
 
@@ -58,7 +60,8 @@ def main():
     for _ in range(CASES):
         path, at, bit = chance.choice(files), chance.randrange(2**30), chance.randrange(8)
         damage(path, turn(at, bit))
-        expect([1, 3], "", f"seed {seed}: {path.name}, byte {at}, bit {bit}")
+        may = [1, 3] if path.suffix == ".json" else [1]
+        expect(may, path.name, f"seed {seed}: {path.name}, byte {at}, bit {bit}")
 
 
 main()
