@@ -27,9 +27,10 @@ fig1() {
     pictures
     picture three-colour-stencil.weave face fig1-face "The face as it is drawn"
     picture fig1-whole.yarns 3d fig1-whole "All of it, relaxed in draft" --side top --size 540x540
-    picture fig1-before.yarns 3d fig1-before "A petal as it was drawn" --side top --size 520x420
-    picture fig1-after.yarns 3d fig1-after "After two flips at its left edge" --side top --size 520x420
+    picture fig1-before.yarns 3d fig1-before "The tip of a petal as it was drawn, from pick 81 on" --side top --cut 20,0,0:-1,0,0 --size 640x420
+    picture fig1-after.yarns 3d fig1-after "After two flips at its left edge: picks 86 and 92 lie over ends 42 and 44" --side top --cut 20,0,0:-1,0,0 --size 640x420
     done_with_pictures
+    measured fig1 apart fig1-before.yarns fig1-after.yarns
 }
 
 fig3() {
@@ -252,8 +253,8 @@ fig19() {
 }
 
 # What the paper's text claims of a cloth, measured on its yarns.
-measured() { # NAME WHAT FILE [ARGUMENT...]
-    python3 tools/paper_measures "$2" "$made/$3" "${@:4}" > "$made/$1-$2.txt"
+measured() { # NAME WHAT [FILE or ARGUMENT...]
+    (cd "$made" && python3 "$OLDPWD/tools/paper_measures" "${@:2}") > "$made/$1-$2.txt"
     printf '<pre>tools/paper_measures %s\n%s</pre>\n' "${*:2}" "$(in_html < "$made/$1-$2.txt")" >> "$page"
 }
 
