@@ -202,7 +202,7 @@ TEST_CASE("a node that is cut off from all others loses its job to another and d
     check_same_yarns(yarns_of(follower, job), wanted);
     wire::Follower another = box.follower();
     CHECK(end_of(another, job).report == ended.report);
-    CHECK(until([&] { return std::filesystem::is_empty(cluster.shared() / "jobs"); }, 20s));
+    CHECK(until([&] { return std::filesystem::is_empty(cluster.shared() / "jobs"); }));
 }
 
 TEST_CASE("a disk that is full on one node is told with the node and the job goes to another") {
