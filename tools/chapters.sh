@@ -96,19 +96,19 @@ Once her job has a first checkpoint the daemon is killed, as by a fault of the m
     text "The daemon that was killed (SIGKILL) was process $box_killed; the first lines are what Dora’s command noticed of it."
     say "   $(grep -m 1 'at rest' "$scratch/said")"
     tell dora 0 weave inspect part.yarns
-    row_mm=$(place_mm "$scratch/said")
+    place=$(place_of_pick part.yarns "$pick")
     pictures two
     draw part.yarns 3d part-top "The part at rest, from above. The long gold weft in the middle, with nothing over it, is pick $pick." big --side top --size 1400x1200
     draw part.yarns 3d part-corner "The same from a corner: the leaf ends at the lower right" big --side corner --size 1400x1200
-    draw part.yarns 3d part-contact "How hard the yarns press on one another" "" --side top --colour contact
-    draw part.yarns 3d part-cut "Cut at pick $pick: gold above, blue below" wide --size 1600x420 --side front --cut "x=$row_mm"
+    draw part.yarns 3d part-contact "How hard the yarns press on one another" wide --side top --colour contact
+    draw part.yarns 3d part-cut "Cut along pick $pick: between the ends that hold it the gold weft arches up and lies loose" wide --size 1600x420 --side front --cut "x=$place"
     pictures_end
 }
 
-# Where the middle row of the relaxed part lies, in mm along the warp.
-place_mm() { # FILE
-    sed -nE 's/.*\(rows ([0-9]+) to ([0-9]+) of .*\), ([0-9.]+) mm along the ends.*/\1 \2 \3/p' "$1" |
-        awk '{ rows = $2 - $1 + 1; printf "%.2f", ($1 - 1 + rows / 2 - 0.5) * $3 / rows }'
+# Where a pick of relaxed cloth lies on average, in mm along the ends.
+place_of_pick() { # YARNS PICK
+    "$weave" export-yarns "$made/$1" -o "$scratch/yarns.obj" > /dev/null
+    awk -v yarn="pick_$2" '/^g / { here = $2 == yarn } here && /^v / { sum += $3; n++ } END { printf "%.2f", sum / n }' "$scratch/yarns.obj"
 }
 
 mending() {
@@ -122,8 +122,8 @@ into the design as well."
     draw mended.yarns 3d mended-top "After: in the middle of the float end $end holds the weft down" big --side top --size 1400x1200
     pictures_end
     pictures
-    figure part-cut.png "Before: the cloth cut at pick $pick" wide
-    draw mended.yarns 3d mended-cut "After: the gold weft dips under end $end" wide --size 1600x420 --side front --cut "x=$row_mm"
+    figure part-cut.png "Before: the cloth cut along pick $pick" wide
+    draw mended.yarns 3d mended-cut "After: the gold weft dips under end $end" wide --size 1600x420 --side front --cut "x=$place"
     pictures_end
     tell dora 0 weave inspect mended.yarns
     tell dora 1 weave diff ginkgo.weave mended.weave -o difference.png
@@ -217,7 +217,7 @@ recall() {
 a copy that somebody kept is refused."
     tell abel 0 loomlink withdraw 'EP 1' 1 --reason "The wrong gold yarn on feeder 1" --password-file mill-password
     tell otto 0 loomlink pull 'EP 1' --to at-the-ep
-    say "   $(head -n 2 "$scratch/said" | tr '\n' ';')"
+    say "   $(head -n 2 "$scratch/said" | paste -sd ';' | sed 's/;/; /')"
     tell otto 4 loomlink verify-files kept-by-otto --loom 'EP 1'
     tell otto 0 loomlink loom show TC2
 }
