@@ -88,6 +88,8 @@ def ep(data, manifest, path, faults, selvedge):
         odd += sum(bit for place, bit in enumerate(function) if place not in places)
     if odd:
         faults(path, f"hooks that carry no end, or function bits of no feeder, do otherwise than they should, {odd} times")
+    elif hooks["selvedge"] and selvedge:
+        print(f"{path}: its {len(hooks_in(hooks['selvedge']))} selvedge hooks rise as the loom's profile says")
     if hooks["selvedge"] and not selvedge:
         print(f"{path}: its {len(hooks_in(hooks['selvedge']))} selvedge hooks were not looked at: --loom tells their weave")
     return card, feeders

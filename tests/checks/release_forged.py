@@ -117,11 +117,12 @@ def documents():
 def what_is_compared():
     forge()
     expect(0, "all the same", "nothing changed", *HELD)
+    expect(0, "168 selvedge hooks rise as", "the selvedge", *HELD)
     expect(0, "cannot be seen from the files", "the word about recalls", *HELD)
     expect(0, "all the same", "fingerprint in capitals", *HELD, fingerprint=f" {FINGERPRINT.upper()} ")
     expect(1, "is not the trust document", "another fingerprint", fingerprint="0" * 64, never="signed by")
     forge(keep())
-    expect(3, "no card in any file", "no files", never="the same")
+    expect(3, "no card in any file", "no files", never="all the same")
     forge(keep("pick-table-csv"))
     expect(3, "no card in any file", "the pick table alone", *HELD, never="all the same")
     forge(keep("wif", "pick-table-csv"))
