@@ -28,6 +28,7 @@ def bits(data, count, least_first):
 
 
 MOST_HOOKS = 65536
+MOST_CROSSINGS = 1 << 28  # of a card; some bytes each in memory
 
 
 def hooks_in(ranges):
@@ -157,6 +158,7 @@ def pixels_of_png(data):
     expect(colour in (0, 3) and depth <= 8 and not interlaced, "is no plain picture of grey levels or a palette")
     row = (width * depth + 7) // 8
     whole = height * (row + 1)
+    expect(width * height <= MOST_CROSSINGS, "is larger than this program holds")
     raw = zlib.decompressobj().decompress(parts[b"IDAT"], whole + 1) if whole else b""
     expect(len(raw) == whole and whole > 0, f"has not the pixels of {width} x {height}")
     rows = unfiltered(raw, height, row)
@@ -169,7 +171,7 @@ def pixels_of_png(data):
     return [[is_black[pixel(line, x)] for x in range(width)] for line in reversed(rows)]
 
 
-def wif(data, *_):
+def wif(data, manifest, *_):
     """Threading and lift plan of a WIF with a rising shed: the shafts of a pick lift the ends that are threaded on them."""
     sections, name = {}, ""
     for line in data.decode().splitlines():
@@ -179,6 +181,7 @@ def wif(data, *_):
             key, value = line.split("=", 1)
             sections.setdefault(name, {})[key.strip().upper()] = value.strip()
     ends, picks = int(sections["WARP"]["THREADS"]), int(sections["WEFT"]["THREADS"])
+    expect((picks, ends) == (manifest["picks"], manifest["ends"]), f"has {picks} picks and {ends} ends, signed were {manifest['picks']} and {manifest['ends']}")
     shafts = [int(sections["THREADING"][str(end + 1)]) for end in range(ends)]
     card = []
     for pick in range(picks):
