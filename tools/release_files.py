@@ -28,6 +28,7 @@ def bits(data, count, least_first):
 
 
 MOST_HOOKS = 65536
+MOST_CROSSINGS = 1 << 28  # of a card; some bytes each in memory
 
 
 def hooks_in(ranges):
@@ -88,6 +89,8 @@ def ep(data, manifest, path, faults, selvedge):
         odd += sum(bit for place, bit in enumerate(function) if place not in places)
     if odd:
         faults(path, f"hooks that carry no end, or function bits of no feeder, do otherwise than they should, {odd} times")
+    elif hooks["selvedge"] and selvedge:
+        print(f"{path}: its {len(hooks_in(hooks['selvedge']))} selvedge hooks rise as the loom's profile says")
     if hooks["selvedge"] and not selvedge:
         print(f"{path}: its {len(hooks_in(hooks['selvedge']))} selvedge hooks were not looked at: --loom tells their weave")
     return card, feeders
@@ -155,6 +158,7 @@ def pixels_of_png(data):
     expect(colour in (0, 3) and depth <= 8 and not interlaced, "is no plain picture of grey levels or a palette")
     row = (width * depth + 7) // 8
     whole = height * (row + 1)
+    expect(width * height <= MOST_CROSSINGS, "is larger than this program holds")
     raw = zlib.decompressobj().decompress(parts[b"IDAT"], whole + 1) if whole else b""
     expect(len(raw) == whole and whole > 0, f"has not the pixels of {width} x {height}")
     rows = unfiltered(raw, height, row)
@@ -167,7 +171,7 @@ def pixels_of_png(data):
     return [[is_black[pixel(line, x)] for x in range(width)] for line in reversed(rows)]
 
 
-def wif(data, *_):
+def wif(data, manifest, *_):
     """Threading and lift plan of a WIF with a rising shed: the shafts of a pick lift the ends that are threaded on them."""
     sections, name = {}, ""
     for line in data.decode().splitlines():
@@ -177,6 +181,7 @@ def wif(data, *_):
             key, value = line.split("=", 1)
             sections.setdefault(name, {})[key.strip().upper()] = value.strip()
     ends, picks = int(sections["WARP"]["THREADS"]), int(sections["WEFT"]["THREADS"])
+    expect((picks, ends) == (manifest["picks"], manifest["ends"]), f"has {picks} picks and {ends} ends, signed were {manifest['picks']} and {manifest['ends']}")
     shafts = [int(sections["THREADING"][str(end + 1)]) for end in range(ends)]
     card = []
     for pick in range(picks):

@@ -95,6 +95,8 @@ def documents():
             ("body.files is no list", {"files": {}}), ("body.reading", {"reading": []}), ("body.card_sha256", {"card_sha256": "A" * 64})):
         forge(lambda body, change=change: body.update(change))
         expect(3, words, f"manifest with {change}")
+    forge(lambda body: body.update(picks=10**9, ends=10**9))
+    expect(3, "larger than this program holds", "a cloth without end")
     for name in ("../x.ep", "CON.ep", ".x", "x.", "manifest.json"):
         forge(lambda body, name=name: body["files"][0].update(path=name))
         expect(3, "body.files[0].path", f"file with the name {name}")
@@ -117,11 +119,12 @@ def documents():
 def what_is_compared():
     forge()
     expect(0, "all the same", "nothing changed", *HELD)
+    expect(0, "168 selvedge hooks rise as", "the selvedge", *HELD)
     expect(0, "cannot be seen from the files", "the word about recalls", *HELD)
     expect(0, "all the same", "fingerprint in capitals", *HELD, fingerprint=f" {FINGERPRINT.upper()} ")
     expect(1, "is not the trust document", "another fingerprint", fingerprint="0" * 64, never="signed by")
     forge(keep())
-    expect(3, "no card in any file", "no files", never="the same")
+    expect(3, "no card in any file", "no files", never="all the same")
     forge(keep("pick-table-csv"))
     expect(3, "no card in any file", "the pick table alone", *HELD, never="all the same")
     forge(keep("wif", "pick-table-csv"))
@@ -190,7 +193,13 @@ def given():
     for option in ("--card", "--design", "--loom"):
         expect(3, SCRATCH.name, f"a folder for {option}", option, SCRATCH)
         expect(3, "No such file", f"nothing for {option}", option, SCRATCH / "nowhere")
-    GIVEN.write_bytes(canonical(json.loads(PROFILE.read_bytes()) | {"notes": ""}))
+    profile = json.loads(PROFILE.read_bytes())
+    for change in ({"feeders": profile["feeders"] | {"count": 10**12}}, {"hooks": profile["hooks"] | {"areas": [{"name": "hooks", "hooks": 10**12}]}}):
+        GIVEN.write_bytes(canonical(profile | change))
+        forge(lambda body: body["profile"].update(sha256=hashlib.sha256(GIVEN.read_bytes()).hexdigest()))
+        expect(3, f"{GIVEN.name}: has more hooks or feeders", "a loom without end", "--loom", GIVEN)
+    forge()
+    GIVEN.write_bytes(canonical(profile | {"notes": ""}))
     expect(1, "is not the profile", "another profile", "--loom", GIVEN)
 
 
