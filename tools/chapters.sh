@@ -186,8 +186,8 @@ independent_reader() {
 bit by bit, and compares it with the card of Dora’s design and the order of her wefts."
     tell edda 0 weave card mended.weave -o card.png
     local folder reading=(--trust trust.json --fingerprint "$mill_trust" --card card.png --design mended.weave)
-    for folder in "$for_tc2" "$for_ep"; do
-        tell edda 0 read_release "$folder" "${reading[@]}"
+    for folder in "$for_tc2 tc2.json" "$for_ep ep-2688.json"; do
+        tell edda 0 read_release "${folder% *}" "${reading[@]}" --loom "${folder##* }"
         say "   $(tail -n 1 "$scratch/said")"
     done
     local file
