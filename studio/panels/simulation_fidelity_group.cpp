@@ -15,13 +15,13 @@ namespace {
 const char* const remembered_fidelity = "simulation/fidelity";
 const char* const remembered_draft_first = "simulation/draft_first";
 
-/// Figures of the 18 cloths that come to rest in docs/tradeoff/tradeoff.md: the most seconds of "What each
-/// cloth costs", and the errors of "points alone", middle and most, of "How far each fidelity errs".
+/// Figures of the 18 cloths that come to rest in docs/tradeoff.md: the most seconds, and errors, middle and most, as a user gets
+/// them; of a reference, which begins at the rest of standard, those of its points alone.
 QString figures_source(const QString& points, const QString& goal, const QString& errors) {
     return FidelityGroup::tr(
-               "Source: docs/tradeoff/tradeoff.md. Seconds: solver relax from the plan to residual %2, 18 "
+               "Source: docs/tradeoff.md. Seconds: solver relax from the plan to residual %2, 18 "
                "cloths of %1 control "
-               "points, the processor's of one thread, AMD EPYC.\nErrors of the points alone, the middle "
+               "points, the processor's of one thread, AMD EPYC.\nErrors, the middle "
                "cloth and the most: %3")
         .arg(points, goal, errors);
 }
@@ -34,22 +34,22 @@ FidelityWords words_of(sim::Fidelity fidelity) {
             return {FidelityGroup::tr("Draft"),
                     FidelityGroup::tr("For editing: 2 points a crossing, at rest within 0.01. Small cloths "
                                       "took up to 1.7 s. Crimp is off by 0.2 "
-                                      "points as a rule and 2.7 at most, thickness by up to 18 %."),
+                                      "points as a rule and 7 at most, thickness by up to 20 %."),
                     figures_source(
                         FidelityGroup::tr("16 to 2,248"), QStringLiteral("0.01"),
                         FidelityGroup::tr(
-                            "0.193 and 2.693 percentage points of crimp (orthogonal), 1.79 and 18.06 % of "
-                            "thickness (stitched layers)."))};
+                            "0.18 and 7.017 percentage points of crimp (orthogonal), 1.32 and 19.8 % of "
+                            "thickness (angle interlock A), where another rest is found too."))};
         case sim::Fidelity::standard:
             return {FidelityGroup::tr("Standard"),
                     FidelityGroup::tr("For judging cloth: 4 points a crossing, at rest within 0.001. Small "
                                       "cloths took up to 3.4 s. Crimp is off by "
-                                      "0.01 points as a rule and 0.8 at most, thickness by up to 2 %."),
+                                      "0.03 points as a rule and 1.4 at most, thickness by up to 9 %."),
                     figures_source(
                         FidelityGroup::tr("32 to 4,472"), QStringLiteral("0.001"),
                         FidelityGroup::tr(
-                            "0.013 and 0.822 percentage points of crimp (orthogonal), 0.11 and 1.96 % of "
-                            "thickness (layer to layer)."))};
+                            "0.03 and 1.438 percentage points of crimp (orthogonal), 0.18 and 9.0 % of "
+                            "thickness (layer to layer), where another rest is found too."))};
         case sim::Fidelity::reference:
             break;
     }
@@ -57,11 +57,11 @@ FidelityWords words_of(sim::Fidelity fidelity) {
         FidelityGroup::tr("Reference"),
         FidelityGroup::tr("For evidence: 8 points a crossing, at rest within 1e-8. Small cloths took up to "
                           "16 s. Crimp is off "
-                          "by up to 0.1 points, thickness by up to 0.3 %."),
+                          "by up to 0.1 points, thickness by up to 0.3 %, from the rest that standard came to."),
         figures_source(FidelityGroup::tr("64 to 9,000"), QStringLiteral("1e-8"),
                        FidelityGroup::tr(
                            "0.001 and 0.081 percentage points of crimp (plain, pinned), 0.01 and 0.24 % of "
-                           "thickness (orthogonal)."))};
+                           "thickness (orthogonal), of the points alone."))};
 }
 
 FidelityGroup::FidelityGroup(QWidget* parent)
