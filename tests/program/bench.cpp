@@ -250,6 +250,19 @@ TEST_CASE("bench tells what it does not know") {
     CHECK(shop.must({"bench", "scale", "--help"}).out.find("Ctrl-C") != std::string::npos);
 }
 
+TEST_CASE("a place that no benchmark can write to is told before anything is measured") {
+    const Workshop shop;
+    shop.put("taken", "a file");
+    for (const char* part : {"tradeoff", "scale", "stability", "savings"}) {
+        const Ended ended = shop.run({"bench", part, "-o", "taken/inside"});
+        INFO(part << ": " << ended.err);
+        CHECK(ended.exit == 5);
+        CHECK(ended.out.empty());
+        CHECK(ended.err.find("taken/inside: ") != std::string::npos);
+        CHECK(ended.err.find(part + std::string(": ")) == std::string::npos);  // as what is being measured is told
+    }
+}
+
 TEST_CASE("simulate takes the paper's solver, and knows no other") {
     const Workshop shop;
     shop.must({"samples", "plain", "-o", "d.weave"});

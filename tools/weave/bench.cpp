@@ -31,6 +31,14 @@ Status make_folder(const std::string& folder) {
     return {};
 }
 
+/// A place that nothing can be written to is told before anything is measured.
+Status make_place(const std::string& folder, const std::string& name) {
+    if (folder.empty()) return {};
+    WEAVE_CHECK_OK(make_folder(folder));
+    for (const char* ending : {".json", ".md"}) WEAVE_CHECK_OK(check_writable(fs::path(folder) / (name + ending)));
+    return {};
+}
+
 /// What the folder holds of earlier runs; null where there is nothing.
 Result<Json> earlier(const std::string& folder, const std::string& name) {
     const std::string file = file_of(folder, name);
@@ -57,7 +65,6 @@ std::string tell_interrupted(CommandOutcome& outcome, Json& answer, std::size_t 
 Status finish(CommandOutcome& outcome, Json answer, std::string words, bool whole, const std::string& folder,
               const std::string& name) {
     if (whole && !folder.empty()) {
-        WEAVE_CHECK_OK(make_folder(folder));
         WEAVE_CHECK_OK(write_file(fs::path(folder) / (name + ".json"), answer.dump(1) + "\n"));
         WEAVE_CHECK_OK(write_file(fs::path(folder) / (name + ".md"), words));
     }
@@ -115,7 +122,7 @@ Status run_tradeoff(CommandOutcome& outcome, const TradeoffWish& wish) {
     }
     if (wish.missing && options.folder.empty())
         return Error{ErrorCode::usage, "of what? Name the folder: -o FOLDER", "--missing"};
-    if (!options.folder.empty()) WEAVE_CHECK_OK(make_folder(options.folder));
+    WEAVE_CHECK_OK(make_place(options.folder, "tradeoff"));
     std::map<std::string, Json> known;
     std::vector<std::string> asked;
     for (const std::string& name : structure_names()) {
@@ -151,6 +158,7 @@ Status check_sizes(const ScaleOptions& scale) {
 
 Status run_scale(CommandOutcome& outcome, const ScaleWish& wish) {
     WEAVE_CHECK_OK(check_sizes(wish.scale));
+    WEAVE_CHECK_OK(make_place(wish.options.folder, "scale"));
     const HeldInterrupt held(what_follows_an_interrupt);
     WEAVE_TRY(Json result, measure_scale(wish.options, wish.scale));
     std::string words = scale_table(result);
@@ -187,8 +195,12 @@ Status finish_cases(CommandOutcome& outcome, const BenchOptions& options, const 
 }
 
 Status run_savings(CommandOutcome& outcome, const BenchOptions& options) {
-    const std::vector<std::string> asked = options.only.empty() ? saving_names() : options.only;
-    for (const std::string& name : asked) WEAVE_CHECK_OK(check_saving(name));
+    std::vector<std::string> asked;
+    for (const std::string& name : options.only.empty() ? saving_names() : options.only) {
+        WEAVE_CHECK_OK(check_saving(name));
+        if (std::ranges::find(asked, name) == asked.end()) asked.push_back(name);
+    }
+    WEAVE_CHECK_OK(make_place(options.folder, "savings"));
     const HeldInterrupt held(what_follows_an_interrupt);
     WEAVE_TRY(const Json savings, measure_each(asked.size(), [&](std::size_t k) {
                   tell("savings: " + asked[k]);
@@ -204,6 +216,7 @@ struct StabilityWish {
 };
 
 Status run_stability(CommandOutcome& outcome, const StabilityWish& wish) {
+    WEAVE_CHECK_OK(make_place(wish.options.folder, "stability"));
     const HeldInterrupt held(
         "the case under way is the last; again to end at once, without a word on what was done");
     std::vector<sim::Extreme> asked = sim::extremes();
