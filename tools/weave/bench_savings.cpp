@@ -234,50 +234,51 @@ Result<Saving> loose_yarns_of_i_beam() {
                      plan.scene, with_loose_yarns(plan));
 }
 
-Result<Saving> radii() {
-    WEAVE_TRY(const sim::Plan plan, plan_of("herringbone"));
+/// A sample as it is, and with what `keep` puts into its scene.
+template <class Keep>
+Result<Saving> kept_in_scene(Saving what, Keep keep) {
+    WEAVE_TRY(const sim::Plan plan, plan_of(what.cloth));
     sim::SimScene scene = plan.scene;
-    sim::SimYarn thick = scene.yarns.back();
-    thick.radius_mm *= 3;
-    for (Vec3& point : thick.control) point.z() = 50;
-    scene.yarns.push_back(thick);
-    return both_ways({.term = "radii",
-                      .cloth = "herringbone",
-                      .kept = "an end three times as thick, far above it: a second grid"},
-                     plan.scene, scene);
+    keep(scene);
+    return both_ways(std::move(what), plan.scene, scene);
+}
+
+Result<Saving> radii() {
+    return kept_in_scene({.term = "radii",
+                          .cloth = "herringbone",
+                          .kept = "an end three times as thick, far above it: a second grid"},
+                         [](sim::SimScene& scene) {
+                             sim::SimYarn thick = scene.yarns.back();
+                             thick.radius_mm *= 3;
+                             for (Vec3& point : thick.control) point.z() = 50;
+                             scene.yarns.push_back(thick);
+                         });
 }
 
 Result<Saving> pins() {
-    WEAVE_TRY(const sim::Plan plan, plan_of("sateen-8"));
-    sim::SimScene scene = plan.scene;
-    for (sim::SimYarn& yarn : scene.yarns) yarn.frozen.assign(yarn.control.size(), 0);
-    return both_ways({.term = "pins", .cloth = "sateen-8", .kept = "a mark at every point that it may move"},
-                     plan.scene, scene);
+    return kept_in_scene(
+        {.term = "pins", .cloth = "sateen-8", .kept = "a mark at every point that it may move"},
+        [](sim::SimScene& scene) {
+            for (sim::SimYarn& yarn : scene.yarns) yarn.frozen.assign(yarn.control.size(), 0);
+        });
 }
 
 Result<Saving> fields() {
-    WEAVE_TRY(const sim::Plan plan, plan_of("sateen-8"));
-    sim::SimScene scene = plan.scene;
-    scene.fields = {{{0, 0, 0}, 100, 0}};
-    return both_ways(
+    return kept_in_scene(
         {.term = "fields", .cloth = "sateen-8", .kept = "a sphere round all of it that pushes with 0 N/mm"},
-        plan.scene, scene);
+        [](sim::SimScene& scene) {
+            scene.fields = {{{0, 0, 0}, 100, 0}};
+        });
 }
 
 Result<Saving> gravity() {
-    WEAVE_TRY(const sim::Plan plan, plan_of("sateen-8"));
-    sim::SimScene scene = plan.scene;
-    scene.gravity_mm_ms2 = 1e-30;
-    return both_ways({.term = "gravity", .cloth = "sateen-8", .kept = "a weight of 1e-28 of the usual"},
-                     plan.scene, scene);
+    return kept_in_scene({.term = "gravity", .cloth = "sateen-8", .kept = "a weight of 1e-28 of the usual"},
+                         [](sim::SimScene& scene) { scene.gravity_mm_ms2 = 1e-30; });
 }
 
 Result<Saving> friction() {
-    WEAVE_TRY(const sim::Plan plan, plan_of("herringbone"));
-    sim::SimScene scene = plan.scene;
-    scene.friction = 1e-12;
-    return both_ways({.term = "friction", .cloth = "herringbone", .kept = "a coefficient of 1e-12"},
-                     plan.scene, scene);
+    return kept_in_scene({.term = "friction", .cloth = "herringbone", .kept = "a coefficient of 1e-12"},
+                         [](sim::SimScene& scene) { scene.friction = 1e-12; });
 }
 
 Result<Saving> transition() {
