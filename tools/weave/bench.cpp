@@ -24,19 +24,24 @@ std::string file_of(const std::string& folder, const std::string& name) {
     return (fs::path(folder) / ("tradeoff-" + name + ".json")).string();
 }
 
-Status make_folder(const std::string& folder) {
+/// A place that nothing can be written to is told before anything is measured.
+Status check_place(const std::string& folder, const std::string& name) {
+    if (folder.empty()) return {};
     std::error_code trouble;
-    fs::create_directories(folder, trouble);
-    if (trouble) return system_fault(trouble.message(), folder);
+    fs::path there = fs::absolute(folder, trouble);
+    while (!fs::exists(there, trouble) && there.has_relative_path()) there = there.parent_path();
+    if (!fs::is_directory(there, trouble))
+        return system_fault(on_one_line(there.string()) + " is not a folder", folder);
+    for (const char* ending : {".json", ".md"}) WEAVE_CHECK_OK(check_writable(there / (name + ending)));
     return {};
 }
 
-/// A place that nothing can be written to is told before anything is measured.
-Status make_place(const std::string& folder, const std::string& name) {
-    if (folder.empty()) return {};
-    WEAVE_CHECK_OK(make_folder(folder));
-    for (const char* ending : {".json", ".md"}) WEAVE_CHECK_OK(check_writable(fs::path(folder) / (name + ending)));
-    return {};
+/// Into the folder, which is made once there is something to put there.
+Status put(const std::string& folder, const std::string& name, const std::string& bytes) {
+    std::error_code trouble;
+    fs::create_directories(folder, trouble);
+    if (trouble) return system_fault(trouble.message(), folder);
+    return write_file(fs::path(folder) / name, bytes);
 }
 
 /// What the folder holds of earlier runs; null where there is nothing.
@@ -65,8 +70,8 @@ std::string tell_interrupted(CommandOutcome& outcome, Json& answer, std::size_t 
 Status finish(CommandOutcome& outcome, Json answer, std::string words, bool whole, const std::string& folder,
               const std::string& name) {
     if (whole && !folder.empty()) {
-        WEAVE_CHECK_OK(write_file(fs::path(folder) / (name + ".json"), answer.dump(1) + "\n"));
-        WEAVE_CHECK_OK(write_file(fs::path(folder) / (name + ".md"), words));
+        WEAVE_CHECK_OK(put(folder, name + ".json", answer.dump(1) + "\n"));
+        WEAVE_CHECK_OK(put(folder, name + ".md", words));
     }
     if (!whole && !folder.empty()) words += "Nothing is written to " + on_one_line(folder) + ".\n";
     outcome.answer(answer, words);
@@ -76,11 +81,11 @@ Status finish(CommandOutcome& outcome, Json answer, std::string words, bool whol
 /// Table and plot are written anew after every structure, so that what was measured is there whatever comes.
 Status write_report(const std::string& folder, const Json& structures) {
     if (folder.empty() || structures.empty()) return {};
-    WEAVE_CHECK_OK(write_file(fs::path(folder) / "tradeoff.md", tradeoff_table(structures)));
+    WEAVE_CHECK_OK(put(folder, "tradeoff.md", tradeoff_table(structures)));
     WEAVE_TRY(const std::string crimp, tradeoff_plot(structures, PlottedError::crimp));
-    WEAVE_CHECK_OK(write_file(fs::path(folder) / "tradeoff.svg", crimp));
+    WEAVE_CHECK_OK(put(folder, "tradeoff.svg", crimp));
     WEAVE_TRY(const std::string thickness, tradeoff_plot(structures, PlottedError::thickness));
-    return write_file(fs::path(folder) / "tradeoff-thickness.svg", thickness);
+    return put(folder, "tradeoff-thickness.svg", thickness);
 }
 
 /// Results as the table lists them.
@@ -104,7 +109,7 @@ Result<std::size_t> measure_all(const std::vector<std::string>& asked, const Ben
         known[name] = std::move(measured).value();
         ++done;
         if (options.folder.empty()) continue;
-        WEAVE_CHECK_OK(write_file(file_of(options.folder, name), known[name].dump(1) + "\n"));
+        WEAVE_CHECK_OK(put(options.folder, "tradeoff-" + name + ".json", known[name].dump(1) + "\n"));
         WEAVE_CHECK_OK(write_report(options.folder, in_order(known)));
     }
     return done;
@@ -122,7 +127,7 @@ Status run_tradeoff(CommandOutcome& outcome, const TradeoffWish& wish) {
     }
     if (wish.missing && options.folder.empty())
         return Error{ErrorCode::usage, "of what? Name the folder: -o FOLDER", "--missing"};
-    WEAVE_CHECK_OK(make_place(options.folder, "tradeoff"));
+    WEAVE_CHECK_OK(check_place(options.folder, "tradeoff"));
     std::map<std::string, Json> known;
     std::vector<std::string> asked;
     for (const std::string& name : structure_names()) {
@@ -158,7 +163,7 @@ Status check_sizes(const ScaleOptions& scale) {
 
 Status run_scale(CommandOutcome& outcome, const ScaleWish& wish) {
     WEAVE_CHECK_OK(check_sizes(wish.scale));
-    WEAVE_CHECK_OK(make_place(wish.options.folder, "scale"));
+    WEAVE_CHECK_OK(check_place(wish.options.folder, "scale"));
     const HeldInterrupt held(what_follows_an_interrupt);
     WEAVE_TRY(Json result, measure_scale(wish.options, wish.scale));
     std::string words = scale_table(result);
@@ -200,7 +205,7 @@ Status run_savings(CommandOutcome& outcome, const BenchOptions& options) {
         WEAVE_CHECK_OK(check_saving(name));
         if (std::ranges::find(asked, name) == asked.end()) asked.push_back(name);
     }
-    WEAVE_CHECK_OK(make_place(options.folder, "savings"));
+    WEAVE_CHECK_OK(check_place(options.folder, "savings"));
     const HeldInterrupt held(what_follows_an_interrupt);
     WEAVE_TRY(const Json savings, measure_each(asked.size(), [&](std::size_t k) {
                   tell("savings: " + asked[k]);
@@ -216,7 +221,7 @@ struct StabilityWish {
 };
 
 Status run_stability(CommandOutcome& outcome, const StabilityWish& wish) {
-    WEAVE_CHECK_OK(make_place(wish.options.folder, "stability"));
+    WEAVE_CHECK_OK(check_place(wish.options.folder, "stability"));
     const HeldInterrupt held(
         "the case under way is the last; again to end at once, without a word on what was done");
     std::vector<sim::Extreme> asked = sim::extremes();
@@ -247,8 +252,7 @@ void add_shared_options(CLI::App* command, BenchOptions& options, const std::str
 void add_tradeoff(CLI::App& bench, CommandOutcome& outcome) {
     CLI::App* command = add_command(
         bench, outcome, "tradeoff",
-        "Speed against accuracy, every solver and fidelity: every sample but the shoes, those of the paper's "
-        "Table 1 in about its numbers of points, and plain-pinned, a plain weave of 8 by 8 pinned yarns on "
+        "Speed against accuracy, every solver and fidelity: every sample but the shoes as one gets it, and plain-pinned, a plain weave of 8 by 8 pinned yarns on "
         "which other simulators were measured");
     const auto wish = std::make_shared<TradeoffWish>();
     command

@@ -75,19 +75,6 @@ class Looker {
     double m_began = seconds_now(m_limits.threads), m_away = 0;
 };
 
-struct Printed {
-    const char* name;
-    std::size_t points;
-    double seconds;
-};
-constexpr Printed table_1[]{{"satin-e", 692, 3.16},
-                            {"twill-g", 711, 5.1},
-                            {"layer-to-layer", 3075, 10.5},
-                            {"angle-interlock-a", 1867, 29.54},
-                            {"angle-interlock-b", 1444, 60.49},
-                            {"hexagon-tubes", 2127, 81.13},
-                            {"tl013-corrected", 4491, 62.49},
-                            {"pocket", 12751, 15.5}};
 constexpr const char* pinned_plain = "plain-pinned";
 
 /// Plain weave of 8×8 yarns held at their ends, the outermost all along, 7.5 radii apart, laid 7.5 % too
@@ -109,35 +96,6 @@ Structure make_pinned_plain() {
     }
     structure.tiles = {4, 4};
     return structure;
-}
-
-std::size_t points_at(const Structure& structure, double points_per_key, bool reduce) {
-    sim::SimulationRequest request;
-    request.points_per_key = points_per_key;
-    request.reduce = reduce;
-    const Result<sim::Plan> plan = sim::make_plan(structure.design, *structure.block, request);
-    return plan ? points_of(plan->scene) : 0;
-}
-
-/// Cells side by side and points for each crossing: as near to 4 of these as whole cells allow.
-void match_points(Structure& structure) {
-    const auto wanted = static_cast<double>(*structure.paper_points);
-    const auto smallest = static_cast<double>(points_at(structure, 4, true)),
-               cell = static_cast<double>(points_at(structure, 4, false));
-    const Scene& scene = structure.design.scene;
-    const bool tiles = scene.boundary_x == Boundary::periodic && scene.boundary_y == Boundary::periodic;
-    double best = std::numeric_limits<double>::infinity();
-    for (std::size_t x = 1; x <= (tiles ? 4 : 1); ++x) {
-        for (std::size_t y = x; y <= (tiles ? 4 : 1); ++y) {
-            const double points = x * y == 1 ? smallest : cell * static_cast<double>(x * y);
-            const double per_key = 4 * wanted / points;
-            const double off = std::abs(std::log(per_key / 4)) + 1e-6 * static_cast<double>(y - x);
-            if (off >= best) continue;
-            best = off;
-            structure.tiles = {x, y};
-            structure.points_per_key = std::round(1000 * per_key) / 1000;
-        }
-    }
 }
 
 }  // namespace
@@ -342,14 +300,8 @@ Result<Structure> make_structure(const std::string& name) {
         for (const std::string& one : structure_names()) names += (names.empty() ? "" : ", ") + one;
         return Error{ErrorCode::usage, "there is no structure '" + name + "'; there are " + names, "--only"};
     }
-    const auto* printed = std::ranges::find_if(table_1, [&](const Printed& one) { return one.name == name; });
-    if (printed != std::end(table_1)) {
-        structure.paper_points = printed->points;
-        structure.paper_seconds = printed->seconds;
-    }
     WEAVE_TRY(const Evaluation evaluation, evaluate(structure.design));
     structure.block = evaluation.block;
-    if (structure.paper_points) match_points(structure);
     if (structure.tiles[0] * structure.tiles[1] > 1) {
         WEAVE_TRY(Block tiled, tile(*structure.block, structure.tiles[0], structure.tiles[1], 1));
         structure.block = std::make_shared<const Block>(std::move(tiled));

@@ -95,19 +95,14 @@ struct Structure {
     std::string name;
     Design design;
     BlockPtr block;
-    std::optional<std::size_t> paper_points;  ///< Table 1
-    std::optional<double> paper_seconds;
-    std::array<std::size_t, 2> tiles{1,
-                                     1};  ///< side by side, unreduced; 1, 1: reduced to the smallest repeat
-    double points_per_key = 4;            ///< of `standard`
+    std::array<std::size_t, 2> tiles{1, 1};  ///< side by side, unreduced; 1, 1: reduced to the smallest repeat
 };
 
 /// Every sample, and a plain weave of pinned yarns.
 std::vector<std::string> structure_names();
 /// The shoes: a hundred thousand points and more, measured only where they are asked for by name.
 bool is_whole_product(const std::string& name);
-/// One of them. Those of the paper's Table 1 are tiled and have points for each crossing so that `standard`
-/// has about the paper's number of points; the others are their smallest repeat in the usual points.
+/// One of them: as its smallest repeat, as `weave simulate` takes it, but for the pinned yarns, which are 4 x 4 of theirs.
 Result<Structure> make_structure(const std::string& name);
 
 /// Options of `weave bench` that all its parts have.

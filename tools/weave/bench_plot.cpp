@@ -90,8 +90,8 @@ const Json* run_of(const Json& structure, const char* fidelity, const std::strin
 
 /// The run to a fidelity's own goal: `paper` looks for no saddle, so it is the one on to 1e-8 as far as that
 /// goal.
-const char* start_of(const std::string& solver) {
-    return solver == "relax" ? "plan" : "raw";
+const char* start_of(const std::string& solver, const char* fidelity) {
+    return solver == "relax" ? asked_start(fidelity) : "raw";
 }
 
 /// Where one solver comes to from the plan, fidelity after fidelity; and, hollow below or above, what the
@@ -102,7 +102,7 @@ void draw_solver(Canvas& canvas, const Panel& panel, const Json& structure, cons
     std::vector<std::pair<std::string, Point>> reached;
     std::vector<Point> way;
     for (const char* fidelity : fidelities) {
-        const Json* run = run_of(structure, fidelity, solver, start_of(solver));
+        const Json* run = run_of(structure, fidelity, solver, start_of(solver, fidelity));
         const Json* error = run != nullptr ? error_at_goal(*run) : nullptr;
         if (error == nullptr) continue;
         const double seconds = error->at("seconds");
@@ -126,7 +126,7 @@ std::string not_reached(const Json& structure) {
     for (const char* solver : {"relax", "paper"}) {
         std::string missing;
         for (const char* fidelity : fidelities) {
-            const Json* run = run_of(structure, fidelity, solver, start_of(solver));
+            const Json* run = run_of(structure, fidelity, solver, start_of(solver, fidelity));
             if (run != nullptr && error_at_goal(*run) == nullptr)
                 missing += (missing.empty() ? "" : ", ") + std::string(fidelity);
         }
@@ -149,7 +149,7 @@ void draw_key(Canvas& canvas, const Panel& panel, PlottedError plotted) {
     for (const char* line : {"across: seconds to the fidelity's goal",
                              plotted == PlottedError::crimp ? "up: error of crimp, percentage points"
                                                             : "up: error of thickness, %",
-                             "full: from the plan, what one gets", "hollow: from the reference's rest,",
+                             "full: what one gets", "hollow: from the reference's rest,",
                              "what its points alone cost"}) {
         canvas.text({x, y}, line, {.size = 11});
         y += 15;

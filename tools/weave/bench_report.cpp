@@ -47,7 +47,7 @@ const Json* error_near_goal(const Json& run) {
 }
 
 std::string error_cell(const Json& run) {
-    const Json* error = run.at("start") == "plan" ? error_at_goal(run) : error_near_goal(run);
+    const Json* error = is_as_asked(run) ? error_at_goal(run) : error_near_goal(run);
     if (error == nullptr) return dash;
     return number(error->at("crimp_warp_pp"), "%+.3f") + " / " + number(error->at("crimp_weft_pp"), "%+.3f") +
            " / " + number(error->at("thickness_pc"), "%+.2f") + " / " +
@@ -65,10 +65,7 @@ std::string paper_words(const Json& structure) {
 std::string runs_table(const Json& structure) {
     std::string text =
         "\n### " + structure.at("name").get<std::string>() + "\n\n" + machine_line(structure.at("machine")) +
-        ". `standard` has " + std::to_string(structure.at("standard_points").get<std::size_t>()) + " points" +
-        (structure.at("paper_points").is_number() ? number(structure.at("paper_points"), " (the paper %.0f)")
-                                                  : "") +
-        ": " + number(structure.at("points_per_key"), "%.3g") + " a crossing. " + paper_words(structure) +
+        ". `standard` has " + std::to_string(structure.at("standard_points").get<std::size_t>()) + " points. " + paper_words(structure) +
         "\n\n"
         "| Fidelity | Solver | Start | Points | s to 1e-1 | 1e-2 | 1e-3 | 1e-5 | 1e-8 | Steps "
         "| Memory, MB | Lost | "
@@ -101,8 +98,7 @@ std::string runs_table(const Json& structure) {
 
 std::string ratio_row(const Json& structure) {
     std::string text = "| " + structure.at("name").get<std::string>() + " | " +
-                       number(structure.at("standard_points"), "%.0f") + " | " +
-                       number(structure.at("paper_gpu_s"), "%.2f");
+                       number(structure.at("standard_points"), "%.0f");
     for (const char* residual : {"1e-02", "1e-03"}) {
         const Json& ratio = structure.at("ratios").at(residual);
         const bool bound = ratio.value("is_lower_bound", false);
@@ -120,13 +116,21 @@ struct Figure {
     std::string cloth;
 };
 
-/// Middle and greatest of some figures, and whose the greatest is.
-std::string band(std::vector<Figure> figures, const char* format) {
+/// The middle one; of an even number the mean of both that are.
+double median(std::vector<double> numbers) {
+    if (numbers.empty()) return 0;
+    std::ranges::sort(numbers);
+    const std::size_t half = numbers.size() / 2;
+    return numbers.size() % 2 != 0 ? numbers[half] : (numbers[half - 1] + numbers[half]) / 2;
+}
+
+/// Median and greatest of some figures, and whose the greatest is.
+std::string band(const std::vector<Figure>& figures, const char* format) {
     if (figures.empty()) return std::string(dash) + " | " + dash;
-    std::ranges::sort(figures, {}, &Figure::value);
-    const Figure& most = figures.back();
-    return in_words(format, figures[figures.size() / 2].value) + " | " + in_words(format, most.value) + " (" +
-           most.cloth + ")";
+    std::vector<double> values;
+    for (const Figure& figure : figures) values.push_back(figure.value);
+    const Figure& most = *std::ranges::max_element(figures, {}, &Figure::value);
+    return in_words(format, median(std::move(values))) + " | " + in_words(format, most.value) + " (" + most.cloth + ")";
 }
 
 const Json* run_of(const Json& structure, const std::string& fidelity, const char* solver,
@@ -142,11 +146,16 @@ const Json* run_of(const Json& structure, const std::string& fidelity, const cha
 struct Way {
     const char* words;
     const char* start;
-    bool to_its_end;
+    bool to_its_end = false;
 };
-constexpr Way ways[]{{"points alone", "reference", false},
-                     {"from the plan", "plan", false},
-                     {"stopped at its goal", "plan", true}};
+
+/// A reference goes on from `standard` as one gets it, so what it comes to from the plan is told besides; what its goal
+/// leaves is nothing.
+std::vector<Way> ways_of(const std::string& fidelity) {
+    std::vector<Way> ways{{"points alone", "reference"}, {"as one gets it", asked_start(fidelity)}};
+    ways.push_back(fidelity == "reference" ? Way{"from the plan", "raw"} : Way{"stopped at its goal", "plan", true});
+    return ways;
+}
 
 std::string way_row(const Json& structures, const std::string& fidelity, const Way& way) {
     std::vector<Figure> crimp, thickness, place;
@@ -166,12 +175,7 @@ std::string way_row(const Json& structures, const std::string& fidelity, const W
            band(crimp, "%.3f") + " | " + band(thickness, "%.2f") + " | " + band(place, "%.3f") + " |\n";
 }
 
-double middle(std::vector<double> numbers) {
-    std::ranges::sort(numbers);
-    return numbers.empty() ? 0 : numbers[numbers.size() / 2];
-}
-
-/// What the finer of two fidelities costs and gains on the middle cloth.
+/// What the finer of two fidelities costs and gains.
 std::string step_words(const Json& structures, const char* coarse, const char* fine) {
     std::vector<double> seconds, errors;
     for (const Json& structure : structures) {
@@ -180,51 +184,51 @@ std::string step_words(const Json& structures, const char* coarse, const char* f
             const Json* run = run_of(structure, fidelity, "relax", start);
             return run != nullptr ? error_at_goal(*run) : nullptr;
         };
-        const Json *from = error(coarse, "plan"), *to = error(fine, "plan");
+        const Json *from = error(coarse, asked_start(coarse)), *to = error(fine, asked_start(fine));
         const Json *more = error(coarse, "reference"), *less = error(fine, "reference");
         if (from == nullptr || to == nullptr || more == nullptr || less == nullptr) continue;
         seconds.push_back(to->at("seconds").get<double>() / from->at("seconds").get<double>());
         errors.push_back(crimp_error(*more) / crimp_error(*less));
     }
-    return std::string("`") + fine + "` takes " + in_words("%.1f", middle(std::move(seconds))) +
+    return std::string("`") + fine + "` takes " + in_words("%.1f", median(std::move(seconds))) +
            " times as long as `" + coarse + "`, and its points err " +
-           in_words("%.1f", middle(std::move(errors))) + " times less";
+           in_words("%.1f", median(std::move(errors))) + " times less";
 }
 
 std::string errors_summary(const Json& structures) {
     std::string text =
         "\n## How far each fidelity errs, all cloths together\n\n"
-        "Middle and greatest of the cloths whose reference came to rest, at the fidelity's own goal, "
-        "`relax`. *Points alone*: "
-        "gone on from the reference's rest. *From the\nplan*: what the same points come to from the plan, another rest included. "
-        "*Stopped at its goal*: "
-        "against where its yarns end at 1e-8. Crimp: the greater error of warp and weft; place: root "
-        "mean square.\n\n"
-        "| Fidelity | Error of | Cloths | Crimp, pp: middle | most | Thickness, %: middle | most | Place, "
-        "radii: middle | most |\n"
+        "Median and greatest of the cloths whose reference came to rest, at the fidelity's own goal, `relax`. "
+        "*As one gets it*: what `weave simulate` gives, another rest included: from the plan, a reference from `standard`. "
+        "*Points alone*: gone on from the rest that errors are measured against.\n"
+        "*Stopped at its goal*: against where its yarns end at 1e-8. *From the plan*: a reference that does not begin at "
+        "`standard`. Crimp: the greater error of warp and weft; place: root mean square.\n"
+        "What errors are measured against went on from `standard` itself, so another rest is told of the other two alone.\n\n"
+        "| Fidelity | Error of | Cloths | Crimp, pp: median | most | Thickness, %: median | most | Place, "
+        "radii: median | most |\n"
         "|---|---|---|---|---|---|---|---|---|\n";
     for (const char* fidelity : fidelities) {
-        for (const Way& way : ways) text += way_row(structures, fidelity, way);
+        for (const Way& way : ways_of(fidelity)) text += way_row(structures, fidelity, way);
     }
-    return text + "\nOn the middle cloth " + step_words(structures, "draft", "standard") + "; " +
+    return text + "\nAs the median of all cloths " + step_words(structures, "draft", "standard") + "; " +
            step_words(structures, "standard", "reference") + ".\n";
 }
 
-/// Seconds from the plan to the goal, and the error of its points alone.
+/// Seconds until one has it, and the error of its points alone.
 std::string cost_cell(const Json& structure, const char* fidelity) {
-    const Json *raw = run_of(structure, fidelity, "relax", "plan"),
+    const Json *asked = run_of(structure, fidelity, "relax", asked_start(fidelity)),
                *same = run_of(structure, fidelity, "relax", "reference");
     const Json* error = is_measured(structure) && same != nullptr ? error_at_goal(*same) : nullptr;
-    const Json* reached = error_at_goal(*raw);
-    return (reached != nullptr ? seconds_cell(reached->at("seconds")) : given_up_after(*raw)) + " | " +
+    const Json* reached = error_at_goal(*asked);
+    return (reached != nullptr ? seconds_cell(reached->at("seconds")) : given_up_after(*asked)) + " | " +
            (error == nullptr ? dash : in_words("%.3f", crimp_error(*error)));
 }
 
 std::string costs_summary(const Json& structures) {
     std::string text =
         "\n## What each cloth costs\n\n"
-        "`relax` from the plan to the fidelity's own goal, and the crimp error of the points alone, in "
-        "percentage points.\n\n"
+        "`relax` until the fidelity's own goal, of a reference with the seconds of the `standard` that it begins at, and the "
+        "crimp error of the points alone, in percentage points.\n\n"
         "| Cloth | Points of standard | draft, s | pp | standard, s | pp | reference, s | pp | Residual of "
         "its reference |\n"
         "|---|---|---|---|---|---|---|---|---|\n";
@@ -244,8 +248,12 @@ bool is_measured(const Json& structure) {
     return structure.at("reference").at("residual").get<double>() <= reference_rests;
 }
 
+bool is_as_asked(const Json& run) {
+    return run.at("start") == asked_start(run.at("fidelity").get<std::string>());
+}
+
 const Json* error_at_goal(const Json& run) {
-    if (run.at("start") == "plan") return run.at("ending") == "converged" ? &run.at("end") : nullptr;
+    if (is_as_asked(run)) return run.at("ending") == "converged" ? &run.at("end") : nullptr;
     for (const Json& error : run.at("errors")) {
         if (error.at("residual") == run.at("goal")) return &error;
     }
@@ -266,18 +274,15 @@ std::string tradeoff_table(const Json& structures) {
         "seconds until a residual was first reached, looking not counted, of the processor where one thread "
         "computed; `>` marks the cap at which a run was ended. Errors are against\n"
         "a reference with four times the points and samples of `standard`, gone on from `standard` at rest. "
-        "Structures of the paper's Table 1\n"
-        "have about its numbers of points, not those that `weave simulate` lays by itself. "
-        "A start `plan` is from the plan, another basin included: to its own goal, where `relax` leaves a saddle; `raw` the same on to "
-        "1e-8, where it looks "
-        "only at the end; a start `reference` goes on from the reference's rest, so that only "
-        "the discretisation errs.\n" +
+        "Cloths are laid as `weave simulate` lays them, as their smallest repeat.\n"
+        "A start `plan` is from the plan to the fidelity's own goal, where `relax` leaves a saddle; `standard` from where "
+        "that came to, as a reference begins; `raw` from the plan on to 1e-8, where it looks only at the end; a start "
+        "`reference` goes on from the reference's rest, so that only the discretisation errs.\n" +
         errors_summary(structures) + costs_summary(structures) +
         "\n"
         "## `relax` against `paper`, `standard`, in the same run\n\n"
-        "| Structure | Points | Paper's GPU, s | relax to 1e-2, s | paper, s | ratio | relax to 1e-3, s | "
-        "paper, s | ratio |\n"
-        "|---|---|---|---|---|---|---|---|---|\n";
+        "| Structure | Points | relax to 1e-2, s | paper, s | ratio | relax to 1e-3, s | paper, s | ratio |\n"
+        "|---|---|---|---|---|---|---|---|\n";
     for (const Json& structure : structures) text += ratio_row(structure);
     text += "\n## Every run\n";
     for (const Json& structure : structures) text += runs_table(structure);

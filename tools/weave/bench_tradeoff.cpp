@@ -12,21 +12,21 @@ namespace weave::program {
 
 namespace {
 
-/// A discretisation: points and samples as shares of those of `standard`.
-struct Grade {
-    const char* name;
-    double points, spacing, goal;
-};
-constexpr Grade grades[]{
-    {"draft", 0.5, 0.25, 1e-2}, {"standard", 1, 0.25, 1e-3}, {"reference", 2, 0.125, 1e-8}};
-/// Four times the points of `standard`, and four times its samples.
-constexpr Grade truth{"truth", 4, 0.0625, 1e-8};
+constexpr std::size_t draft = 0, standard = 1, reference = 2;
+/// The truth has so many times the points and samples of `standard`.
 constexpr std::size_t truth_times = 4;
+constexpr double deepest = 1e-8;
 
-Result<sim::Plan> plan_of(const Structure& structure, const Grade& grade) {
-    sim::SimulationRequest request;
-    request.points_per_key = std::clamp(structure.points_per_key * grade.points, 1.0, 64.0);
-    request.sample_spacing = grade.spacing;
+std::string name_of(std::size_t grade) {
+    return fidelities[grade];
+}
+
+double goal_of(std::size_t grade) {
+    return sim::goal_of(static_cast<sim::Fidelity>(grade));
+}
+
+/// A structure in the points of a fidelity, as `weave simulate` lays them.
+Result<sim::Plan> plan_of(const Structure& structure, sim::SimulationRequest request) {
     request.reduce = structure.tiles[0] * structure.tiles[1] == 1;
     return sim::make_plan(structure.design, *structure.block, request);
 }
@@ -47,18 +47,23 @@ class Tradeoff {
         : m_structure(structure), m_options(options) {}
 
     Result<Json> run() {
-        for (const Grade& grade : grades) {
-            WEAVE_TRY(sim::Plan plan, plan_of(m_structure, grade));
+        for (const sim::Fidelity fidelity : {sim::Fidelity::draft, sim::Fidelity::standard, sim::Fidelity::reference}) {
+            sim::SimulationRequest request;
+            request.fidelity = fidelity;
+            WEAVE_TRY(sim::Plan plan, plan_of(m_structure, request));
             m_plans.push_back(std::move(plan));
         }
-        WEAVE_TRY(m_truth, plan_of(m_structure, truth));
+        sim::SimulationRequest finer;
+        finer.points_per_key = truth_times * m_plans[standard].points_per_key;
+        finer.sample_spacing = m_plans[standard].scene.sample_spacing / truth_times;
+        WEAVE_TRY(m_truth, plan_of(m_structure, finer));
         for (std::size_t g = 0; g < m_plans.size(); ++g) {
-            m_raw.push_back(measured(g, sim::Solver::relax, {}, 1e-8, m_options.seconds, nullptr));
-            say(std::string(grades[g].name) + ", relax: " + told(m_raw.back()));
+            m_raw.push_back(measured(g, sim::Solver::relax, {}, deepest, m_options.seconds, nullptr));
+            say(name_of(g) + ", relax: " + told(m_raw.back()));
             ask(g);
         }
         find_truth();
-        if (m_raw[1].seconds_to(grades[0].goal)) go_on();
+        if (m_raw[standard].seconds_to(goal_of(draft))) go_on();
         if (interrupted())
             return Error{ErrorCode::system, "interrupted; what was measured of it is not kept",
                          m_structure.name};
@@ -66,13 +71,23 @@ class Tradeoff {
     }
 
   private:
-    /// What a user gets: whoever stops at a loose goal is first led off a saddle there, on the way to a
-    /// tighter one nobody looks.
+    /// What a user gets: whoever stops at a loose goal is first led off a saddle there, on the way to a tighter
+    /// one nobody looks; and a reference begins where `standard` came to, whose seconds count with its own.
     void ask(std::size_t g) {
-        const double goal = grades[g].goal;
-        m_asked.push_back(
-            goal == 1e-8 ? m_raw[g] : measured(g, sim::Solver::relax, {}, goal, m_options.seconds, nullptr));
-        say(std::string(grades[g].name) + ", relax to its goal: " + told(m_asked.back()));
+        if (g != reference) {
+            m_asked.push_back(measured(g, sim::Solver::relax, {}, goal_of(g), m_options.seconds, nullptr));
+        } else {
+            const Control start = resampled_to(m_plans[g].scene, m_plans[standard].scene, m_asked[standard].control);
+            m_asked.push_back(measured(g, sim::Solver::relax, {}, goal_of(g), m_options.seconds, &start));
+            add_seconds(m_asked[g], m_asked[standard].result.seconds);
+        }
+        say(name_of(g) + ", relax to its goal: " + told(m_asked.back()));
+    }
+
+    static void add_seconds(Measured& run, double before) {
+        run.result.seconds += before;
+        run.cap_seconds += before;
+        for (Snapshot& snapshot : run.snapshots) snapshot.seconds += before;
     }
 
     /// What is of use only where `standard` comes as far as a draft at least.
@@ -80,8 +95,8 @@ class Tradeoff {
         for (std::size_t g = 0; g < m_plans.size(); ++g) continue_from_truth(g);
         sweep();
         for (std::size_t g = 0; g < m_plans.size(); ++g) {
-            m_paper.push_back(measured(g, sim::Solver::paper, m_best, 1e-8, m_options.seconds, nullptr));
-            say(std::string(grades[g].name) + ", paper: " + told(m_paper.back()));
+            m_paper.push_back(measured(g, sim::Solver::paper, m_best, deepest, m_options.seconds, nullptr));
+            say(name_of(g) + ", paper: " + told(m_paper.back()));
         }
     }
 
@@ -96,14 +111,14 @@ class Tradeoff {
     /// The reference goes on from `standard` at rest: the same curves with four times the segments, so the
     /// same basin.
     void find_truth() {
-        const Control start = refined(m_plans[1].scene, m_raw[1].control, truth_times);
+        const Control start = refined(m_plans[standard].scene, m_raw[standard].control, truth_times);
         for (std::size_t y = 0; y < start.size(); ++y) {
             sim::SimYarn& yarn = m_truth.scene.yarns[y];
             yarn.control = start[y];
-            if (!yarn.frozen.empty()) yarn.frozen = frozen_as(m_plans[1].scene.yarns[y], start[y].size());
+            if (!yarn.frozen.empty()) yarn.frozen = frozen_as(m_plans[standard].scene.yarns[y], start[y].size());
         }
         m_true_run = measure(m_truth, sim::Solver::relax, {},
-                             {1e-8, interrupted() ? 0 : 3 * m_options.seconds, m_options.threads});
+                             {deepest, interrupted() ? 0 : 3 * m_options.seconds, m_options.threads});
         m_true_shape = shape_of(m_truth, m_true_run.control);
         say("four times the points: " + told(m_true_run));
     }
@@ -123,8 +138,8 @@ class Tradeoff {
     /// What the discretisation alone costs: on the reference's branch, to the same residual.
     void continue_from_truth(std::size_t g) {
         const Control start = resampled_to(m_plans[g].scene, m_truth.scene, m_true_run.control);
-        m_continued.push_back(measured(g, sim::Solver::relax, {}, 1e-8, m_options.seconds, &start));
-        say(std::string(grades[g].name) + ", on the reference's branch: " + told(m_continued.back()));
+        m_continued.push_back(measured(g, sim::Solver::relax, {}, deepest, m_options.seconds, &start));
+        say(name_of(g) + ", on the reference's branch: " + told(m_continued.back()));
     }
 
     /// Step and damping with which `paper` needs the fewest evaluations to 1e-3 on `standard`, each tried for
@@ -134,7 +149,7 @@ class Tradeoff {
         const auto attempt = [&](double step, double damping) {
             const sim::PaperOptions paper{.step = step, .damping = damping};
             const Measured run =
-                measured(1, sim::Solver::paper, paper, 1e-3, m_options.seconds / 10, nullptr);
+                measured(standard, sim::Solver::paper, paper, 1e-3, m_options.seconds / 10, nullptr);
             const bool arrived = run.result.ending == sim::Ending::converged;
             const double cost =
                 arrived ? static_cast<double>(run.result.evaluations) : 1e12 * (1 + run.result.residual);
@@ -158,10 +173,10 @@ class Tradeoff {
     [[nodiscard]] Json run_json(std::size_t g, const char* solver, const char* start,
                                 const Measured& run) const {
         Json json = run.json();
-        json["fidelity"] = grades[g].name;
+        json["fidelity"] = fidelities[g];
         json["solver"] = solver;
         json["start"] = start;
-        json["goal"] = grades[g].goal;
+        json["goal"] = goal_of(g);
         json["errors"] = Json::array();
         for (const Snapshot& snapshot : run.snapshots) {
             const Shape shape = shape_of(m_plans[g], snapshot.control);
@@ -187,18 +202,18 @@ class Tradeoff {
     [[nodiscard]] Json ratios() const {
         Json ratios = Json::object();
         for (const double residual : told_residuals) {
-            const std::optional<double> fast = m_raw[1].seconds_to(residual);
+            const std::optional<double> fast = m_raw[standard].seconds_to(residual);
             if (m_paper.empty()) {
                 ratios[in_words("%.0e", residual)] = {
                     {"relax_s", fast ? Json(*fast) : Json()}, {"paper_s", nullptr}, {"ratio", nullptr}};
                 continue;
             }
-            const std::optional<double> slow = m_paper[1].seconds_to(residual);
+            const std::optional<double> slow = m_paper[standard].seconds_to(residual);
             Json ratio = {{"relax_s", fast ? Json(*fast) : Json()},
                           {"paper_s", slow ? Json(*slow) : Json()},
                           {"ratio", nullptr}};
             if (fast && *fast > 0) {
-                ratio["ratio"] = slow.value_or(m_paper[1].result.seconds) / *fast;
+                ratio["ratio"] = slow.value_or(m_paper[standard].result.seconds) / *fast;
                 ratio["is_lower_bound"] = !slow;
             }
             ratios[in_words("%.0e", residual)] = ratio;
@@ -210,16 +225,16 @@ class Tradeoff {
     /// if not, how they differ.
     [[nodiscard]] Json basins() const {
         if (m_paper.empty()) return {{"comparable", false}};
-        const Shape fast = shape_of(m_plans[1], m_raw[1].control),
-                    slow = shape_of(m_plans[1], m_paper[1].control);
+        const Shape fast = shape_of(m_plans[1], m_raw[standard].control),
+                    slow = shape_of(m_plans[1], m_paper[standard].control);
         Json basins = error_json(m_plans[1], slow, fast);
-        const bool both = m_raw[1].result.residual <= 1e-3 && m_paper[1].result.residual <= 1e-3;
+        const bool both = m_raw[standard].result.residual <= 1e-3 && m_paper[standard].result.residual <= 1e-3;
         basins["comparable"] = both;
         basins["same"] = both && std::abs(basins.at("crimp_warp_pp").get<double>()) < 0.1 &&
                          std::abs(basins.at("crimp_weft_pp").get<double>()) < 0.1 &&
                          basins.at("place_max_radii").get<double>() < 0.5;
-        basins["energy_relax_N_mm"] = m_raw[1].result.energy;
-        basins["energy_paper_N_mm"] = m_paper[1].result.energy;
+        basins["energy_relax_N_mm"] = m_raw[standard].result.energy;
+        basins["energy_paper_N_mm"] = m_paper[standard].result.energy;
         return basins;
     }
 
@@ -227,16 +242,13 @@ class Tradeoff {
         Json json = {{"name", m_structure.name},
                      {"machine", machine_json(m_options.threads)},
                      {"tiles", m_structure.tiles},
-                     {"points_per_key", m_structure.points_per_key},
-                     {"paper_points", m_structure.paper_points ? Json(*m_structure.paper_points) : Json()},
-                     {"paper_gpu_s", m_structure.paper_seconds ? Json(*m_structure.paper_seconds) : Json()},
-                     {"standard_points", m_raw[1].points},
+                     {"standard_points", m_raw[standard].points},
                      {"sweep", m_sweep},
                      {"paper_step", m_best.step},
                      {"paper_damping", m_best.damping},
                      {"runs", Json::array()}};
         for (std::size_t g = 0; g < m_plans.size(); ++g) {
-            json["runs"].push_back(run_json(g, "relax", "plan", m_asked[g]));
+            json["runs"].push_back(run_json(g, "relax", asked_start(fidelities[g]), m_asked[g]));
             json["runs"].push_back(run_json(g, "relax", "raw", m_raw[g]));
             if (m_paper.empty()) continue;
             json["runs"].push_back(run_json(g, "paper", "raw", m_paper[g]));
@@ -264,6 +276,10 @@ class Tradeoff {
 };
 
 }  // namespace
+
+const char* asked_start(std::string_view fidelity) {
+    return fidelity == fidelities[reference] ? fidelities[standard] : "plan";
+}
 
 Result<Json> measure_tradeoff(const Structure& structure, const BenchOptions& options) {
     return Tradeoff(structure, options).run();

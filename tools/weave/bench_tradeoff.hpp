@@ -10,8 +10,12 @@ namespace weave::program {
 Result<Json> measure_tradeoff(const Structure& structure, const BenchOptions& options);
 
 inline constexpr const char* fidelities[]{"draft", "standard", "reference"};
+/// Where the run begins that gives what `weave simulate` gives: `plan`, of a reference `standard`.
+const char* asked_start(std::string_view fidelity);
 /// Whether the reference of a structure came to rest, so that errors against it say something.
 bool is_measured(const Json& structure);
+/// Whether the run is what `weave simulate` gives.
+bool is_as_asked(const Json& run);
 /// The errors of a run where it reached its goal; else null.
 const Json* error_at_goal(const Json& run);
 /// The greater of both crimp errors, percentage points.
