@@ -55,14 +55,15 @@ TEST_CASE("bench tradeoff measures any sample, and tells the errors of a fidelit
             if (run.at("solver") != "relax") continue;
             INFO(run.at("fidelity") << " from " << run.at("start"));
             REQUIRE(run.at("ending") == "converged");
-            CHECK(std::abs(run.at("end").at("crimp_warp_pp").get<double>()) < 1);
+            // A few times what is measured: in so few points a draft errs by hundredths of a point, the others by thousandths.
+            CHECK(std::abs(run.at("end").at("crimp_warp_pp").get<double>()) < (run.at("fidelity") == "draft" ? 0.2 : 0.05));
             // To 1e-8 it ends where it ends; its goal is not far from there.
             const double left = std::abs(run.at("end").at("to_its_end").at("crimp_warp_pp").get<double>());
-            CHECK(left < (run.at("start") == "raw" ? 1e-9 : 0.5));
+            CHECK(left < (run.at("start") == "raw" ? 1e-9 : 0.05));
         }
     }
     const std::string table = shop.get("kept/tradeoff.md");
-    for (const char* row : {"| reference | points alone | 2 |", "| reference | as one gets it | 2 |", "| reference | from the plan | 2 |", "| draft | stopped at its goal | 2 |", "| rib | 64 |", "As the median of all cloths `standard` takes "})
+    for (const char* row : {"| reference | points alone | 2 |", "| reference | as one gets it | 2 |", "| reference | from the plan | 2 |", "| draft | stopped at its goal | 2 |", "| rib | 64 |", "In the median over these cloths `standard` takes "})
         CHECK(table.find(row) != std::string::npos);
 }
 
@@ -77,25 +78,41 @@ TEST_CASE("a structure that comes to no rest is measured as far as it comes, and
 }
 
 TEST_CASE("bench savings: what is left out of a scene changes no result, and the table says what it saves") {
+    // How far apart the results may lie, in radii: some times as far as they do, and nothing where nothing is computed otherwise.
+    const std::vector<std::pair<std::string, double>> apart{{"repeat", 1e-6}, {"repeat-satin", 0.05}, {"yarns", 1e-6}, {"radii", 1e-7}, {"pins", 0}, {"fields", 0},
+                                                            {"gravity", 0}, {"friction", 1e-6}, {"transition", 0.1}, {"periods", 0.01}, {"balance", 1e-4}};
+    std::vector<std::string> words{"bench", "savings", "--threads", "1", "-o", "kept"};
+    for (const auto& [name, most] : apart) words.insert(words.end(), {"--only", name});
     const Workshop shop;
-    const Json said = shop.json({"bench", "savings", "--threads", "1", "-o", "kept", "--only", "repeat", "--only", "yarns", "--only", "radii",
-                                 "--only", "fields", "--only", "gravity", "--only", "friction", "--only", "transition", "--only", "periods"});
+    const Json said = shop.json(words);
     CHECK(said.at("bad") == 0);
-    REQUIRE(said.at("savings").size() == 8);
-    for (const Json& saving : said.at("savings")) {
+    REQUIRE(said.at("savings").size() == apart.size());
+    for (std::size_t k = 0; k < apart.size(); ++k) {
+        const Json &saving = said.at("savings").at(k), &left_out = saving.at("left_out"), &with_it = saving.at("with_it");
         INFO(saving.dump());
         CHECK(saving.at("fault") == "");
-        CHECK(saving.at("left_out").at("at_rest") == true);
-        CHECK(saving.at("with_it").at("at_rest") == true);
-        CHECK(saving.at("apart_radii").get<double>() < 0.1);
-        CHECK(saving.at("with_it").at("points").get<int>() >= saving.at("left_out").at("points").get<int>());
-        CHECK(saving.at("ratio").get<double>() > 0);
+        CHECK(left_out.at("at_rest") == true);
+        CHECK(with_it.at("at_rest") == true);
+        CHECK(saving.at("apart_radii").get<double>() <= apart[k].second);
+        CHECK(with_it.at("points").get<int>() >= left_out.at("points").get<int>());
+        CHECK(saving.at("ratio").get<double>() == Approx(with_it.at("seconds").get<double>() / left_out.at("seconds").get<double>()));
     }
     CHECK(said.at("savings").at(0).at("with_it").at("points") == 16 * said.at("savings").at(0).at("left_out").at("points").get<int>());
-    // A field that pushes nothing and a weight of nothing change not one bit.
-    for (const std::size_t nothing : {3, 4}) CHECK(said.at("savings").at(nothing).at("apart_radii") == 0);
     CHECK(Json::parse(shop.get("kept/savings.json")) == said);
     CHECK(shop.get("kept/savings.md").find("| friction | herringbone |") != std::string::npos);
+}
+
+TEST_CASE("bench savings: a part of a cloth has nearly its crimp, and loose ends cost their points", "[.][long]") {
+    const Workshop shop;
+    const Json said = shop.json({"bench", "savings", "--threads", "1", "--seconds", "600", "--only", "region", "--only", "yarns-i-beam"});
+    CHECK(said.at("bad") == 0);
+    const Json &beam = said.at("savings").at(1), &part = said.at("savings").at(0);
+    CHECK(part.at("term") == "region");
+    CHECK(part.at("crimp_apart_pp").get<double>() < 0.5);
+    CHECK(part.at("with_it").at("points").get<int>() > 3 * part.at("left_out").at("points").get<int>());
+    CHECK(beam.at("apart_radii").is_null());  // neither is at rest
+    CHECK(beam.at("with_it").at("steps") == 100);
+    CHECK(beam.at("with_it").at("points").get<int>() - beam.at("left_out").at("points").get<int>() == 80 * 16);
 }
 
 TEST_CASE("bench savings says where both runs cannot be compared") {

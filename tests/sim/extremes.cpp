@@ -16,7 +16,7 @@ void check_extremes(bool is_long, const ExtremeLimits& limits) {
         if (extreme.is_long != is_long) continue;
         const ExtremeEnd end = extreme.run(limits);
         std::string why;
-        const bool good = is_good(extreme, end, why);
+        const bool good = is_good(extreme, end, limits, why);
         INFO(extreme.name << ": " << end.report << " (" << why << ")");
         CHECK(good);
     }
@@ -42,7 +42,7 @@ TEST_CASE("extremes have names of their own, and a bad end is told from a good o
     rest.report = "at rest";
     std::string why;
     const auto good = [&](Expected expected, const ExtremeEnd& end) {
-        return is_good({"", "", expected, false, {}}, end, why);
+        return is_good({"", "", expected, false, {}}, end, {}, why);
     };
     CHECK(good(Expected::rest, rest));
     CHECK(good(Expected::told, rest));
@@ -61,7 +61,22 @@ TEST_CASE("extremes have names of their own, and a bad end is told from a good o
     other = rest;
     other.converged = false;
     CHECK_FALSE(good(Expected::rest, other));
+    CHECK_FALSE(good(Expected::told, other));
+    CHECK(why == "it does not say where it is not at rest");
+    other.where = "yarn 1, point 2";
+    CHECK_FALSE(good(Expected::told, other));  // the report has to say it
+    other.report = "stuck, greatest force at yarn 1, point 2";
+    CHECK_FALSE(good(Expected::rest, other));
     CHECK(good(Expected::told, other));
+    other.iterations = 10;
+    other.seconds = ExtremeLimits().most_seconds + 1;
+    CHECK(good(Expected::told, other));  // of 3 s a step
+    other.iterations = 1000;
+    CHECK_FALSE(good(Expected::told, other));
+    CHECK(why == "it went on beyond its steps or its time");
+    other.seconds = 1;
+    other.iterations = 100'000;
+    CHECK_FALSE(good(Expected::told, other));
     other.report.clear();
     CHECK_FALSE(good(Expected::told, other));
 }

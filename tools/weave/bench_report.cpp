@@ -210,7 +210,7 @@ std::string errors_summary(const Json& structures) {
     for (const char* fidelity : fidelities) {
         for (const Way& way : ways_of(fidelity)) text += way_row(structures, fidelity, way);
     }
-    return text + "\nAs the median of all cloths " + step_words(structures, "draft", "standard") + "; " +
+    return text + "\nIn the median over these cloths " + step_words(structures, "draft", "standard") + "; " +
            step_words(structures, "standard", "reference") + ".\n";
 }
 

@@ -19,9 +19,10 @@ std::string case_row(const Json& one) {
 }  // namespace
 
 Json measure_extreme(const sim::Extreme& extreme, const BenchOptions& options) {
-    const sim::ExtremeEnd end = extreme.run({.most_seconds = options.seconds, .threads = options.threads});
+    const sim::ExtremeLimits limits{.most_seconds = options.seconds, .threads = options.threads};
+    const sim::ExtremeEnd end = extreme.run(limits);
     std::string why;
-    const bool good = sim::is_good(extreme, end, why);
+    const bool good = sim::is_good(extreme, end, limits, why);
     return {{"name", extreme.name},
             {"about", extreme.about},
             {"expected", expectations[static_cast<std::size_t>(extreme.expected)]},

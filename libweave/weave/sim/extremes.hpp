@@ -26,6 +26,7 @@ struct ExtremeEnd {
     bool curves_down = false;  ///< at rest; see RelaxResult
     std::size_t points = 0, iterations = 0;
     double seconds = 0;
+    std::string where;   ///< yarn and point of the greatest force, as the report of what is not at rest has them
     std::string report;  ///< what it ended as, and where; never empty
 };
 
@@ -49,7 +50,7 @@ struct Extreme {
 /// The whole catalogue (spec: stability tests).
 std::vector<Extreme> extremes();
 
-/// Whether a case ended as it must; `why` says what is wrong.
-bool is_good(const Extreme& extreme, const ExtremeEnd& end, std::string& why);
+/// Whether a case ended as it must and within its limits; `why` says what is wrong.
+bool is_good(const Extreme& extreme, const ExtremeEnd& end, const ExtremeLimits& limits, std::string& why);
 
 }  // namespace weave::sim
