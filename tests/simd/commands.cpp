@@ -344,7 +344,7 @@ TEST_CASE("on a narrow terminal columns that say less are left out, and the titl
 }
 
 TEST_CASE("every command explains itself, and a call that makes no sense is a usage error") {
-    for (const std::vector<std::string>& words : std::vector<std::vector<std::string>>{{}, {"serve"}, {"token"}, {"token", "add"}, {"token", "remove"}, {"token", "list"}, {"status"}, {"top"}}) {
+    for (const std::vector<std::string>& words : std::vector<std::vector<std::string>>{{}, {"serve"}, {"token"}, {"token", "add"}, {"token", "remove"}, {"token", "list"}, {"status"}, {"top"}, {"job"}}) {
         std::vector<std::string> help = words;
         help.emplace_back("--help");
         const Ran ran = run(help);
