@@ -57,6 +57,12 @@ EvidenceBox::EvidenceBox(QWidget* parent)
     m_sign->setPopupMode(QToolButton::InstantPopup);
     m_sign->setMenu(m_menu);
     m_sign->setMinimumWidth(m_sign->sizeHint().width() + fontMetrics().height());  // its arrow stands beside the words
+    // What lies below stays where it is when a run ends: somebody may be about to click there.
+    QSizePolicy keeps_its_place = m_simulate->sizePolicy();
+    keeps_its_place.setRetainSizeWhenHidden(true);
+    m_simulate->setSizePolicy(keeps_its_place);
+    m_found_label->setMinimumHeight(2 * fontMetrics().lineSpacing());
+    m_found_label->setAlignment(Qt::AlignTop);
     auto* grid = new QGridLayout(this);
     grid->setContentsMargins(0, 0, 0, 0);
     grid->setColumnStretch(0, 1);

@@ -267,9 +267,17 @@ TEST_CASE("submit: findings, evidence and a cloth that cannot be made are told")
     CHECK(window.text("submit_warning").isEmpty());
 
     CHECK(window.text("evidence").contains("none yet"));
+    const auto place = [&] {
+        QCoreApplication::sendPostedEvents();
+        QCoreApplication::processEvents();
+        return window.find<QLineEdit>("signing_password").mapTo(&window.panel, QPoint()).y();
+    };
+    const int before = place();
     window.panel.evidence().set_found(SimulationFound{"this computer", "standard",
                                                       QDateTime::currentDateTime(), true, true, window.edition});
     CHECK(window.text("evidence").contains("relaxed on this computer at standard, at rest"));
+    CHECK_FALSE(window.find<QPushButton>("simulate").isVisible());
+    CHECK(place() == before);  // whoever is about to click there hits it
     CHECK(window.text("signed_evidence").contains("Nothing is signed"));
     window.open_sample("twill-2-2");
     CHECK(window.text("evidence").contains("has changed since"));
