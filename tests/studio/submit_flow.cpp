@@ -268,8 +268,7 @@ TEST_CASE("submit: findings, evidence and a cloth that cannot be made are told")
 
     CHECK(window.text("evidence").contains("none yet"));
     const auto place = [&] {
-        QCoreApplication::sendPostedEvents();
-        QCoreApplication::processEvents();
+        (void)window.wait([settled = 0]() mutable { return ++settled > 5; });  // one layout asks for another
         return window.find<QLineEdit>("signing_password").mapTo(&window.panel, QPoint()).y();
     };
     const int before = place();
