@@ -15,14 +15,11 @@ namespace {
 const char* const remembered_fidelity = "simulation/fidelity";
 const char* const remembered_draft_first = "simulation/draft_first";
 
-/// Figures of the 18 cloths that come to rest in docs/tradeoff.md: the most seconds, and errors, middle and most, as a user gets
-/// them; of a reference, which begins at the rest of standard, those of its points alone.
+/// Figures of the 18 cloths that come to rest in docs/tradeoff.md: the most seconds, and errors, median and most, as one gets them.
 QString figures_source(const QString& points, const QString& goal, const QString& errors) {
     return FidelityGroup::tr(
-               "Source: docs/tradeoff.md. Seconds: solver relax from the plan to residual %2, 18 "
-               "cloths of %1 control "
-               "points, the processor's of one thread, AMD EPYC.\nErrors, the middle "
-               "cloth and the most: %3")
+               "Source: docs/tradeoff.md. Seconds: solver relax to residual %2, 18 cloths of %1 control "
+               "points, the processor's of one thread, AMD EPYC.\nErrors, median and most: %3")
         .arg(points, goal, errors);
 }
 
@@ -33,35 +30,35 @@ FidelityWords words_of(sim::Fidelity fidelity) {
         case sim::Fidelity::draft:
             return {FidelityGroup::tr("Draft"),
                     FidelityGroup::tr("For editing: 2 points a crossing, at rest within 0.01. Small cloths "
-                                      "took up to 1.7 s. Crimp is off by 0.2 "
-                                      "points as a rule and 7 at most, thickness by up to 20 %."),
+                                      "took up to 1.4 s. Crimp is off by 0.2 "
+                                      "points as a rule and 7 at most, thickness by up to 22 %."),
                     figures_source(
-                        FidelityGroup::tr("16 to 2,248"), QStringLiteral("0.01"),
+                        FidelityGroup::tr("16 to 1,920"), QStringLiteral("0.01"),
                         FidelityGroup::tr(
-                            "0.18 and 7.017 percentage points of crimp (orthogonal), 1.32 and 19.8 % of "
+                            "0.179 and 7.017 percentage points of crimp (orthogonal), 1.71 and 21.54 % of "
                             "thickness (angle interlock A), where another rest is found too."))};
         case sim::Fidelity::standard:
             return {FidelityGroup::tr("Standard"),
                     FidelityGroup::tr("For judging cloth: 4 points a crossing, at rest within 0.001. Small "
-                                      "cloths took up to 3.4 s. Crimp is off by "
-                                      "0.03 points as a rule and 1.4 at most, thickness by up to 9 %."),
+                                      "cloths took up to 3.2 s. Crimp is off by 0.01 points as a rule and 1.4 at most, thickness by "
+                                      "up to 1.5 %, from the rest that it comes to; there may be others."),
                     figures_source(
-                        FidelityGroup::tr("32 to 4,472"), QStringLiteral("0.001"),
+                        FidelityGroup::tr("32 to 3,840"), QStringLiteral("0.001"),
                         FidelityGroup::tr(
-                            "0.03 and 1.438 percentage points of crimp (orthogonal), 0.18 and 9.0 % of "
-                            "thickness (layer to layer), where another rest is found too."))};
+                            "0.013 and 1.438 percentage points of crimp (orthogonal), 0.10 and 1.50 % of "
+                            "thickness (orthogonal)."))};
         case sim::Fidelity::reference:
             break;
     }
     return {
         FidelityGroup::tr("Reference"),
         FidelityGroup::tr("For evidence: 8 points a crossing, at rest within 1e-8. Small cloths took up to "
-                          "16 s. Crimp is off "
-                          "by up to 0.1 points, thickness by up to 0.3 %, from the rest that standard came to."),
-        figures_source(FidelityGroup::tr("64 to 9,000"), QStringLiteral("1e-8"),
+                          "11 s, standard before it counted. Crimp is off "
+                          "by up to 0.1 points, thickness by up to 0.2 %, from the rest that standard came to."),
+        figures_source(FidelityGroup::tr("64 to 7,680"), QStringLiteral("1e-8"),
                        FidelityGroup::tr(
-                           "0.001 and 0.081 percentage points of crimp (plain, pinned), 0.01 and 0.24 % of "
-                           "thickness (orthogonal), of the points alone."))};
+                           "0.001 and 0.081 percentage points of crimp (plain, pinned), 0.00 and 0.23 % of "
+                           "thickness (orthogonal)."))};
 }
 
 FidelityGroup::FidelityGroup(QWidget* parent)
@@ -77,8 +74,8 @@ FidelityGroup::FidelityGroup(QWidget* parent)
     m_choice->setAccessibleName(tr("Fidelity"));
     m_words->setWordWrap(true);
     m_draft_first->setToolTip(
-        tr("Yarns are relaxed in few points first, so there is something to look at after 29 to 52 % of the "
-           "time; in all it takes 0.7 to 1.4 times the work.\nSource: docs/simulation.md, Starting in "
+        tr("Yarns are relaxed in few points first, so there is something to look at after 15 to 58 % of the "
+           "time; in all it takes 0.3 to 1.4 times the work.\nSource: docs/simulation.md, Starting in "
            "fewer points."));
     auto* lines = new QVBoxLayout(this);
     lines->addWidget(m_choice);
