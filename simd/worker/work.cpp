@@ -13,6 +13,7 @@
 #include <algorithm>
 #include <simd/link/error_form.hpp>
 #include <simd/worker/memory.hpp>
+#include <new>
 #include <utility>
 
 namespace weave::simd {
@@ -59,7 +60,11 @@ Work::Work(Link& link, WorkOrder order)
 
 Status Work::run() {
     WEAVE_CHECK_OK(limit_memory(m_order.planning_bytes));
-    WEAVE_CHECK_OK(begin());
+    try {
+        WEAVE_CHECK_OK(begin());
+    } catch (const std::bad_alloc&) {
+        return system_fault("out of memory: to lay it out takes more than the " + sim::memory_text(m_order.planning_bytes) + " that a plan may have; simulate a part of the cloth");
+    }
     WEAVE_CHECK_OK(wait_for_admission());
     if (m_inbox.finish() != Finish::no) return finish();
     WEAVE_CHECK_OK(loop());

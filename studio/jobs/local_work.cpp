@@ -1,10 +1,10 @@
 #include <studio/jobs/local_work.hpp>
 
 #include <weave/design/evaluate.hpp>
+#include <weave/sim/memory_room.hpp>
 #include <weave/wire/shown.hpp>
 
 #include <algorithm>
-#include <studio/jobs/memory_room.hpp>
 #include <studio/jobs/plan_summary.hpp>
 #include <utility>
 
@@ -32,7 +32,7 @@ void LocalWork::run() {
 }
 
 Status LocalWork::begin() {
-    if (const auto room = room_here(); room && !m_means.memory_bytes) m_means.memory_bytes = room->bytes;
+    if (const auto room = sim::room_here(); room && !m_means.memory_bytes) m_means.memory_bytes = room->bytes;
     WEAVE_CHECK_OK(foresee_room());
     auto run = sim::Run::begin(m_design, m_request, m_means.threads);
     if (!run) return std::move(run).error();
@@ -44,18 +44,18 @@ Status LocalWork::begin() {
 /// Whether the memory is expected to do for so many times the piece that is simulated.
 Status LocalWork::check_room_for(std::size_t times) const {
     if (!m_means.memory_bytes) return {};
-    MemoryNeed need = need_of(m_run->now().plan());
+    sim::MemoryNeed need = sim::need_of(m_run->now().plan());
     need.points *= times;
     need.stacks *= times;
-    return check_room(need, {*m_means.memory_bytes, {}});
+    return sim::check_room(need, {*m_means.memory_bytes, {}});
 }
 
 /// Laying out a cloth that has no room takes half a minute and gigabytes.
 Status LocalWork::foresee_room() const {
     if (!m_means.memory_bytes) return {};
     WEAVE_TRY(const Evaluation evaluation, evaluate(m_design));
-    const auto need = foreseen_need(m_design, *evaluation.block, m_request.plan);
-    return need ? check_room(*need, {*m_means.memory_bytes, {}}) : Status();
+    const auto need = sim::foreseen_need(m_design, *evaluation.block, m_request.plan);
+    return need ? sim::check_room(*need, {*m_means.memory_bytes, {}}) : Status();
 }
 
 Status LocalWork::loop() {

@@ -6,7 +6,7 @@
 #include <weave/sim/yarns_file.hpp>
 
 #include <algorithm>
-#include <studio/jobs/memory_room.hpp>
+#include <studio/jobs/server_room.hpp>
 #include <studio/jobs/plan_summary.hpp>
 #include <type_traits>
 #include <utility>
@@ -86,11 +86,11 @@ Status RemoteWork::begin(std::chrono::milliseconds patience) {
     WEAVE_TRY(const wire::ServerPlace place, place_of(m_server));
     WEAVE_TRY(const Evaluation evaluation, evaluate(m_design));
     const auto room = room_on(place);
-    const auto foreseen = foreseen_need(m_design, *evaluation.block, m_request.plan);
-    if (room && foreseen) WEAVE_CHECK_OK(check_room(*foreseen, *room));
+    const auto foreseen = sim::foreseen_need(m_design, *evaluation.block, m_request.plan);
+    if (room && foreseen) WEAVE_CHECK_OK(sim::check_room(*foreseen, *room));
     WEAVE_TRY(const sim::Plan plan, make_plan(m_design, *evaluation.block, m_request.plan));
     m_outbox.tell(std::make_shared<const PlanSummary>(summary_of(plan, m_design.title)));
-    if (room) WEAVE_CHECK_OK(check_room(need_of(plan), *room));
+    if (room) WEAVE_CHECK_OK(sim::check_room(sim::need_of(plan), *room));
     if (m_inbox.finish() != Finish::no) return {};
     WEAVE_TRY(m_follower, wire::Follower::connect(place, "weave studio", patience));
     m_follower->on_trouble([this](const Error* trouble) {

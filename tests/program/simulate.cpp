@@ -80,4 +80,7 @@ TEST_CASE("what cannot be simulated is refused with its reason") {
     const Json plan = shop.json({"simulate", "d.weave", "--explain"});
     CHECK(plan.at("yarns") == 4);
     CHECK(plan.at("plan").size() >= 6);
+    CHECK(plan.at("points") == 32);
+    CHECK(plan.at("expected_bytes").get<std::uint64_t>() > 32 * 1024);
+    CHECK(shop.must({"simulate", "d.weave", "--explain"}).out.find("points: 32 (4 yarns, about ") != std::string::npos);
 }

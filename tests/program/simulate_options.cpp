@@ -6,6 +6,7 @@
 
 #include <chrono>
 #include <csignal>
+#include <fstream>
 
 using program_tests::Ended;
 using program_tests::Workshop;
@@ -98,6 +99,21 @@ TEST_CASE("a plan that is only explained takes no option that makes no differenc
     }
     shop.must({"simulate", "d.weave", "--explain", "--fidelity", "draft", "--points", "3", "--whole"});
     shop.must({"simulate", "d.weave", "--explain", "--backend", "cpu"});
+}
+
+TEST_CASE("a cloth that this machine cannot hold is refused before it is laid out, with what has room") {
+    std::ifstream table("/proc/meminfo");
+    std::uint64_t kibibytes = 0;
+    for (std::string name, rest; table >> name >> kibibytes && name != "MemAvailable:";) std::getline(table, rest);
+    if (kibibytes > std::uint64_t{60} << 20) {
+        WARN("skipped: this machine may hold it");
+        return;
+    }
+    const Workshop shop;
+    shop.must({"samples", "shoe-adult", "-o", "shoe.weave"});
+    const std::string line =
+        shop.refused({"simulate", "shoe.weave", "--fidelity", "reference", "-o", "shoe.yarns"}, 4, {"shoe.weave: this takes about ", "GiB are free", "simulate a part of the cloth", "or as draft"});
+    CHECK(line.find("planning") == std::string::npos);
 }
 
 TEST_CASE("planning and relaxing that take their time are told, the latter with the order of the crossings") {

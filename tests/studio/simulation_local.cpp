@@ -2,6 +2,7 @@
 
 #include <weave/design/evaluate.hpp>
 #include <weave/sim/forecast.hpp>
+#include <weave/sim/memory_room.hpp>
 #include <weave/sim/simulate.hpp>
 
 #include <catch2/catch.hpp>
@@ -10,7 +11,6 @@
 #include <QRegularExpression>
 
 #include <studio/jobs/local_relaxation.hpp>
-#include <studio/jobs/memory_room.hpp>
 #include <studio/support/follow_run.hpp>
 
 using namespace weave;
@@ -248,7 +248,7 @@ TEST_CASE("a run that is stopped while its yarns are laid out is stopped at once
 TEST_CASE("a cloth with no room at all is refused before it is laid out, with what has room; a draft is not told to be one") {
     const Design shoe = sample("shoe-adult");
     const Evaluation evaluation = evaluate(shoe).value();
-    const auto need = foreseen_need(shoe, *evaluation.block, request_at(sim::Fidelity::draft).plan);
+    const auto need = sim::foreseen_need(shoe, *evaluation.block, request_at(sim::Fidelity::draft).plan);
     REQUIRE(need);
     CHECK(need->points > 7'000'000);  // 14 million, as its plan has them
     CHECK(need->points < 20'000'000);
@@ -259,24 +259,24 @@ TEST_CASE("a cloth with no room at all is refused before it is laid out, with wh
     CHECK_FALSE(told.plan);
     CHECK_THAT(told.error->message, Catch::Contains("simulate a part of the cloth, of about") && !Catch::Contains("draft"));
     CHECK_THAT(told.error->message, Catch::Contains("2.0 GiB are free"));
-    CHECK_THAT(check_room({1'000'000, 100, sim::Fidelity::standard}, {1, {}}).error().message, Catch::Contains("or as draft"));
+    CHECK_THAT(sim::check_room({1'000'000, 100, sim::Fidelity::standard}, {1, {}}).error().message, Catch::Contains("or as draft"));
 }
 
 TEST_CASE("the part that is said to have room has, and a larger one has none") {
     const Design shoe = sample("shoe-adult");
     const Evaluation evaluation = evaluate(shoe).value();
     sim::SimulationRequest request = request_at(sim::Fidelity::draft).plan;
-    const MemoryRoom room{std::uint64_t{1} << 30, {}};
-    const Status refused = check_room(foreseen_need(shoe, *evaluation.block, request).value(), room);
+    const sim::MemoryRoom room{std::uint64_t{1} << 30, {}};
+    const Status refused = sim::check_room(sim::foreseen_need(shoe, *evaluation.block, request).value(), room);
     REQUIRE_FALSE(refused);
     const QRegularExpressionMatch told = QRegularExpression("about (\\d+) rows and (\\d+) columns").match(QString::fromStdString(refused.error().message));
     REQUIRE(told.hasMatch());
     const std::size_t lines = told.captured(1).toULongLong();
     CHECK(told.captured(2).toULongLong() == lines);
     request.region = Region{0, lines - 1, 0, lines - 1};
-    CHECK(check_room(foreseen_need(shoe, *evaluation.block, request).value(), room));
+    CHECK(sim::check_room(sim::foreseen_need(shoe, *evaluation.block, request).value(), room));
     request.region = Region{0, lines + lines / 4, 0, lines + lines / 4};
-    CHECK_FALSE(check_room(foreseen_need(shoe, *evaluation.block, request).value(), room));
+    CHECK_FALSE(sim::check_room(sim::foreseen_need(shoe, *evaluation.block, request).value(), room));
 }
 
 TEST_CASE("memory is foreseen about as the plan has it, of a part as well") {
@@ -289,7 +289,7 @@ TEST_CASE("memory is foreseen about as the plan has it, of a part as well") {
         request.region = region;
         const auto plan = sim::make_plan(design, *evaluation.block, request);
         if (!plan) return false;  // too small to be held at its rims
-        const MemoryNeed foreseen = foreseen_need(design, *evaluation.block, request).value(), planned = need_of(*plan);
+        const sim::MemoryNeed foreseen = sim::foreseen_need(design, *evaluation.block, request).value(), planned = sim::need_of(*plan);
         CHECK(foreseen.points >= planned.points / 2);
         CHECK(foreseen.points <= 2 * planned.points);
         CHECK(foreseen.stacks == planned.stacks);
@@ -299,14 +299,14 @@ TEST_CASE("memory is foreseen about as the plan has it, of a part as well") {
     for (const char* name : {"plain", "angle-interlock-b", "hexagon-tubes", "pocket"}) planned += compare(name, {}) ? 1 : 0;
     CHECK(planned >= 1);
     CHECK(compare("shoe-adult", Region{400, 419, 200, 219}));
-    CHECK_FALSE(foreseen_need(sample("plain"), *evaluate(sample("plain")).value().block, {}));  // its repeat may do
+    CHECK_FALSE(sim::foreseen_need(sample("plain"), *evaluate(sample("plain")).value().block, {}));  // its repeat may do
 }
 
 TEST_CASE("a cloth that needs more than is free is refused before it is laid out, also where it is not much more") {
     Design design = sample("pocket");
     design.scene.boundary_x = design.scene.boundary_y = Boundary::frozen;
     const Evaluation evaluation = evaluate(design).value();
-    const std::uint64_t needed = sim::expected_bytes(foreseen_need(design, *evaluation.block, request_at(sim::Fidelity::draft).plan).value().points);
+    const std::uint64_t needed = sim::expected_bytes(sim::foreseen_need(design, *evaluation.block, request_at(sim::Fidelity::draft).plan).value().points);
     LocalRelaxation run(LocalMeans{.threads = 1, .memory_bytes = needed - 1});
     FollowedRun told(run);
     run.start(design, request_at(sim::Fidelity::draft));

@@ -17,6 +17,8 @@
 #include <weave/design/document.hpp>
 #include <weave/ranks/mpi/mpi_comm.hpp>
 #include <weave/sim/exports.hpp>
+#include <weave/sim/forecast.hpp>
+#include <weave/sim/memory_room.hpp>
 #include <weave/sim/run.hpp>
 #include <weave/sim/simulate.hpp>
 #include <weave/sim/starts.hpp>
@@ -174,6 +176,36 @@ Status sweep(CommandOutcome& outcome, wire::Follower& server, const Cloth& cloth
     return sweep_on(outcome, server, tasks, settings, wish);
 }
 
+/// What cannot be held is refused, what may not be is said: amounts are known within a factor of four (sim/forecast.hpp).
+Status check_memory(CommandOutcome& outcome, const sim::MemoryNeed& need, const std::string& file) {
+    const std::optional<sim::MemoryRoom> room = sim::room_here();
+    if (!room) return {};
+    const Status doubt = sim::check_room(need, *room);
+    if (doubt) return {};
+    if (sim::is_hopeless(need, *room)) return Error(doubt.error()).in(file);
+    outcome.note(on_one_line(file) + ": " + doubt.error().message + "; it is tried all the same");
+    return {};
+}
+
+/// Laying out a cloth that has no room at all takes a minute, and ends without a word.
+Status foresee_memory(const SimulateTask& task, const Block& block, const std::string& file) {
+    const std::optional<sim::MemoryRoom> room = sim::room_here();
+    std::optional<sim::MemoryNeed> need = sim::foreseen_need(task.design, block, task.request);
+    if (!room || !need) return {};
+    const Status doubt = sim::check_room(*need, *room);
+    need->points /= 2;  // as many as it has at least
+    return sim::is_hopeless(*need, *room) ? Status(Error(doubt.error()).in(file)) : Status();
+}
+
+Status explain(CommandOutcome& outcome, const sim::Plan& plan) {
+    const std::size_t points = sim::points_of(plan);
+    const std::uint64_t bytes = sim::expected_bytes(points);
+    outcome.answer({{"plan", sim::lines_json(plan)}, {"yarns", plan.scene.yarns.size()}, {"points", points}, {"expected_bytes", bytes}},
+                   in_words(plan.lines) + "points: " + std::to_string(points) + " (" + counted(plan.scene.yarns.size(), "yarn") + ", about " + sim::memory_text(bytes) +
+                       " of memory while they relax)\n");
+    return {};
+}
+
 Status run_simulation(CommandOutcome& outcome, const SimulateWish& wish) {
     if (ranks::is_one_of_many()) return simulate_together(outcome, wish);
     WEAVE_CHECK_OK(check_alone(wish));
@@ -196,6 +228,8 @@ Status run_simulation(CommandOutcome& outcome, const SimulateWish& wish) {
     auto understood = understand(cloth, wish);
     if (!understood) return std::move(understood).error().in(wish.file);
     SimulateTask& task = *understood;
+    const bool computes_here = !server && !wish.explain;
+    if (computes_here) WEAVE_CHECK_OK(foresee_memory(task, block, wish.file));
     WEAVE_TRY(sim::Plan plan, plan_of(task.design, block, task.request, wish.file));
     if (!server) {
         const Result<sim::BackendChoice> choice = sim::choose_backend(task.options.backend, plan.scene);
@@ -203,8 +237,7 @@ Status run_simulation(CommandOutcome& outcome, const SimulateWish& wish) {
         plan.lines.push_back({"backend", choice->device.empty() ? "cpu" : "cuda: " + choice->device, choice->reason});
     }
     if (wish.explain) {
-        outcome.answer({{"plan", sim::lines_json(plan)}, {"yarns", plan.scene.yarns.size()}}, in_words(plan.lines));
-        return {};
+        return explain(outcome, plan);
     }
     if (task.request.region) {
         WEAVE_CHECK_OK(check_flips_within(plan, task.flips));
@@ -214,6 +247,7 @@ Status run_simulation(CommandOutcome& outcome, const SimulateWish& wish) {
         plan = {};
         return simulate_on(outcome, *server, cloth.design, task, wish, goal);
     }
+    WEAVE_CHECK_OK(check_memory(outcome, sim::need_of(plan), wish.file));
     const HeldInterrupt held("the yarns are written as they lie; again to end at once, without the state");
     WEAVE_TRY(const Yarns yarns, watched(block, task, plan, wish));
     WEAVE_TRY(const std::string bytes, write_yarns(yarns));

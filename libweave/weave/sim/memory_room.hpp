@@ -1,26 +1,25 @@
 #pragma once
 
 #include <weave/sim/plan.hpp>
-#include <weave/wire/place.hpp>
 
 #include <cstddef>
 #include <cstdint>
 #include <optional>
 #include <string>
 
-namespace weave::studio {
+namespace weave::sim {
 
 /// What a simulation takes, as far as memory goes.
 struct MemoryNeed {
     std::size_t points = 0, stacks = 0;  ///< control points of its yarns, and stacks of the cloth that they are of
-    sim::Fidelity fidelity = sim::Fidelity::standard;
+    Fidelity fidelity = Fidelity::standard;
 };
 
-MemoryNeed need_of(const sim::Plan& plan);
+MemoryNeed need_of(const Plan& plan);
 /// The need of a plan that is not made yet, a guess that takes no time: a key point where a pick passes a column of
-/// stacks, or an end a row. Nothing where the smallest repeat of the cloth may do, which only the plan finds.
+/// stacks, or an end a row; the plan may have half as many points, or twice. Nothing where the smallest repeat of the cloth may do, which only the plan finds.
 std::optional<MemoryNeed> foreseen_need(const Design& design, const Block& block,
-                                        const sim::SimulationRequest& request);
+                                        const SimulationRequest& request);
 
 /// Memory that simulations may take somewhere.
 struct MemoryRoom {
@@ -30,10 +29,10 @@ struct MemoryRoom {
 
 /// What is free here; nothing where the system does not say.
 std::optional<MemoryRoom> room_here();
-/// What a server has for all that it computes, as it says itself. Errors: it cannot be asked, or does not say.
-Result<MemoryRoom> room_on(const wire::ServerPlace& place);
 
 /// An error where the room is not expected to do, with both amounts and what would have room.
 Status check_room(const MemoryNeed& need, const MemoryRoom& room);
+/// Whether it cannot do, however little this cloth takes.
+bool is_hopeless(const MemoryNeed& need, const MemoryRoom& room);
 
-}  // namespace weave::studio
+}  // namespace weave::sim

@@ -1,31 +1,26 @@
-#include <studio/jobs/memory_room.hpp>
+#include <weave/sim/memory_room.hpp>
 
-#include <weave/core/json_reader.hpp>
 #include <weave/sim/forecast.hpp>
-#include <weave/wire/client.hpp>
 
 #include <algorithm>
-#include <chrono>
 #include <cmath>
 #include <fstream>
 
-namespace weave::studio {
+namespace weave::sim {
 
 namespace {
 
-/// How long a server may take to say what it has: to be told that early is a help, no more.
-constexpr std::chrono::seconds patience{5};
 /// A part with fewer rows or columns of stacks has nothing that can move.
 constexpr std::size_t fewest_lines = 3;
 
-double points_per_key(const sim::SimulationRequest& request) {
+double points_per_key(const SimulationRequest& request) {
     if (request.points_per_key) return *request.points_per_key;
     switch (request.fidelity) {
-        case sim::Fidelity::draft:
+        case Fidelity::draft:
             return 2;
-        case sim::Fidelity::standard:
+        case Fidelity::standard:
             return 4;
-        case sim::Fidelity::reference:
+        case Fidelity::reference:
             break;
     }
     return 8;
@@ -37,7 +32,7 @@ std::size_t stacks_of(const Region& region) {
 
 /// Rows, and as many columns, of stacks that the room does for; 0 where a part of so few is none.
 std::size_t lines_within(const MemoryNeed& need, const MemoryRoom& room) {
-    const double share = static_cast<double>(sim::points_within(room.bytes)) / static_cast<double>(need.points);
+    const double share = static_cast<double>(points_within(room.bytes)) / static_cast<double>(need.points);
     const auto lines = static_cast<std::size_t>(std::sqrt(share * static_cast<double>(need.stacks)));
     return lines < fewest_lines ? 0 : lines;
 }
@@ -46,19 +41,19 @@ std::string help_for(const MemoryNeed& need, const MemoryRoom& room) {
     std::string help = "simulate a part of the cloth";
     if (const std::size_t lines = lines_within(need, room); lines > 0)
         help += ", of about " + std::to_string(lines) + " rows and " + std::to_string(lines) + " columns of stacks at most";
-    if (need.fidelity != sim::Fidelity::draft) help += ", or as draft";
+    if (need.fidelity != Fidelity::draft) help += ", or as draft";
     if (room.server.empty()) help += ", or on a server";
     return help;
 }
 
 }  // namespace
 
-MemoryNeed need_of(const sim::Plan& plan) {
-    return {sim::points_of(plan), stacks_of(plan.curves.region), plan.fidelity};
+MemoryNeed need_of(const Plan& plan) {
+    return {points_of(plan), stacks_of(plan.curves.region), plan.fidelity};
 }
 
 std::optional<MemoryNeed> foreseen_need(const Design& design, const Block& block,
-                                        const sim::SimulationRequest& request) {
+                                        const SimulationRequest& request) {
     const bool repeats = design.scene.boundary_x == Boundary::periodic && design.scene.boundary_y == Boundary::periodic &&
                          request.weft_mode.value_or(design.scene.weft_mode) == WeftMode::periodic;
     if (repeats && request.reduce && !request.region) return {};
@@ -80,27 +75,18 @@ std::optional<MemoryRoom> room_here() {
     return {};
 }
 
-Result<MemoryRoom> room_on(const wire::ServerPlace& place) {
-    constexpr std::uint64_t most_bytes = std::uint64_t{16} << 20;
-    wire::ServerPlace hasty = place;
-    hasty.options.connect_time = hasty.options.answer_time = patience;
-    WEAVE_TRY(const std::string text, wire::download(hasty, "/api/v1/status", most_bytes));
-    WEAVE_TRY(const Json status, parse_json(text));
-    JsonReader reader(status, "");
-    JsonReader memory = reader.object("memory");
-    const std::int64_t bytes = memory.integer("bytes", 0, std::numeric_limits<std::int64_t>::max());
-    WEAVE_CHECK_OK(reader.status());
-    return MemoryRoom{static_cast<std::uint64_t>(bytes), place.name};
-}
-
 Status check_room(const MemoryNeed& need, const MemoryRoom& room) {
-    const std::uint64_t needed = sim::expected_bytes(need.points);
+    const std::uint64_t needed = expected_bytes(need.points);
     if (needed <= room.bytes) return {};
     const std::string there = room.server.empty() ? " are free" : " is all that there is on " + room.server;
     return Error{ErrorCode::refused,
-                 "this takes about " + sim::memory_text(needed) + " of memory, and " + sim::memory_text(room.bytes) +
+                 "this takes about " + memory_text(needed) + " of memory, and " + memory_text(room.bytes) +
                      there + "; " + help_for(need, room),
                  {}};
 }
 
-}  // namespace weave::studio
+bool is_hopeless(const MemoryNeed& need, const MemoryRoom& room) {
+    return least_bytes(need.points) > room.bytes;
+}
+
+}  // namespace weave::sim

@@ -1,0 +1,11 @@
+#pragma once
+
+#include <weave/sim/memory_room.hpp>
+#include <weave/wire/place.hpp>
+
+namespace weave::studio {
+
+/// What a server has for all that it computes, as it says itself. Errors: it cannot be asked, or does not say.
+Result<sim::MemoryRoom> room_on(const wire::ServerPlace& place);
+
+}  // namespace weave::studio
