@@ -263,7 +263,7 @@ void TubeModel::set_values() {
             ++knot;
         }
     }
-    const ValueRange range = scale_of(colour, least, most);
+    const ValueRange range = scale_of(*m_source, colour, least, most);
     m_low = range.low;
     m_high = range.high;
 }

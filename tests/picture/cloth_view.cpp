@@ -182,6 +182,24 @@ TEST_CASE("strain, contact, movement and height colour the yarns between the end
     CHECK(height.at({9.7, 5, 1}).green > height.at({9.7, 5, 1}).blue + 60);
 }
 
+TEST_CASE("the strain of what is held as planned does not stretch the scale") {
+    Yarns yarns = cross();
+    SimulatedYarn& warp = yarns.yarns[1];
+    warp.spline.control.clear();
+    warp.planned.clear();
+    warp.strain = {1.3, 1.3, 1.2, 0.02, 0.03, 0.05, 0.05};
+    for (std::size_t i = 0; i < warp.strain.size(); ++i) {
+        const double x = 10.0 / 6 * static_cast<double>(i);
+        warp.spline.control.emplace_back(x, 5, 1);
+        warp.planned.emplace_back(x, 5, i < 2 ? 1 : 1.5);  // the first two are held
+    }
+    warp.contact_N.assign(warp.strain.size(), 0);
+    const Shot shot(yarns, view_of({.side = "top", .colour = "strain"}));
+    CHECK((shot.scene.low == Approx(2) && shot.scene.high == Approx(5)));
+    for (SimulatedYarn& yarn : yarns.yarns) yarn.planned = yarn.spline.control;  // all held: all counts
+    CHECK(Shot(yarns, view_of({.side = "top", .colour = "strain"})).scene.high > 100);
+}
+
 TEST_CASE("a picture says whether its yarns are as planned, at rest or not") {
     Yarns yarns = cross();
     const auto picture = [&](const Json& report) {

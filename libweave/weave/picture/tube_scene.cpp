@@ -47,7 +47,7 @@ Result<Lines> lines_of(const Yarns& yarns, std::size_t copies) {
     return sampled(yarns, coarse_share, most_tube_pieces / copies);
 }
 
-void set_range(TubeScene& scene, ClothColour colour) {
+void set_range(TubeScene& scene, const Yarns& yarns, ClothColour colour) {
     double least = std::numeric_limits<double>::infinity(), most = -least;
     for (const TubePiece& piece : scene.pieces) {
         for (const double value : {double{piece.value_from}, double{piece.value_to}}) {
@@ -55,7 +55,7 @@ void set_range(TubeScene& scene, ClothColour colour) {
             most = std::max(most, value);
         }
     }
-    const ValueRange range = scale_of(colour, least, most);
+    const ValueRange range = scale_of(yarns, colour, least, most);
     scene.low = range.low;
     scene.high = range.high;
 }
@@ -218,7 +218,7 @@ Result<TubeScene> make_scene(const Yarns& yarns, const ClothView& view, TubeCame
     if (view.colour == ClothColour::yarn) {
         scene.colours = own_colours(yarns);
     } else {
-        set_range(scene, view.colour);
+        set_range(scene, yarns, view.colour);
     }
     const Eigen::AlignedBox3d box = box_round(scene);
     scene.size = box.sizes();

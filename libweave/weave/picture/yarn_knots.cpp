@@ -6,6 +6,7 @@
 
 #include <algorithm>
 #include <cmath>
+#include <optional>
 
 namespace weave {
 
@@ -59,7 +60,41 @@ std::vector<Colour> own_colours(const Yarns& yarns) {
     return colours;
 }
 
-ValueRange scale_of(ClothColour colour, double least, double most) {
+namespace {
+
+/// Whether the curve at a control point is drawn by points that all left their planned place: a held one never does.
+bool is_free_at(const SimulatedYarn& yarn, std::size_t point) {
+    const std::size_t points = yarn.spline.control.size();
+    for (std::size_t k = 0; k < 4; ++k) {  // of the segment that begins there
+        const std::size_t beyond = point + k;
+        const std::size_t at = yarn.spline.is_periodic ? (beyond + points - 1) % points : std::min(std::max<std::size_t>(beyond, 1) - 1, points - 1);
+        if (yarn.spline.control[at] == yarn.planned[at]) return false;
+    }
+    return true;
+}
+
+/// Least and greatest strain of what is not held, %; nothing where all is.
+std::optional<ValueRange> free_strain(const Yarns& yarns) {
+    std::optional<ValueRange> range;
+    for (const SimulatedYarn& yarn : yarns.yarns) {
+        for (std::size_t i = 0; i < yarn.strain.size(); ++i) {
+            if (!is_free_at(yarn, i)) continue;
+            const double strain = 100 * yarn.strain[i];
+            if (!range) range = ValueRange{strain, strain};
+            range->low = std::min(range->low, strain);
+            range->high = std::max(range->high, strain);
+        }
+    }
+    return range;
+}
+
+}  // namespace
+
+ValueRange scale_of(const Yarns& yarns, ClothColour colour, double least, double most) {
+    if (const auto range = colour == ClothColour::strain ? free_strain(yarns) : std::nullopt) {
+        least = std::max(least, range->low);
+        most = std::min(most, range->high);
+    }
     const bool has_zero = colour != ClothColour::strain && colour != ClothColour::height;
     const double low = has_zero ? 0 : least;
     const double thinnest = 1e-9 + 1e-6 * std::max(std::abs(low), std::abs(most));

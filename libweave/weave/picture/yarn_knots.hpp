@@ -33,8 +33,9 @@ struct ValueRange {
     double low = 0, high = 1;
 };
 /// The scale for values between these two: none is the natural end of it, but for strain and height, which
-/// have two sides; and never empty.
-ValueRange scale_of(ClothColour colour, double least, double most);
+/// have two sides; and never empty. Strain beyond that of what came to rest by itself is left out of the scale: where a
+/// yarn is held as planned its strain says nothing, and would drown the rest.
+ValueRange scale_of(const Yarns& yarns, ClothColour colour, double least, double most);
 
 /// How colours are told to people: what they show, and with its unit, as over a colour bar.
 struct ColourWords {

@@ -83,17 +83,33 @@ std::array<double, 2> order_of(const Outline& outline, const SplitCloth& cloth) 
     return found;
 }
 
-/// Strain at a control point, against the rest length of the segment that begins there; at the end of a yarn, that ends there.
+/// A control point on a yarn of a piece, and the segment that begins there; at the end of a yarn, that ends there.
+struct OnYarn {
+    OnYarn(const Piece& piece, std::uint32_t slot)
+        : place(piece.fabric().yarns()[piece.fabric().yarn_of_slot()[slot]]), yarn(piece.fabric().scene().yarns[piece.fabric().yarn_of_slot()[slot]]),
+          segment(std::min(slot - place.first_slot - 1 - place.skipped, place.segments - 1)) {}
+
+    const sim::YarnPlace& place;
+    const sim::SimYarn& yarn;
+    std::uint32_t segment;  ///< of the yarn's
+};
+
+/// Strain at a control point, against the rest length of its segment.
 double strain_at(const Piece& piece, std::uint32_t slot) {
     const sim::Fabric<double>& fabric = piece.fabric();
-    const std::uint32_t strand = fabric.yarn_of_slot()[slot];
-    const sim::YarnPlace& place = fabric.yarns()[strand];
-    const sim::SimYarn& yarn = fabric.scene().yarns[strand];
-    const std::uint32_t within = slot - place.first_slot - 1 - place.skipped, segment = place.first_segment + std::min(within, place.segments - 1);
-    double rest = static_cast<double>(fabric.constants()[strand].rest_mm);
-    if (yarn.is_fed) rest = sim::Speeds<double>(fabric.gauss(), &piece.state[3 * std::size_t(fabric.segment_places()[segment].slot)]).length / yarn.strain;
+    const OnYarn on(piece, slot);
+    double rest = static_cast<double>(fabric.constants()[fabric.yarn_of_slot()[slot]].rest_mm);
+    if (on.yarn.is_fed) {
+        const std::size_t begin = fabric.segment_places()[on.place.first_segment + on.segment].slot;
+        rest = sim::Speeds<double>(fabric.gauss(), &piece.state[3 * begin]).length / on.yarn.strain;
+    }
     const double speed = (sim::load(&piece.state[3 * std::size_t(slot + 1)]) - sim::load(&piece.state[3 * std::size_t(slot - 1)])).norm() / 2;
     return speed / rest - 1;
+}
+
+bool is_held_at(const Piece& piece, std::uint32_t slot) {
+    const OnYarn on(piece, slot);
+    return sim::is_held_at(on.yarn, on.place.skipped + on.segment);
 }
 
 constexpr std::size_t numbers_a_point = 10;
@@ -317,8 +333,10 @@ Measured measure(Comm& comm, const Cut& cut, const std::vector<Part>& parts, con
         greatest[0] = std::max(greatest[0], contacts.overlap);
         for (std::size_t i = 0; i < parts[b].own.size(); ++i) {
             const std::uint32_t y = parts[b].own[i].yarn;
+            const std::uint32_t slot = piece.slot_of_own()[i];
+            if (is_held_at(piece, slot)) continue;
             double& most = greatest[outline.bare.yarns[y].system == System::warp ? 1 : 2];
-            most = std::max(most, std::abs(strain_at(piece, piece.slot_of_own()[i]) - (cut.yarns[y].is_fed ? cut.yarns[y].strain - 1 : 0)));
+            most = std::max(most, std::abs(strain_at(piece, slot) - (cut.yarns[y].is_fed ? cut.yarns[y].strain - 1 : 0)));
         }
     }
     double lost = 0, slid = 0, all_seen = 0;

@@ -11,14 +11,19 @@ namespace weave::sim {
 
 namespace {
 
-/// How far the strain of the yarns of each system is from what was asked for: S - 1 where they are fed, else 0.
+/// How far the strain of the yarns of each system is from what was asked for, where nothing is held: S - 1 where they are
+/// fed, else 0.
 Json strain_deviation(const Yarns& repeat, const SimScene& scene) {
     std::array<double, 2> greatest{};
     for (std::size_t y = 0; y < repeat.yarns.size(); ++y) {
         const SimYarn& yarn = scene.yarns[y];
         double& most = greatest[repeat.yarns[y].system == System::warp ? 0 : 1];
-        for (const double strain : repeat.yarns[y].strain)
-            most = std::max(most, std::abs(strain - (yarn.is_fed ? yarn.strain - 1 : 0)));
+        const std::vector<double>& strain = repeat.yarns[y].strain;
+        const std::size_t segments = strain.size() - (yarn.is_periodic ? 0 : 1);
+        for (std::size_t i = 0; i < strain.size(); ++i) {
+            if (is_held_at(yarn, std::min(i, segments - 1))) continue;
+            most = std::max(most, std::abs(strain[i] - (yarn.is_fed ? yarn.strain - 1 : 0)));
+        }
     }
     return {{"warp", greatest[0]}, {"weft", greatest[1]}};
 }

@@ -19,8 +19,30 @@ std::uint64_t peak_bytes() {
     return 0;
 }
 
+bool is_held_at(const SimYarn& yarn, std::size_t begin) {
+    const std::size_t points = yarn.frozen.size();
+    for (std::size_t k = 0; points > 0 && k < 4; ++k) {
+        const std::size_t beyond = begin + k;  // one further than the point itself
+        const std::size_t at = yarn.is_periodic ? (beyond + points - 1) % points : std::min(std::max<std::size_t>(beyond, 1) - 1, points - 1);
+        if (yarn.frozen[at] != 0) return true;
+    }
+    return false;
+}
+
+namespace {
+
+std::vector<std::uint8_t> held_segments(const Fabric<double>& fabric) {
+    std::vector<std::uint8_t> held;
+    for (const SegmentPlace& segment : fabric.segment_places())
+        held.push_back(is_held_at(fabric.scene().yarns[segment.yarn], segment.slot - fabric.yarns()[segment.yarn].first_slot) ? 1 : 0);
+    return held;
+}
+
+}  // namespace
+
 Contacts contacts_of(Energy<double>& energy, const std::vector<double>& state) {
     const FabricView<double> fabric = energy.view(state);
+    const std::vector<std::uint8_t> held = held_segments(energy.fabric());
     Neighbours<double>& neighbours = energy.neighbours();
     Contacts contacts;
     std::vector<std::uint32_t> seen(energy.fabric().segments(), 0xffffffffU);
@@ -34,8 +56,9 @@ Contacts contacts_of(Energy<double>& energy, const std::vector<double>& state) {
                          dz = fabric.samples.z[a] - fabric.samples.z[b];
             const double share = std::sqrt(dx * dx + dy * dy + dz * dz) / (fabric.samples.radius[a] + fabric.samples.radius[b]);
             if (share >= 1) continue;
-            contacts.overlap = std::max(contacts.overlap, 1 - share);
-            std::uint32_t& last = seen[neighbours.segment_of(neighbours.own(b))];
+            const std::uint32_t other = neighbours.segment_of(neighbours.own(b));
+            if (held[mine] == 0 || held[other] == 0) contacts.overlap = std::max(contacts.overlap, 1 - share);
+            std::uint32_t& last = seen[other];
             from_both += last == mine ? 0 : 1;
             last = mine;
         }

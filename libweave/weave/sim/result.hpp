@@ -32,9 +32,13 @@ struct CrossedYarns {
 /// The same of a plan without its crossings.
 Json coverage_of(const Plan& plan, CrossedYarns crossed);
 
+/// Whether a point that is held helps to draw the segment that begins at this control point: its strain then follows from the
+/// plan, and says nothing of the rest.
+bool is_held_at(const SimYarn& yarn, std::size_t begin);
+
 struct Contacts {
     std::size_t seen = 0;  ///< segments that touch one, by each segment: every pair twice
-    double overlap = 0;        ///< greatest 1 - d/D
+    double overlap = 0;        ///< greatest 1 - d/D, but of two yarns that are both held there
 };
 Contacts contacts_of(Energy<double>& energy, const std::vector<double>& state);
 
