@@ -19,13 +19,14 @@ looms, Edda audits, and Mary looks after the mill’s server. Everything on this
 }
 
 slices() {
-    chapter "Three weaves, drawn as slices"
-    cp tools/demo_input/*.weave tools/demo_input/*.png db/looms/tc2.json db/looms/ep-2688.json "$made/"
-    text "A slice is a cut along an end: the picks are dots, the ends are paths between them. Each weave is eight slices side by side, as the studio’s section editor \
-keeps them. All three are double cloths, with a gold and a blue weft that change places, and every second row stitches the layers together."
-    tell dora 0 weave info leaf.weave
-    pictures
+    chapter "Three weaves, written as slices"
+    cp tools/demo_input/*.slices tools/demo_input/yarns.weave tools/demo_input/*.png db/looms/tc2.json db/looms/ep-2688.json "$made/"
+    text "A slice is a cut along an end: the picks are dots, the ends are paths between them. Each weave is eight slices side by side, written as a line for \
+each position along the slice, from the bottom up; the studio’s section editor draws the same. All three are double cloths, with a gold and a blue weft that change places, and every second row stitches the layers together."
+    tell dora 0 head -n 23 leaf.slices
     local name
+    for name in ground leaf shade; do tell dora 0 weave slices $name.slices --yarns yarns.weave --title "${name^}" -o $name.weave; done
+    pictures
     for name in ground leaf shade; do
         draw $name.weave warp:1 $name-slice "<code>$name.weave</code>: its first slice. Dots are picks, lines are ends."
     done
@@ -48,10 +49,9 @@ stencil() {
     figure leaves.png "<code>leaves.png</code>, as it was painted" "big drawn"
     draw ginkgo.weave face face "The face of the cloth, as it will look" big
     pictures_end
-    pictures
+    pictures two
     draw ginkgo.weave back back "Its back: the same leaves in blue"
     draw ginkgo.weave card card-drawn "The card: black is a lifted end, pick 1 at the bottom"
-    draw ginkgo.weave layers layers "The two layers, each with a card of its own"
     pictures_end
 }
 

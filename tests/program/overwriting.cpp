@@ -83,3 +83,16 @@ TEST_CASE("a picture of relaxed cloth takes no option for pictures of designs") 
         shop.refused(all, 2, {words[0], "--view 3d"});
     }
 }
+
+TEST_CASE("designs that are joined or merged, and slices, are spared; the one that grows may change in place") {
+    const Workshop shop;
+    shop.must({"samples", "plain", "-o", "a.weave"});
+    shop.must({"samples", "plain", "-o", "b.weave"});
+    spares(shop, {"attach", "a.weave", "b.weave", "--face", "+x", "-o", "b.weave"}, "the design that is joined to it");
+    shop.must({"attach", "a.weave", "b.weave", "--face", "+x", "-o", "a.weave"});
+    CHECK(shop.json({"info", "a.weave"}).at("picks") == 4);
+    shop.must({"card", "b.weave", "-o", "two.png"});  // black and white
+    spares(shop, {"stencil", "two.png", "--map", "#000000=a.weave", "--map", "#ffffff=b.weave", "-o", "b.weave"}, "a design that is merged");
+    shop.put("s.txt", "P0 T0\nT0 P0\n");
+    spares(shop, {"slices", "s.txt", "-o", "./s.txt"}, "the text that is read");
+}

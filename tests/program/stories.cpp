@@ -449,3 +449,23 @@ TEST_CASE("the issue's closing commands: a shoe from the library to its card") {
     CHECK(card->card.sha256() == info.at("card_sha256").get<std::string>());
     CHECK(shop.names() == std::set<std::string>{"shoe.weave", "shoe.png"});
 }
+
+TEST_CASE("a design is made from slices written as text, with the yarns of another") {
+    const Workshop shop;
+    shop.must({"samples", "satin-e", "-o", "yarns.weave"});
+    shop.put("plain.txt", "P0 T0\nT0 P0\n\nT0 P0\nP0 T0\n");
+    CHECK(shop.must({"slices", "plain.txt", "-o", "plain.weave"}).out == "plain.weave: 2 picks and 2 ends in 2 rows and 2 columns, 2 high\n");
+    const Json plain = shop.json({"info", "plain.weave"});
+    shop.must({"samples", "plain", "-o", "known.weave"});
+    shop.must({"slices", "plain.txt", "--yarns", "yarns.weave", "--title", "Plain", "-o", "other.weave"});
+    const Json other = Json::parse(shop.get("other.weave")), source = Json::parse(shop.get("yarns.weave"));
+    CHECK(other.at("title") == "Plain");
+    for (const char* part : {"warp", "weft", "scene"}) CHECK(other.at(part) == source.at(part));
+    CHECK(shop.json({"info", "other.weave"}).at("card_sha256") == plain.at("card_sha256"));
+    shop.put("bad.txt", "P0 T0\nT0 P0\n\nT0 X\n");
+    shop.refused({"slices", "bad.txt", "-o", "bad.weave"}, 3, {"bad.txt: ", "line 4"});
+    shop.put("uneven.txt", "P0 T0\nT0 P0\n\nT0 P0\n");
+    CHECK(shop.refused({"slices", "uneven.txt", "-o", "bad.weave"}, 3, {"uneven.txt"}).find("slice") != std::string::npos);
+    shop.refused({"slices", "plain.txt", "--dots", "both", "-o", "bad.weave"}, 2, {"--dots"});
+    shop.refused({"slices", "plain.txt", "--yarns", "none.weave", "-o", "bad.weave"}, 3, {"none.weave"});
+}

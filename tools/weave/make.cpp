@@ -11,6 +11,7 @@
 #include <weave/design/merge.hpp>
 #include <weave/design/outline.hpp>
 #include <weave/io/bitmap.hpp>
+#include <weave/io/slices_text.hpp>
 #include <weave/io/stencil_picture.hpp>
 #include <weave/samples/samples.hpp>
 
@@ -119,6 +120,52 @@ void add_preset(CLI::App& app, CommandOutcome& outcome) {
     });
 }
 
+// ---- slices
+
+constexpr const char* slices_help =
+    "FILE has a line for each position along a slice, what lies there from the bottom up: T0, T1 … are picks, P0, P1 … ends, a blank\n"
+    "line parts two slices, and # begins a remark. Of a plain weave, two slices along the warp:\n"
+    "  P0 T0   # the end passes under the first pick\n"
+    "  T0 P0\n"
+    "\n"
+    "  T0 P0\n"
+    "  P0 T0\n"
+    "Dots count from 0 in each position, paths from 0 through the slice; (T1) is a pick that is switched off there.\n";
+
+struct SlicesWish {
+    std::string file, dots = "weft", yarns, title, out;
+};
+
+Status make_from_slices(CommandOutcome& outcome, const SlicesWish& wish) {
+    WEAVE_CHECK_OK(keep_apart(wish.out, wish.file, "the text that is read"));
+    WEAVE_TRY(const std::string text, read_file(wish.file));
+    auto slices = read_slices(text, wish.dots == "weft" ? System::weft : System::warp);
+    if (!slices) return std::move(slices).error().in(wish.file);
+    Design design = design_of_slices(std::move(*slices));
+    design.title = wish.title.empty() ? std::filesystem::path(wish.out).stem().string() : wish.title;
+    if (!wish.yarns.empty()) {
+        WEAVE_TRY(const Design other, load_design(wish.yarns));
+        design.warp = other.warp;
+        design.weft = other.weft;
+        design.scene = other.scene;
+    }
+    return save_cloth(outcome, design, wish.out, wish.file);
+}
+
+void add_slices(CLI::App& app, CommandOutcome& outcome) {
+    CLI::App* command = add_command(app, outcome, "slices", "Make a design from slices written as text, side by side");
+    const auto wish = std::make_shared<SlicesWish>();
+    command->add_option("FILE", wish->file, "the text, see below")->required();
+    command->add_option("--dots", wish->dots, "what the slices cut through: weft (slices along the warp, one a column; if nothing is said) or warp (along the weft, one a row)")
+        ->check(CLI::IsMember({"weft", "warp"}))
+        ->type_name("SYSTEM");
+    command->add_option("--yarns", wish->yarns, "a .weave file whose yarns, feeders and scene it gets; the usual ones if nothing is said")->type_name("FILE");
+    command->add_option("--title", wish->title, "its title; the name of its file if nothing is said")->type_name("TEXT");
+    command->add_option("-o,--out", wish->out, "the .weave file to write")->check(output_name())->type_name("FILE")->required();
+    command->footer(slices_help);
+    on_run(command, outcome, [=, &outcome] { return make_from_slices(outcome, *wish); });
+}
+
 // ---- tile, attach, renumber
 
 void add_tile(CLI::App& app, CommandOutcome& outcome) {
@@ -160,6 +207,7 @@ void add_attach(CLI::App& app, CommandOutcome& outcome) {
         ->type_name("FILE")
         ->required();
     on_run(command, outcome, [=, &outcome]() -> Status {
+        WEAVE_CHECK_OK(keep_apart(*out, *second, "the design that is joined to it"));
         WEAVE_TRY(Design design, load_design(*first));
         WEAVE_TRY(const Design other, load_design(*second));
         std::vector<std::string> warnings;
@@ -248,6 +296,7 @@ Status make_stencil(CommandOutcome& outcome, const std::string& picture, const s
             return usage_error("colour " + to_text(*colour) + " is mapped twice");
         }
         const std::string file = mapping.substr(equals + 1);
+        WEAVE_CHECK_OK(keep_apart(out, file, "a design that is merged"));
         sources += (stencil.of.empty() ? " with block " : ", block ") + std::to_string(stencil.of.size()) +
                    " = " + file;
         WEAVE_TRY(Design part, load_design(file));
@@ -355,6 +404,7 @@ void add_flip(CLI::App& app, CommandOutcome& outcome) {
 void add_make_commands(CLI::App& app, CommandOutcome& outcome) {
     add_samples(app, outcome);
     add_preset(app, outcome);
+    add_slices(app, outcome);
     add_tile(app, outcome);
     add_attach(app, outcome);
     add_stencil(app, outcome);
