@@ -68,14 +68,16 @@ TEST_CASE("what cannot be simulated is refused with its reason") {
     refused({"simulate", "d.weave"}, 2, "-o OUT.yarns");
     refused({"simulate", "d.weave", "-o", "x", "--fidelity", "best"}, 2, "draft, standard or reference");
     refused({"simulate", "d.weave", "-o", "x", "--set", "warp.colour=1"}, 2, "warp.colour=1");
-    refused({"simulate", "d.weave", "-o", "x", "--set", "warp.strain=0.5"}, 3, "strain");
+    refused({"simulate", "d.weave", "-o", "x", "--set", "warp.strain=0.5"}, 2, "--set warp.strain=0.5: must be from 1 to 2");
     refused({"simulate", "d.weave", "-o", "x", "--region", "picks:1-9,ends:1-2"}, 2, "within 2 picks and 2 ends");
     refused({"render", "d.weave", "--view", "3d", "-o", "x.png"}, 3, "d.weave");
     Json design = Json::parse(shop.get("d.weave"));
     design["scene"]["boundary_x"] = "free";
     shop.put("free.weave", design.dump());
     refused({"simulate", "free.weave", "-o", "x"}, 1, "shrink for ever");
-    refused({"simulate", "d.weave", "-o", "x", "--set", "friction=-1"}, 3, "friction");
+    refused({"simulate", "d.weave", "-o", "x", "--set", "friction=-1"}, 2, "--set friction=-1: must be from 0 to 100");
+    refused({"simulate", "d.weave", "-o", "x", "--field", "sphere:0,0,0,-1,5"}, 2, "--field sphere:0,0,0,-1,5: must be");
+    refused({"simulate", "d.weave", "-o", "x", "--boundary", "x=free", "--boundary", "x=frozen"}, 2, "--boundary x=frozen: this rim is said twice");
     CHECK_FALSE(shop.has("x"));
     const Json plan = shop.json({"simulate", "d.weave", "--explain"});
     CHECK(plan.at("yarns") == 4);

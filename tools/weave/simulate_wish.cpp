@@ -66,6 +66,19 @@ Status check_wish(const SimulateWish& wish) {
     return check_outputs({wish.out, wish.evidence, wish.save_design});
 }
 
+namespace {
+
+Status check_each_rim_once(const std::vector<std::string>& boundaries) {
+    for (std::size_t k = 1; k < boundaries.size(); ++k) {
+        const auto same_axis = [&](const std::string& other) { return other.substr(0, 2) == boundaries[k].substr(0, 2); };
+        if (std::any_of(boundaries.begin(), boundaries.begin() + static_cast<std::ptrdiff_t>(k), same_axis))
+            return usage_error("this rim is said twice", "--boundary " + boundaries[k]);
+    }
+    return {};
+}
+
+}  // namespace
+
 Result<SimulateTask> understand(Cloth cloth, const SimulateWish& wish) {
     const Block& block = *cloth.evaluation.block;
     SimulateTask task;
@@ -74,12 +87,20 @@ Result<SimulateTask> understand(Cloth cloth, const SimulateWish& wish) {
     Scene& scene = task.design.scene;
     WEAVE_TRY(task.request.fidelity, sim::parse_fidelity(wish.fidelity));
     WEAVE_TRY(task.options.solver, sim::parse_solver(wish.solver));
-    for (const std::string& text : wish.set) WEAVE_CHECK_OK(set_number(scene, text));
-    for (const std::string& text : wish.boundaries) WEAVE_CHECK_OK(set_boundary(scene, task.request, text));
-    for (const std::string& text : wish.pins) WEAVE_CHECK_OK(add_pin(scene, task.request, block, text));
-    for (const std::string& text : wish.fields) WEAVE_CHECK_OK(add_field(scene, text));
+    // The design is sound as the file has it: what is wrong with it afterwards came by the option.
+    const auto apply = [&](const char* option, const std::vector<std::string>& texts, const auto& change) -> Status {
+        for (const std::string& text : texts) {
+            WEAVE_CHECK_OK(change(text));
+            if (const Status sound = check(task.design); !sound) return usage_error(sound.error().message, std::string(option) + " " + text);
+        }
+        return {};
+    };
+    WEAVE_CHECK_OK(apply("--set", wish.set, [&](const std::string& text) { return set_number(scene, text); }));
+    WEAVE_CHECK_OK(check_each_rim_once(wish.boundaries));
+    WEAVE_CHECK_OK(apply("--boundary", wish.boundaries, [&](const std::string& text) { return set_boundary(scene, task.request, text); }));
+    WEAVE_CHECK_OK(apply("--pin", wish.pins, [&](const std::string& text) { return add_pin(scene, task.request, block, text); }));
+    WEAVE_CHECK_OK(apply("--field", wish.fields, [&](const std::string& text) { return add_field(scene, text); }));
     WEAVE_TRY(task.flips, parse_flips(wish.flips, block));
-    WEAVE_CHECK_OK(check(task.design));
     if (wish.wraparound) task.request.weft_mode = WeftMode::wraparound;
     if (!wish.region.empty()) {
         WEAVE_TRY(task.request.region, parse_region(wish.region, block));
