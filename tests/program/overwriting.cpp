@@ -96,3 +96,15 @@ TEST_CASE("designs that are joined or merged, and slices, are spared; the one th
     shop.put("s.txt", "P0 T0\nT0 P0\n");
     spares(shop, {"slices", "s.txt", "-o", "./s.txt"}, "the text that is read");
 }
+
+TEST_CASE("what is written does not take the name of another kind of file") {
+    const Workshop shop;
+    shop.must({"samples", "plain", "-o", "p.weave"});
+    shop.put("face.png", "a picture");
+    shop.refused({"samples", "plain", "-o", "face.png"}, 2, {"face.png: ", "NAME.weave"});
+    CHECK(shop.get("face.png") == "a picture");
+    shop.refused({"simulate", "p.weave", "-o", "v.obj"}, 2, {"v.obj: ", "NAME.yarns"});
+    shop.refused({"simulate", "p.weave", "--flip", "1,1", "--save-design", "f.yarns", "-o", "v.yarns"}, 2, {"f.yarns: ", "NAME.weave"});
+    shop.must({"samples", "plain", "-o", "plain.of-mine"});
+    shop.must({"simulate", "p.weave", "-o", "yarns"});
+}

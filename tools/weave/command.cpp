@@ -13,6 +13,7 @@
 #include <cmath>
 #include <iostream>
 #include <limits>
+#include <set>
 
 namespace weave::program {
 
@@ -96,6 +97,13 @@ Status keep_apart(const std::string& out, const std::string& other, const std::s
     return Error{ErrorCode::usage, "is " + other_is + ", which would be lost; write to another file", out};
 }
 
+Status check_kind(const std::string& file, const std::string& ending) {
+    static const std::set<std::string> kinds{".weave", ".yarns", ".png", ".tif", ".tiff", ".bmp", ".svg", ".pdf", ".wif", ".jc5", ".ep", ".raw", ".obj", ".vtp", ".json"};
+    const std::string its = fs::path(file).extension().string();
+    if (its == ending || kinds.find(its) == kinds.end()) return {};
+    return Error{ErrorCode::usage, "is a name for another kind of file than what is written; name it NAME" + ending, file};
+}
+
 Status check_outputs(std::initializer_list<std::string> files) {
     for (const std::string& file : files) {
         if (!file.empty()) WEAVE_CHECK_OK(check_writable(file));
@@ -149,6 +157,7 @@ void add_reading_options(CLI::App* command, const std::shared_ptr<BitmapReading>
 
 Status save_cloth(CommandOutcome& outcome, const Design& design, const std::string& file, const std::string& sources,
                   const std::vector<std::string>& warnings) {
+    WEAVE_CHECK_OK(check_kind(file, ".weave"));
     const Progress progress("weaving " + file);
     Result<Outline> woven = outline(design);
     if (!woven) {

@@ -57,6 +57,8 @@ Status keep_apart(const std::string& out, const std::string& other, const std::s
 
 /// Whether these files can be written, as far as that shows beforehand: for what comes after long work. An empty name is no file.
 Status check_outputs(std::initializer_list<std::string> files);
+/// A file that is written under the ending of another kind would be taken for one: `ending` such as `.weave`.
+Status check_kind(const std::string& file, const std::string& ending);
 
 /// An option that is a list such as 1,0,2: whole numbers within limits, none of them left out. `list` must outlive
 /// the command.

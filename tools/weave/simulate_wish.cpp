@@ -32,7 +32,9 @@ Status check_files(const SimulateWish& wish) {
                                     std::pair{wish.save_design, "the design that is written"}})
         WEAVE_CHECK_OK(keep_apart(wish.evidence, other, is));
     WEAVE_CHECK_OK(keep_apart(wish.out, wish.server.token_file, "the file of the token"));
-    return keep_apart(wish.save_design, wish.resume, "the file of yarns that are gone on from");
+    WEAVE_CHECK_OK(keep_apart(wish.save_design, wish.resume, "the file of yarns that are gone on from"));
+    WEAVE_CHECK_OK(check_kind(wish.out, ".yarns"));
+    return check_kind(wish.save_design, ".weave");
 }
 
 }  // namespace
