@@ -181,7 +181,7 @@ def wif(data, manifest, *_):
             key, value = line.split("=", 1)
             sections.setdefault(name, {})[key.strip().upper()] = value.strip()
     ends, picks = int(sections["WARP"]["THREADS"]), int(sections["WEFT"]["THREADS"])
-    expect((picks, ends) == (manifest["picks"], manifest["ends"]), f"has {picks} picks and {ends} ends, signed were {manifest['picks']} and {manifest['ends']}")
+    expect((picks, ends) == (manifest["picks"], manifest["ends"]), f"has {picks} picks and {ends} ends, the manifest says {manifest['picks']} and {manifest['ends']}")
     shafts = [int(sections["THREADING"][str(end + 1)]) for end in range(ends)]
     card = []
     for pick in range(picks):

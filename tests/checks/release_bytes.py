@@ -36,7 +36,7 @@ def expect(statuses, words, place):
     done = subprocess.run(command, capture_output=True, text=True, check=False)
     said = done.stdout + done.stderr
     told = {0: "all the same", 1: "WRONG  ", 3: "read_release: "}.get(done.returncode)
-    if done.returncode not in statuses or words not in said or told not in said or "Traceback" in said:
+    if done.returncode not in statuses or words not in said or told not in said or "Traceback" in said or "Error" in said:
         sys.exit(f"{place}: ended with {done.returncode}, or does not say '{words}':\n{said}")
 
 
