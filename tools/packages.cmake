@@ -51,9 +51,14 @@ install(FILES ${PROJECT_SOURCE_DIR}/docs/licences.md ${PROJECT_SOURCE_DIR}/CHANG
 set(library_docs ${CMAKE_INSTALL_DATADIR}/doc/${CPACK_DEBIAN_LIBRARY_PACKAGE_NAME})
 set(services_docs ${CMAKE_INSTALL_DATADIR}/doc/${CPACK_DEBIAN_SERVICES_PACKAGE_NAME})
 install(FILES libweave/weave/loom/PROFILE.md libweave/weave/design/FORMAT.md libweave/weave/sim/YARNS.md libweave/weave/io/CONTROLLER_FILES.md DESTINATION ${library_docs} COMPONENT library)
-install(FILES docs/operators-guide.md loomlink/RUNBOOK.md db/roles.sql DESTINATION ${services_docs} COMPONENT services)
+install(FILES docs/operators-guide.md docs/scale.md loomlink/RUNBOOK.md libweave/weave/wire/PROTOCOL.md db/roles.sql DESTINATION ${services_docs} COMPONENT services)
 install(DIRECTORY docs/pictures/loomlink DESTINATION ${services_docs}/pictures COMPONENT services)
-install(FILES loomlink/README.md DESTINATION ${services_docs} RENAME loomlink.md COMPONENT services)
-install(FILES simd/README.md DESTINATION ${services_docs} RENAME simd.md COMPONENT services)
+foreach(service loomlink simd)
+  set_property(DIRECTORY APPEND PROPERTY CMAKE_CONFIGURE_DEPENDS ${PROJECT_SOURCE_DIR}/${service}/README.md)
+  file(READ ${PROJECT_SOURCE_DIR}/${service}/README.md text)
+  file(WRITE ${CMAKE_BINARY_DIR}/packages/${service}.md "*Of the source tree. RUNBOOK.md, scale.md, PROTOCOL.md and operators-guide.md, which it names, lie beside this file; PROFILE.md and FORMAT.md under "
+       "${CPACK_DEBIAN_LIBRARY_PACKAGE_NAME}; other files that it names are sources.*\n\n${text}")
+  install(FILES ${CMAKE_BINARY_DIR}/packages/${service}.md DESTINATION ${services_docs} COMPONENT services)
+endforeach()
 
 include(CPack)
