@@ -101,7 +101,7 @@ QString jammed_words(const std::vector<JammedYarn>& jammed) {
 }
 
 QString rest_words(const RunState& state) {
-    QString text = Words::tr("Converged: at rest within %1 after %2")
+    QString text = Words::tr("At rest within %1 after %2")
                        .arg(small(state.progress.goal), steps(state.progress.step));
     if (!state.inspection) return text;
     if (!state.inspection->changed.empty())

@@ -131,7 +131,7 @@ TEST_CASE("the simulation panel runs a cloth to rest by its button, and tells wh
     shown.press(panel.run_action());
     REQUIRE(shown.until_inspected());
     CHECK(panel.state().phase == RunPhase::at_rest);
-    CHECK(panel.sentence()->text().startsWith("Converged: at rest within 0.01 after"));
+    CHECK(panel.sentence()->text().startsWith("At rest within 0.01 after"));
     CHECK(shown.layouts == 1);
     CHECK(shown.frames > 0);
     CHECK(shown.yarns);
@@ -300,7 +300,7 @@ TEST_CASE("a run at rest or paused that no longer shows the design says so, and 
     panel.tabs()->setCurrentIndex(2);
     panel.scene()->gravity()->click();
     REQUIRE(panel.is_out_of_date());
-    CHECK(panel.sentence()->text().startsWith("The design before the change: Converged"));
+    CHECK(panel.sentence()->text().startsWith("The design before the change: At rest"));
     CHECK(bar->format() == "the design has changed");
     CHECK(bar->value() == 0);
     CHECK(panel.step_action()->isEnabled());
@@ -308,7 +308,7 @@ TEST_CASE("a run at rest or paused that no longer shows the design says so, and 
     CHECK(panel.state().inspection == nullptr);
     REQUIRE(shown.until_inspected());
     CHECK(shown.layouts == 2);
-    CHECK(panel.sentence()->text().startsWith("Converged"));
+    CHECK(panel.sentence()->text().startsWith("At rest"));
     CHECK(shown.yarns->scene_sha256 == scene_sha256(shown.design()));
     panel.scene()->gravity()->click();
     shown.press(panel.step_action());

@@ -45,20 +45,20 @@ TEST_CASE("a run that settles says how far it is, and how long it will take") {
 
 TEST_CASE("a run that came to rest says so, with what is wrong in the cloth") {
     RunState state = state_in(RunPhase::at_rest);
-    CHECK(said(state) == "Converged: at rest within 0.001 after 214 steps");
+    CHECK(said(state) == "At rest within 0.001 after 214 steps");
     auto inspection = std::make_shared<Inspection>();
     inspection->jammed = {{{System::weft, 13}, 2, 4, {6, 7}, -0.1}, {{System::warp, 2}, 1, 4, {5, 6}, -0.05}};
     state.inspection = inspection;
     CHECK(said(state) ==
-          "Converged: at rest within 0.001 after 214 steps; 2 yarns are jammed, tightest at pick 14, end 7");
+          "At rest within 0.001 after 214 steps; 2 yarns are jammed, tightest at pick 14, end 7");
     inspection->changed = {{2, 4, true, true}, {3, 3, true, true}, {7, 1, false, true}};
     inspection->jammed.erase(inspection->jammed.begin());
     CHECK(said(state) ==
-          "Converged: at rest within 0.001 after 214 steps; 3 crossings no longer lie as the card says (pick "
+          "At rest within 0.001 after 214 steps; 3 crossings no longer lie as the card says (pick "
           "3, end 5 …); 1 yarn is jammed at pick 6, end 3");
     state.progress.step = 1;
     state.inspection.reset();
-    CHECK(said(state) == "Converged: at rest within 0.001 after 1 step");
+    CHECK(said(state) == "At rest within 0.001 after 1 step");
 }
 
 TEST_CASE("a run that stands or is over says why") {
@@ -79,7 +79,7 @@ TEST_CASE("a run that stands or is over says why") {
 }
 
 TEST_CASE("a run of the design before a change says so, as long as it shows cloth") {
-    CHECK(dated_words(state_in(RunPhase::at_rest)) == "The design before the change: Converged: at rest within 0.001 after 214 steps");
+    CHECK(dated_words(state_in(RunPhase::at_rest)) == "The design before the change: At rest within 0.001 after 214 steps");
     CHECK(dated_words(state_in(RunPhase::paused)).startsWith("The design before the change: Paused"));
     CHECK(dated_words(state_in(RunPhase::stopped)) == "Stopped after 214 steps: residual 0.041");
 }
