@@ -46,6 +46,13 @@ wait_for_checkpoint() { # PID of who waits for that job
     return 5
 }
 
+# Fails unless it was said in a file.
+told_of_the_kill() { # WORDS FILE WHAT_IT_WOULD_MEAN
+    grep -q "$1" "$2" && return
+    { cat "$2"; echo "== FAILED: $3"; } >&2
+    return 5
+}
+
 # Runs a `weave simulate` of dora's in $made while the box is killed in the middle as by a fault of the machine, and started again: the job goes
 # on from its last checkpoint, and whoever waits for it notices a pause. What was said, of broken connections too, stands in $scratch/said.
 simulate_and_kill() { # COMMAND...
@@ -56,6 +63,9 @@ simulate_and_kill() { # COMMAND...
     stop_box -KILL
     serve_box
     wait $job || { cat "$scratch/progress" "$scratch/box/log" >&2; return 5; }
-    grep -E 'trying again|connected again' "$scratch/progress" > "$scratch/said" || { echo "== FAILED: nobody noticed that simd was killed" >&2; return 5; }
+    told_of_the_kill 'trying again' "$scratch/progress" "who waits for the job did not notice that simd was killed" || return
+    told_of_the_kill 'connected again' "$scratch/progress" "who waits for the job did not notice that simd is back" || return
+    told_of_the_kill 'job 1 goes on from its checkpoint at step' "$scratch/box/log" "the job began anew" || return
+    grep -E 'trying again|connected again' "$scratch/progress" > "$scratch/said"
     cat "$scratch/answer" >> "$scratch/said"
 }

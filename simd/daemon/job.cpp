@@ -138,6 +138,8 @@ void Job::planned(const Json& plan) {
         m_phase = wire::JobPhase::waiting;
         return;
     }
+    if (const std::uint64_t step = plan.at("step"); step > 0)
+        log(LogLevel::info, "job " + std::to_string(number()) + " goes on from its checkpoint at step " + std::to_string(step));
     begun();
     if (m_is_cancelled) m_around.crew.ask_to_end(*m_worker, true);
 }
