@@ -1,6 +1,7 @@
 #include <studio/jobs/server_place.hpp>
 
 #include <weave/core/file.hpp>
+#include <weave/keys/private_file.hpp>
 #include <weave/keys/secret_bytes.hpp>
 
 #include <cstdlib>
@@ -20,6 +21,7 @@ std::string variable(const char* name) {
 Status take_token(wire::ServerPlace& place, std::string file) {
     if (file.empty()) file = variable("WEAVE_TOKEN_FILE");
     if (!file.empty()) {
+        warn_if_not_private(file);
         WEAVE_TRY(std::string bytes, read_file(file, most_file_bytes));
         Status used = wire::use_token(place, bytes);
         wipe(bytes);

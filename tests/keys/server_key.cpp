@@ -1,4 +1,5 @@
 #include <weave/core/file.hpp>
+#include <weave/core/log.hpp>
 #include <weave/keys/private_file.hpp>
 #include <weave/keys/server_key.hpp>
 
@@ -50,6 +51,30 @@ TEST_CASE("a server key that others may read, a link to one, or another's is not
         REQUIRE(::chown(path.c_str(), 12, 34) == 0);
         check_refused(load_server_key(path, ServerKeyRole::stamp), "belongs to another user");
     }
+}
+
+TEST_CASE("a secret that others may read is warned of, with its file, and used all the same") {
+    const testing::TemporaryFolder folder;
+    const fs::path path = folder.path / "token";
+    std::string told;
+    set_log_sink([&](LogLevel level, std::string_view message) {
+        CHECK(level == LogLevel::warning);
+        told += message;
+    });
+    REQUIRE(write_file(path, "a-secret\n"));
+    for (const auto& [mode, is_told] : {std::pair{0600, false}, {0400, false}, {0640, true}, {0644, true}, {0602, true}}) {
+        INFO(mode);
+        REQUIRE(::chmod(path.c_str(), static_cast<mode_t>(mode)) == 0);
+        told.clear();
+        warn_if_not_private(path);
+        CHECK(told.empty() == !is_told);
+        if (is_told) CHECK_THAT(told, Catch::Contains(path.string()) && Catch::Contains("chmod 600") && !Catch::Contains("a-secret"));
+    }
+    told.clear();
+    warn_if_not_private(folder.path / "missing");  // whose absence is told by who reads it
+    warn_if_not_private("/dev/null");
+    CHECK(told.empty());
+    set_log_sink({});
 }
 
 TEST_CASE("a damaged server key is found, whichever byte it is") {

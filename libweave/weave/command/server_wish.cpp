@@ -1,6 +1,7 @@
 #include <weave/command/server_wish.hpp>
 
 #include <weave/core/file.hpp>
+#include <weave/keys/private_file.hpp>
 #include <weave/keys/secret_bytes.hpp>
 
 #include <cstdlib>
@@ -30,6 +31,7 @@ Status take_token(wire::ServerPlace& place, const ServerWish& wish) {
         if (!used) return std::move(used).error().in("WEAVE_TOKEN");
         return {};
     }
+    warn_if_not_private(wish.token_file);
     WEAVE_TRY(std::string bytes, read_file(wish.token_file, most_file_bytes));
     Status used = wire::use_token(place, bytes);
     wipe(bytes);

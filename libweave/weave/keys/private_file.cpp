@@ -2,6 +2,8 @@
 
 #include <weave/core/descriptor.hpp>
 #include <weave/core/file.hpp>
+#include <weave/core/log.hpp>
+#include <weave/core/text.hpp>
 #include <weave/keys/hex.hpp>
 #include <weave/keys/sodium.hpp>
 
@@ -105,6 +107,12 @@ Status check_private_file(const fs::path& path) {
     WEAVE_TRY(const int number, open_private(path, facts));
     ::close(number);
     return {};
+}
+
+void warn_if_not_private(const fs::path& path) {
+    struct stat facts {};
+    if (::stat(path.c_str(), &facts) != 0 || !S_ISREG(facts.st_mode) || (facts.st_mode & 077) == 0) return;
+    log(LogLevel::warning, on_one_line(path.string()) + ": others may read or write it; what it holds is yours alone (chmod 600)");
 }
 
 Result<SecretBytes> read_private_file(const fs::path& path, std::size_t limit) {

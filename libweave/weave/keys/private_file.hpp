@@ -20,6 +20,10 @@ Status write_private_file(const std::filesystem::path& path, std::string_view by
 /// of this process, or that is no regular file (a symbolic link neither).
 Status check_private_file(const std::filesystem::path& path);
 
+/// Tells the log where others than its owner may read or write a regular file with a secret in it. For secrets that people
+/// keep with a redirection, as shells write it.
+void warn_if_not_private(const std::filesystem::path& path);
+
 /// The content of a private file, straight into guarded memory. Errors: missing, more than `limit` bytes, and
 /// what check_private_file() refuses.
 Result<SecretBytes> read_private_file(const std::filesystem::path& path, std::size_t limit);
