@@ -167,9 +167,10 @@ std::string in_words(const ImportRequest& request, const Block& block, const Jso
                  "  p = " + in_short(groupings[k]["p"].get<Counts>()) + "  (" +
                  groupings[k]["reason"].get<std::string>() + ")\n";
     }
-    if (groupings.size() > 1) words += "Another one: --infer --grouping N\n";
+    if (!groupings.empty())
+        words += "These are guesses, the best one first: a card does not tell what lies on what. Look at the cloth before you go on; another one: --infer --grouping N\n";
     if (!request.infer && request.t.empty() && request.p.empty() && request.loom.empty())
-        words += "Read as one layer; where picks or ends lie on one another, --infer finds which, or --t and --p say it.\n";
+        words += "Read as one layer; where picks or ends lie on one another, --infer guesses which, or --t and --p say it.\n";
     return words;
 }
 
@@ -227,7 +228,7 @@ void add_import_command(CLI::App& app, CommandOutcome& outcome) {
                               "ends of each column, repeated, such as 2,2");
     CLI::Option* infer =
         command->add_flag("--infer", request->infer,
-                          "find rows and columns from the card; lists the possible groupings, best first");
+                          "guess rows and columns from the card; lists the guesses, best first, and takes the first");
     command->add_option("--grouping", request->grouping, "which of the possible groupings to take, from 1")
         ->needs(infer)
         ->transform(between(1, 1000))

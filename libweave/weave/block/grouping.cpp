@@ -160,9 +160,13 @@ std::size_t period_of(const Counts& counts) {
     return period_of(counts.size(), [&](std::size_t a, std::size_t b) { return counts[a] == counts[b]; });
 }
 
+constexpr std::size_t longest_rule = 6;  // counts that repeat later than that came about by chance more often than by design
+
 /// Counts that are all equal, or repeat after a few.
 bool is_regular(const Counts& counts) {
-    return counts.size() <= 2 || 2 * period_of(counts) <= counts.size();
+    if (counts.size() <= 2) return true;
+    const std::size_t period = period_of(counts);
+    return period <= longest_rule && 2 * period <= counts.size();
 }
 
 /// One reading of one system and how far down it ranks.
@@ -214,7 +218,8 @@ Readings readings_of(const Yarns& yarns, bool picks) {
     Counts climbing = climbing_runs(yarns, picks ? Nesting::inside : Nesting::around);
     const bool strict_regular = is_regular(strict), loose_regular = is_regular(loose);
     readings.add(std::move(strict), strict_regular ? 0 : 4, in_order, true);
-    if (is_regular(climbing)) readings.add(std::move(climbing), strict_regular ? 3 : 0, in_order, true);
+    // Where no yarn climbs over the next, that tells nothing of which stand alone.
+    if (is_regular(climbing) && !all_single(climbing)) readings.add(std::move(climbing), strict_regular ? 3 : 0, in_order, true);
     add_even_cuts(readings, yarns, strict_regular);
     if (is_regular(upwards)) readings.add(std::move(upwards), 3, rising, false);
     readings.add(std::move(loose), loose_regular ? 2 : 6, in_order_or_equal, true);
@@ -231,7 +236,7 @@ std::string counts_said(const Counts& counts, const char* yarns, const char* lin
     std::string text;
     if (*least == *most) {
         text = std::to_string(*least);
-    } else if (const std::size_t period = period_of(counts); period <= 6 && is_regular(counts)) {
+    } else if (const std::size_t period = period_of(counts); period <= longest_rule && is_regular(counts)) {
         for (std::size_t k = 0; k < period; ++k) text += (k == 0 ? "" : ", ") + std::to_string(counts[k]);
         return text + " " + yarns + "s a " + line + " in turn";
     } else {
@@ -301,7 +306,7 @@ CardImage corner_of(const CardImage& card) {
 /// Stacks of equal counts that every cell admits although neither system keeps its order over the whole
 /// cloth: layers that change places from region to region. Where the yarns tell nothing at all, small
 /// stacks are the likelier ones (`small_first`); where they tell something, large ones say more, after the
-/// `likely` one (0, 0: none).
+/// `likely` ones (0, 0: none): as many ends as picks, the most usual layered cloth, and what was counted.
 std::vector<Ranked> even_stacks(const CardImage& card, std::size_t enough, bool small_first,
                                 std::pair<std::uint32_t, std::uint32_t> likely) {
     std::array<std::pair<std::uint32_t, std::uint32_t>, 14> usual{{{6, 6},
@@ -319,7 +324,9 @@ std::vector<Ranked> even_stacks(const CardImage& card, std::size_t enough, bool 
                                                                    {3, 2},
                                                                    {2, 2}}};
     if (small_first) std::reverse(usual.begin(), usual.end());
-    std::stable_partition(usual.begin(), usual.end(), [&](const auto& counts) { return counts == likely; });
+    std::stable_partition(usual.begin(), usual.end(), [&](const auto& counts) {
+        return counts == likely || counts == std::pair(likely.first, likely.first);
+    });
     const CardImage corner = corner_of(card);
     std::vector<Ranked> found;
     for (const auto& [t, p] : usual) {
