@@ -2,6 +2,7 @@
 
 #include <weave/keys/secret_bytes.hpp>
 
+#include <loomlink/service/deeds.hpp>
 #include <loomlink/workflow/denial.hpp>
 #include <utility>
 #include <variant>
@@ -54,7 +55,7 @@ Json body_of(const Request& request) {
 
 /// What a request that is sent away asked for, by the places that its path, its query and its body name.
 Deed attempt_of(const ApiRoute& route, const Request& request, const Json& body) {
-    Deed deed{route.name, {}, {}, body};
+    Deed deed{deed_of_route(route.name), {}, {}, body};
     for (const auto& [name, text] : request.query) deed.data.emplace(name, text);
     const auto path_has = [&](const char* part) { return route.path.find(part) != std::string::npos; };
     for (const std::string& place : places_of(route.path)) {

@@ -1,8 +1,11 @@
 #include "service_case.hpp"
 
+#include <weave/core/file.hpp>
 #include <weave/net/websocket_client.hpp>
 
 #include <algorithm>
+#include <filesystem>
+#include <loomlink/service/deeds.hpp>
 #include <loomlink/workflow/refusals.hpp>
 
 using namespace weave;
@@ -243,6 +246,21 @@ TEST_CASE("the table of routes and what is expected of it name the same routes")
     CHECK(lines.size() == expected.size());
 }
 
+TEST_CASE("a refusal has one word in the log: the one of the deed, whoever refuses it") {
+    const auto page = read_file(std::filesystem::path(WEAVE_SOURCE_DIR) / "loomlink/web/views/log.js");
+    REQUIRE(page);
+    for (const ApiRoute& route : api_table()) {
+        const std::string deed = deed_of_route(route.name);
+        INFO(route.name << " is logged as " << deed);
+        const bool known = page->find("'" + deed + "': ") != std::string::npos;
+        // What only looks may have no record; what changes something always has.
+        if (route.method == "GET")
+            CHECK((known || deed == route.name));
+        else
+            CHECK(known);
+    }
+}
+
 TEST_CASE("whom the gate sends away is told of with what was asked for, and who is not signed in is not") {
     Rights rights;
     const auto send = [&](const std::string& token, const std::string& method, const std::string& target,
@@ -262,20 +280,20 @@ TEST_CASE("whom the gate sends away is told of with what was asked for, and who 
     CHECK(refusal.login == "d");
     CHECK(refusal.request == "request-1");
     CHECK(sorted(refusal_record(refusal.attempt, refusal.error).data) ==
-          sorted(Json{{"what", "revision.approve"}, {"revision", 3}}));
+          sorted(Json{{"what", "revision.approved"}, {"revision", 3}}));
     CHECK(refusal.attempt.subject == "shoe");
     CHECK(refusal.error.code == ErrorCode::refused);
 
     CHECK(send("token-e", "GET", "/looms/EP%201/releases/2/files/a.jc5?x=1") == 400);
     refusal = told();
     CHECK(sorted(refusal_record(refusal.attempt, refusal.error).data) ==
-          sorted(Json{{"what", "release.file"}, {"loom", "EP 1"}, {"release", 2}, {"file", "a.jc5"}}));
+          sorted(Json{{"what", "release.pulled"}, {"loom", "EP 1"}, {"release", 2}, {"file", "a.jc5"}}));
     CHECK(send("token-d", "POST", "/releases",
                R"({"request":"request-2","design":"shoe","revision":4,"loom":"EP 1","feeders":[1]})") == 403);
     refusal = told();
     CHECK(refusal.attempt.subject == "shoe");
     CHECK(sorted(refusal_record(refusal.attempt, refusal.error).data) ==
-          sorted(Json{{"what", "release.make"}, {"revision", 4}, {"loom", "EP 1"}, {"feeders", {1}}}));
+          sorted(Json{{"what", "release.made"}, {"revision", 4}, {"loom", "EP 1"}, {"feeders", {1}}}));
     CHECK(send("token-d", "GET", "/designs/shoe/revisions/first") == 400);
     CHECK(refusal_record(told().attempt, {}).data.at("revision") == "first");
     CHECK(send("token-m", "POST", "/people/mary/disable", "{") == 400);
@@ -286,7 +304,7 @@ TEST_CASE("whom the gate sends away is told of with what was asked for, and who 
               {{"Cookie", "loomlink=token-d"}, {"Content-Type", "application/json"}},
               R"({"request":"request-3"})")
               .status == 403);
-    CHECK(told().attempt.kind == "logout");
+    CHECK(told().attempt.kind == "person.signed_out");
 
     CHECK(send("forged", "POST", "/releases", R"({"request":"request-4"})") == 401);
     CHECK(send("token-d", "POST", "/login", R"({"request":7})") == 400);

@@ -25,7 +25,7 @@ function about({ subject, data }) {
         data?.pick ? `pick ${grouped(data.pick)}` : null, data?.file].filter(Boolean).join(', ');
 }
 
-// What was sent away before it came to a step is told by the name of its call.
+// What is not logged where it is done is told by the name of its call, and so is what older versions sent away before it came to a step.
 const what = event => (event.kind === 'refused' ? `Refused: ${words[event.data.what] ?? 'call ' + event.data.what}` : words[event.kind] ?? event.kind);
 
 export async function show({ search, go }) {
