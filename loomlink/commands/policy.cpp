@@ -1,5 +1,8 @@
 // policy: what the site asks for before anything goes to a loom.
 
+#include <weave/core/text.hpp>
+
+#include <algorithm>
 #include <loomlink/commands/client_command.hpp>
 
 namespace weave::loomlink {
@@ -25,10 +28,31 @@ std::optional<Json> changed(Json policy, const PolicyWish& wish) {
     return policy;
 }
 
+/// What the policy asks for that the people of now cannot give. It is in force all the same: they may join later.
+Status warn_if_nobody_can(wire::MillClient& client, const Json& policy, CommandOutcome& outcome) {
+    WEAVE_TRY(const Json people, client.get("/people"));
+    const auto is_approver = [](const Json& person) {
+        const Json& roles = person.at("roles");
+        return person.at("active") == true && std::find(roles.begin(), roles.end(), "approver") != roles.end();
+    };
+    const auto approvers = std::count_if(people.at("people").begin(), people.at("people").end(), is_approver);
+    const auto warn = [&](const char* member, const char* deed) {
+        const auto asked = policy.at(member).get<std::int64_t>();
+        if (asked <= approvers) return;
+        outcome.note("Nothing can be " + std::string(deed) + " until more join: the policy asks for " +
+                     counted(asked, "approver") + ", and there " + (approvers == 1 ? "is " : "are ") +
+                     std::to_string(approvers));
+    };
+    warn("approvals", "approved");
+    warn("release_signatures", "released");
+    return {};
+}
+
 Status tell_policy(wire::MillClient& client, const PolicyWish& wish, CommandOutcome& outcome) {
     WEAVE_TRY(Json policy, client.get("/policy"));
     if (const auto wanted = changed(policy, wish)) {
         WEAVE_TRY(policy, client.change("PUT", "/policy", *wanted));
+        WEAVE_CHECK_OK(warn_if_nobody_can(client, policy, outcome));
     }
     std::vector<std::vector<std::string>> lines;
     for (const auto& [name, value] : policy.items()) lines.push_back({name, told(policy, name)});

@@ -148,6 +148,24 @@ TEST_CASE("a step that the server knows of already is refused with its reason", 
     CHECK(mill.done("emil", {"faults", "seven"}).contains("faults"));
 }
 
+TEST_CASE("a policy that nobody can satisfy yet is put in force with a warning", "[commands]") {
+    CommandMill mill;
+    mill.set_up();
+    const std::string approving = "Nothing can be approved until more join: the policy asks for 3 approvers, and there ";
+    mill.done("mary", {"user", "disable", "abel"});
+    Ended set = mill.as("mary", {"policy", "--approvals", "3"});
+    CHECK(set.code == 0);
+    CHECK(set.json().at("approvals") == 3);
+    CHECK_THAT(set.err, Catch::Contains(approving + "is 1\n") && !Catch::Contains("released"));
+    mill.done("mary", {"user", "enable", "abel"});
+    set = mill.as("mary", {"policy", "--release-signatures", "2"});
+    CHECK_THAT(set.err, Catch::Contains(approving + "are 2\n") && !Catch::Contains("released"));
+    mill.invite("anna", {"approver"});
+    set = mill.as("mary", {"policy", "--release-signatures", "3"});
+    CHECK(set.code == 0);
+    CHECK(set.err.empty());
+}
+
 TEST_CASE("two people sign where the policy asks for two", "[commands]") {
     CommandMill mill;
     mill.set_up();

@@ -14,7 +14,7 @@ export async function show({ refresh }) {
         body: [h('div', { class: 'head' }, h('h1', {}, 'People'), h('button', { type: 'button', class: 'main', onclick: () => invite(refresh) }, 'Invite …')),
             table('People', ['Name', 'Full name', 'Roles', 'Key', 'Change'], people.map(person => [person.name, person.full_name,
                 person.active ? person.roles.map(role => role_words.get(role)).join(', ') : h('span', { class: 'state' }, 'Disabled'), person.key ? hash(person.key, 8) : 'none', changes_of(person, done, refresh)])),
-            trust(changes, done), h('div', { class: 'two' }, policy_card(policy, done), machines(signers, done, refresh))],
+            trust(changes, done), h('div', { class: 'two' }, policy_card(policy, people, done), machines(signers, done, refresh))],
     };
 }
 
@@ -48,7 +48,9 @@ function trust(changes, done) {
                 h('button', { type: 'button', class: 'main', onclick: publish }, 'Sign the list …')]);
 }
 
-function policy_card(policy, done) {
+function policy_card(policy, people, done) {
+    const approvers = people.filter(person => person.active && person.roles.includes('approver')).length;
+    const lacking = [['approved', policy.approvals], ['released', policy.release_signatures]].filter(([, asked]) => asked > approvers);
     const percent = Number((100 * policy.coverage).toFixed(6)); // 0.07 is 7 %, whatever floating point makes of it
     const change = () => ask({
         title: 'Policy of the site', button: 'Put in force', fields: [
@@ -61,6 +63,7 @@ function policy_card(policy, done) {
     }).then(done('The policy is in force'));
     return h('section', { class: 'card' }, h('h2', {}, 'Policy of the site'), facts([['Approvals', policy.approvals], ['Signatures', `${policy.release_signatures} for a release`],
         ['Simulation', policy.simulation === 'required' ? `required, ${policy.fidelity} or better` + (percent > 0 ? `, of ${percent} % of the crossings` : '') : 'not required'], ['Without server', `a loom may go on for ${policy.index_valid_hours} hours`]]),
+    lacking.map(([deed, asked]) => h('p', { class: 'soft' }, `Nothing can be ${deed} until more join: this asks for ${asked === 1 ? '1 approver' : asked + ' approvers'}, and there ${approvers === 1 ? 'is' : 'are'} ${approvers}.`)),
     h('p', { class: 'buttons' }, h('button', { type: 'button', onclick: change }, 'Change the policy …')));
 }
 

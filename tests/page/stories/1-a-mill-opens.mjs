@@ -32,7 +32,7 @@ async function set_policy(admin) {
     await admin.dialog().getByLabel('Share of the crossings').fill('7.5');
     await accessible(admin.page, 'the dialog of the policy');
     await admin.answered('Put in force');
-    await admin.sees('not required');
+    await admin.sees('not required', 'Nothing can be approved until more join: this asks for 1 approver, and there are 0');
     await admin.settled();
     await admin.button('Change the policy …').click();
     assert.equal(await admin.dialog().getByLabel('Share of the crossings').inputValue(), '7.5');
@@ -94,6 +94,9 @@ export async function run({ browser, mill, people }) {
     });
     late.quiet();
     await late.context.close();
+    await admin.to('People');
+    await admin.sees('Policy of the site');
+    assert.equal(await admin.page.getByText('until more join').count(), 0);
     await add_loom(admin);
     await sign_keys(admin);
 }
