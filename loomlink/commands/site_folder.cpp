@@ -34,12 +34,23 @@ Result<bool> holds_nothing(const fs::path& folder) {
     return true;
 }
 
+/// Takes a folder away that was made for a site which then could not be; the lock in it is ours still.
+void leave_nothing(const fs::path& folder) {
+    const auto empty = holds_nothing(folder);
+    if (!empty || !*empty) return;
+    std::error_code trouble;
+    fs::remove(folder / lock_name, trouble);
+    fs::remove(folder, trouble);
+}
+
 /// The keys, and the store: last what makes the folder a site, so that one is never half there. A database comes first, since
 /// it may be out of reach.
-Result<OpenSite> make_site(FolderLock lock, const SiteFolder& folder, const ServeConfig& config) {
+Result<OpenSite> make_site(FolderLock lock, const SiteFolder& folder, const ServeConfig& config, bool was_there) {
     std::optional<Store> made;
     if (!config.store.empty()) {
-        WEAVE_TRY(made, Store::create(config.store, config.site));
+        Result<Store> created = Store::create(config.store, config.site);
+        if (!created && !was_there) leave_nothing(folder.path);
+        WEAVE_TRY(made, std::move(created));
     }
     WEAVE_TRY(KeyPair log, create_server_key(folder.log_key(), ServerKeyRole::log));
     WEAVE_TRY(KeyPair stamp, create_server_key(folder.stamp_key(), ServerKeyRole::stamp));
@@ -112,12 +123,14 @@ Status check_site_folder(const SiteFolder& folder) {
 }
 
 Result<OpenSite> open_site(const SiteFolder& folder, const ServeConfig& config) {
+    std::error_code unknown;
+    const bool was_there = fs::exists(folder.path, unknown);
     WEAVE_CHECK_OK(make_service_folder(folder.path));
     WEAVE_CHECK_OK(check_site_folder(folder));
     WEAVE_TRY(FolderLock lock, FolderLock::take(folder.path, "loomlink"));
     if (folder.holds_site()) return open_old_site(std::move(lock), folder, config);
     if (::chmod(folder.path.c_str(), 0700) != 0) return fault(folder.path, "close it to others");
-    return make_site(std::move(lock), folder, config);
+    return make_site(std::move(lock), folder, config, was_there);
 }
 
 }  // namespace weave::loomlink

@@ -106,6 +106,15 @@ TEST_CASE("clients come by the names that are told, or by this machine's") {
     CHECK(origin_of(config, 80) == "http://[::1]:80");
 }
 
+TEST_CASE("a number of a service is a whole one that it can be, and said to be so") {
+    CHECK(call({"--port", "8444"}, [](const Told&) { return Status(); }).told.port == 8444);
+    CHECK(call({"--port", "010"}, [](const Told&) { return Status(); }).told.port == 10);
+    for (const char* port : {"70000", "65536", "-1", "abc", "8444x", "1e3", "99999999999999999999"}) {
+        INFO(port);
+        CHECK_THROWS_WITH(call({std::string("--port=") + port}), Catch::Contains("--port") && Catch::Contains("is not a whole number from 0 to 65535"));
+    }
+}
+
 TEST_CASE("certificate, key and plain are held to one another") {
     const auto where = [](const std::string& text) {
         const auto told = parse(text, "");

@@ -102,7 +102,11 @@ TEST_CASE("a new site is made in a database where the configuration names one", 
     CHECK(mill.run({"verify", mill.at("second")}).code == 0);
     CHECK(mill.run({"serve", mill.at("second"), "--store", place_of_new(PostgresServer::shared()), "--port", "0"}).code == 4);
     CHECK(mill.run({"init", mill.at("third"), "--store", "postgresql:///none?host=/nowhere", "--host", "localhost"}).code == 5);
-    CHECK_FALSE(fs::exists(mill.at("third") / "log.key"));
+    CHECK_FALSE(fs::exists(mill.at("third")));  // nothing is left of what could not be made
+    fs::create_directory(mill.at("fourth"));
+    CHECK(mill.run({"serve", mill.at("fourth"), "--store", "postgresql:///none?host=/nowhere", "--port", "0"}).code == 5);
+    CHECK(fs::is_directory(mill.at("fourth")));  // somebody else's folder stays
+    CHECK_FALSE(fs::exists(mill.at("fourth") / "log.key"));
     CHECK(mill.run({"init", mill.at("third"), "--store", "/srv/file.db", "--host", "localhost"}).code == 3);
     REQUIRE(write_file(mill.at("second") / "store.url", "no place\n"));
     CHECK_THAT(mill.run({"verify", mill.at("second")}).err, Catch::Contains("store.url"));

@@ -1,5 +1,7 @@
 #include <weave/command/config_options.hpp>
 
+#include <weave/core/text.hpp>
+
 #include <algorithm>
 #include <utility>
 
@@ -20,6 +22,19 @@ void ConfigOptions::add_service(ServiceConfig& config) {
     m_command->add_flag_callback(
         "--plain", [this, &config] { give("--plain", "plain", [&config] { config.plain = true; }); },
         "HTTP without TLS, on this machine alone");
+}
+
+CLI::Validator ConfigOptions::whole_up_to(std::uint64_t most) {
+    return {[most](std::string& word) -> std::string {
+                const auto number = parse_whole(word);
+                if (number && *number >= 0 && static_cast<std::uint64_t>(*number) <= most) {
+                    word = std::to_string(*number);  // a 0 in front does not make it octal
+                    return {};
+                }
+                const bool is_small = most <= std::numeric_limits<std::uint32_t>::max();
+                return "'" + word + "' is not a whole number from 0 " + (is_small ? "to " + std::to_string(most) : "on");
+            },
+            ""};
 }
 
 bool ConfigOptions::only_checks(CommandOutcome& outcome) const {

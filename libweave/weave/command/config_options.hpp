@@ -6,9 +6,12 @@
 
 #include <CLI/CLI.hpp>
 
+#include <cstdint>
 #include <functional>
+#include <limits>
 #include <map>
 #include <string>
+#include <type_traits>
 #include <vector>
 
 namespace weave {
@@ -25,12 +28,14 @@ class ConfigOptions {
     /// Adds an option in place of the member `member`, which is kept at `place`.
     template <class Value>
     CLI::Option* add(const std::string& option, const std::string& member, Value& place, const std::string& help) {
-        return m_command->add_option_function<Value>(
+        CLI::Option* const added = m_command->add_option_function<Value>(
             option,
             [this, option, member, &place](const Value& value) {
                 give(option, member, [&place, value] { place = value; });
             },
             help);
+        if constexpr (std::is_integral_v<Value>) added->transform(whole_up_to(std::numeric_limits<Value>::max()));
+        return added;
     }
     /// Adds the options for what every service is told.
     void add_service(ServiceConfig& config);
@@ -56,6 +61,8 @@ class ConfigOptions {
 
   private:
     static constexpr std::uint64_t most_bytes = 65536;
+    /// A whole number from 0 on, as it fits into the member.
+    static CLI::Validator whole_up_to(std::uint64_t most);
     void give(const std::string& option, const std::string& member, std::function<void()> set);
     [[nodiscard]] Error told(Error error) const;
 
