@@ -2,6 +2,7 @@
 
 #include <weave/core/file.hpp>
 #include <weave/core/text.hpp>
+#include <weave/design/document.hpp>
 #include <weave/wire/mill_designs.hpp>
 
 #include <loomlink/commands/client_command.hpp>
@@ -72,8 +73,10 @@ Status save(wire::MillClient& client, const SaveWords& words, CommandOutcome& ou
         expected = history.head_of(words.branch);
     }
     auto answer = wire::save_revision(client, words.design, {std::move(document), words.branch, expected, words.message, words.also});
-    if (!answer && answer.error().code != ErrorCode::refused && answer.error().code != ErrorCode::system)
+    if (!answer && answer.error().code != ErrorCode::refused && answer.error().code != ErrorCode::system) {
+        WEAVE_CHECK_OK(load_design(words.file));  // which knows a picture, or cloth, for what it is
         return std::move(answer).error().in(words.file);
+    }
     if (!answer) return std::move(answer).error();
     Json json = *answer;
     json["branch"] = words.branch;

@@ -93,6 +93,24 @@ TEST_CASE("every command explains itself with an example or in words", "[command
     }
 }
 
+TEST_CASE("what is saved and is no design is told for what it is", "[commands]") {
+    CommandMill mill;
+    mill.set_up();
+    mill.done("dora", {"design", "make", "cloth"});
+    REQUIRE(write_file(mill.at("card.png"), std::string("\x89PNG\r\n\x1a\n and more")));
+    REQUIRE(write_file(mill.at("cloth.yarns"), "weave-yarns 1\n"));
+    REQUIRE(write_file(mill.at("half.weave"), "{\"format\":"));
+    const auto refused = [&](const char* file, const char* why) {
+        const Ended ended = mill.as("dora", {"save", mill.at(file), "cloth", "--message", "A mistake"});
+        INFO(ended.err);
+        CHECK(ended.code == 3);
+        CHECK_THAT(ended.err, Catch::Contains(std::string(file) + ": " + why) && !Catch::Contains("BOM"));
+    };
+    refused("card.png", "is no design, which would begin with {");
+    refused("cloth.yarns", "holds relaxed yarns, no design");
+    refused("half.weave", "is not JSON");
+}
+
 TEST_CASE("a list of nothing says so", "[commands]") {
     CommandMill mill;
     mill.first_joins();

@@ -97,6 +97,22 @@ TEST_CASE("inspect and compare refuse what they cannot read, with the place") {
     shop.refused({"compare", "t.yarns"}, 2, {});
 }
 
+TEST_CASE("a design where cloth is looked at is told as one, with what makes cloth of it") {
+    const Workshop shop;
+    shop.must({"samples", "plain", "-o", "plain.weave"});
+    for (const std::vector<std::string>& words : {std::vector<std::string>{"inspect", "plain.weave"},
+                                                  {"compare", "plain.weave", "plain.weave"},
+                                                  {"render", "plain.weave", "--view", "3d", "-o", "plain.png"},
+                                                  {"check", "plain.weave", "--loom", WEAVE_SOURCE_DIR "/db/looms/tc2.json", "--yarns", "plain.weave"}}) {
+        INFO(words[0]);
+        shop.refused(words, 3, {"plain.weave: is a design, not cloth", "weave simulate"});
+    }
+    shop.put("other", "no such thing\n");
+    shop.refused({"inspect", "other"}, 3, {"other: byte 0: this is not a .yarns file"});
+    shop.put("empty", "");
+    shop.refused({"inspect", "empty"}, 3, {"empty"});
+}
+
 TEST_CASE("compare lays a scan on the yarns and tells how far they are apart") {
     const Workshop shop;
     relax_twill(shop);

@@ -11,6 +11,7 @@
 
 #include <charconv>
 #include <cmath>
+#include <fstream>
 #include <iostream>
 #include <limits>
 #include <set>
@@ -47,6 +48,16 @@ std::string lost_flip_line(const LostFlip& lost) {
 }
 
 }  // namespace
+
+Result<Yarns> load_cloth(const std::string& file) {
+    Result<Yarns> yarns = load_yarns(file);
+    std::error_code unknown;
+    if (yarns || !fs::is_regular_file(file, unknown)) return yarns;
+    char first = 0;
+    if (std::ifstream(file) >> first && first == '{')
+        return bad_input("is a design, not cloth: simulate it first (weave simulate DESIGN.weave -o CLOTH.yarns)", file);
+    return yarns;
+}
 
 std::string settle_whole(std::string& word, std::int64_t low, std::int64_t high) {
     const std::optional<std::int64_t> number = parse_whole(word);

@@ -103,6 +103,9 @@ Status save_cloth(CommandOutcome& outcome, const Design& design, const std::stri
 /// Relaxed yarns from a file.
 Result<Yarns> load_yarns(const std::string& file);
 
+/// The same for what looks at cloth. Errors: a design, which has to be simulated first, is told as one.
+Result<Yarns> load_cloth(const std::string& file);
+
 /// What the name of a picture ends in; an error (usage) where that is neither .png nor .svg.
 Result<PictureFormat> picture_format_of(const std::string& file);
 

@@ -21,7 +21,7 @@ bool is_at_rest(const Yarns& yarns) {
 }
 
 Status run_inspection(CommandOutcome& outcome, const std::string& file) {
-    WEAVE_TRY(const Yarns yarns, load_yarns(file));
+    WEAVE_TRY(const Yarns yarns, load_cloth(file));
     Result<Inspection> inspection = inspect(yarns);
     if (!inspection) return std::move(inspection).error().in(file);
     outcome.answer(inspection_json(yarns, *inspection), inspection_text(yarns, *inspection));
@@ -170,7 +170,7 @@ std::string comparison_text(const Yarns& yarns, const MeasuredCloth& measured, c
 
 Status run_comparison(CommandOutcome& outcome, const std::string& file, const std::string& measured_file,
                       const std::string& match) {
-    WEAVE_TRY(const Yarns yarns, load_yarns(file));
+    WEAVE_TRY(const Yarns yarns, load_cloth(file));
     WEAVE_TRY(const std::string bytes, read_file(measured_file, std::uint64_t{8} << 30));
     Result<MeasuredCloth> measured = read_measured_cloth(bytes);
     if (!measured) return std::move(measured).error().in(measured_file);

@@ -182,7 +182,7 @@ Status render_cloth(CommandOutcome& outcome, const Rendering& wish) {
         return Error{ErrorCode::usage, wish.given_flat_option + " is for pictures of designs", "--view 3d"};
     WEAVE_TRY(ClothView view, parse_cloth_view(wish.cloth));
     WEAVE_TRY(view.format, picture_format_of(wish.out));
-    WEAVE_TRY(const Yarns yarns, load_yarns(wish.file));
+    WEAVE_TRY(const Yarns yarns, load_cloth(wish.file));
     const Progress progress("drawing " + wish.out);
     WEAVE_TRY(const std::string bytes, draw_cloth(yarns, view));
     WEAVE_CHECK_OK(write_file(wish.out, bytes));

@@ -60,7 +60,7 @@ struct CheckWish {
 
 /// What relaxed yarns tell. Those of the design in another scene are taken, and it is said.
 Result<RelaxedCloth> load_relaxed(const CommandOutcome& outcome, const std::string& file, const Cloth& cloth) {
-    WEAVE_TRY(const Yarns yarns, load_yarns(file));
+    WEAVE_TRY(const Yarns yarns, load_cloth(file));
     Result<RelaxedCloth> relaxed = relaxed_cloth(yarns, cloth.design, *cloth.evaluation.block);
     if (!relaxed) return std::move(relaxed).error().in(file);
     if (const auto goes_on = yarns.report.find("goes_on"); goes_on != yarns.report.end() && goes_on->is_string())
