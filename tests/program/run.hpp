@@ -64,8 +64,10 @@ class Workshop {
     [[nodiscard]] fs::path path(const std::string& name) const { return m_folder / name; }
     [[nodiscard]] bool has(const std::string& name) const { return fs::exists(path(name)); }
 
+    /// For its owner alone, as files with secrets have to be.
     void put(const std::string& name, const std::string& bytes) const {
         REQUIRE(weave::write_file(path(name), bytes));
+        fs::permissions(path(name), fs::perms::owner_read | fs::perms::owner_write);
     }
     [[nodiscard]] std::string get(const std::string& name) const {
         weave::Result<std::string> bytes = weave::read_file(path(name));

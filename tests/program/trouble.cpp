@@ -202,6 +202,18 @@ TEST_CASE("a symbolic link stays a link, to the new content") {
     CHECK(shop.json({"info", "real.weave"}).at("picks") == 5);
 }
 
+TEST_CASE("a token that others may read is warned of, one line before what came of it") {
+    const Workshop shop;
+    shop.put("token", "a-very-secret-token\n");
+    const Words words{"jobs", "--on", "unix:none.sock", "--token-file", "token"};
+    const std::string quiet = shop.run(words).err;
+    CHECK(quiet.find("chmod") == std::string::npos);
+    REQUIRE(::chmod(shop.path("token").c_str(), 0644) == 0);
+    const auto warned = shop.run(words);
+    CHECK(warned.err == "weave: token: others may read or write it; what it holds is yours alone (chmod 600)\n" + quiet);
+    CHECK(warned.err.find("secret") == std::string::npos);
+}
+
 TEST_CASE("control characters from a file's name do not reach the terminal") {
     const Workshop shop;
     const std::string line = shop.refused({"info", "a\x1b[2Jb.weave"}, 3, {"a\\x1b[2Jb.weave"});
