@@ -159,7 +159,7 @@ TEST_CASE("what a server cannot do is refused by name before anything is sent") 
     CHECK(mill.simd.look([](ScriptedSimd& s) { return s.connections; }) == 0);
     // What the plan would refuse is told without a queue.
     mill.shop.refused(mill.on({"simulate", "d.weave", "-o", "x", "--region", "picks:1-9,ends:1-2"}), 2, {"within 2 picks"});
-    mill.shop.refused(mill.on({"simulate", "d.weave", "-o", "x", "--set", "friction=-1"}), 3, {"d.weave", "friction"});
+    mill.shop.refused(mill.on({"simulate", "d.weave", "-o", "x", "--set", "friction=-1"}), 2, {"d.weave", "--set friction=-1: must be from 0 to 100"});
     CHECK(mill.simd.look([](ScriptedSimd& s) { return s.count_of<wire::Submit>(); }) == 0);
     // So are files that could not be written once the job has ended.
     mill.shop.put("there", "");

@@ -284,7 +284,7 @@ Status make_stencil(CommandOutcome& outcome, const std::string& picture, const s
     Design design;
     StencilOperation stencil;
     std::map<Colour, std::uint16_t> numbers;
-    std::string sources = picture;
+    std::string sources = picture, first;
     std::vector<std::string> warnings;
     for (const std::string& mapping : mappings) {
         const auto equals = mapping.find('=');
@@ -296,15 +296,17 @@ Status make_stencil(CommandOutcome& outcome, const std::string& picture, const s
             return usage_error("colour " + to_text(*colour) + " is mapped twice");
         }
         const std::string file = mapping.substr(equals + 1);
-        WEAVE_CHECK_OK(keep_apart(out, file, "a design that is merged"));
         sources += (stencil.of.empty() ? " with block " : ", block ") + std::to_string(stencil.of.size()) +
                    " = " + file;
         WEAVE_TRY(Design part, load_design(file));
         if (stencil.of.empty()) {
             design = part;
             stencil.of.push_back(part.root);
+            first = file;
             continue;
         }
+        // The result holds the first with all that it is; of the others only their blocks.
+        if (file != first) WEAVE_CHECK_OK(keep_apart(out, file, "a design that is merged"));
         if (!same_yarns(design, part))
             warnings.push_back(file +
                                ": its yarns and feeders are not those of the first design and are left out");
