@@ -60,7 +60,7 @@ TEST_CASE("options that make no sense are refused in a line that names them") {
     refused({"--pin", "weft:1"}, 2, {"--pin weft:1", "2 picks and 2 ends"});
     refused({"--pin", "pick:3"}, 2, {"--pin pick:3"});
     refused({"--field", "cube:1,2,3"}, 2, {"--field cube:1,2,3", "sphere:X,Y,Z,RADIUS,STRENGTH"});
-    refused({"--field", "sphere:1,2,3,-1,1"}, 3, {"radius_mm"});
+    refused({"--field", "sphere:1,2,3,-1,1"}, 2, {"--field sphere:1,2,3,-1,1: must be from 1e-6 to 1e6 mm"});
     refused({"--solver", "magic"}, 2, {"magic"});
     // Where there is a device, test_device_cuda has what it relaxes.
     if (shop.run({"devices"}).out.find("no device") != std::string::npos) refused({"--backend", "cuda"}, 5, {"--backend cuda"});

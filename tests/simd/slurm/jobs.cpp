@@ -141,7 +141,7 @@ TEST_CASE("a daemon that is killed finds its jobs in Slurm again and hands none 
     REQUIRE(makes_steps(box, quick));
     REQUIRE(makes_steps(box, slow));
     box.kill();
-    REQUIRE(until([&] { return cluster.queued("|COMPLETED|") == 1; }));
+    REQUIRE(until([&] { return cluster.queued("|COMPLETED|") == 1; }, 180s));  // it computes for a quarter of a minute where nothing else does
     box.start();
     CHECK(end_of(follower, quick).phase == wire::JobPhase::done);
     CHECK(makes_steps(box, slow));
