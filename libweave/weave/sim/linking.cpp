@@ -93,13 +93,14 @@ class Cells {
     [[nodiscard]] std::int64_t folded(std::int64_t cell, std::size_t k) const {
         return m_around[k] > 0 ? wrapped(cell, m_around[k]).index : cell;
     }
+    /// Bounded, so that cells can be counted on from, however wild the yarns.
     [[nodiscard]] std::array<std::int64_t, 2> cell_of(const Piece& piece) const {
+        constexpr double most = 1e15;
         std::array<std::int64_t, 2> cell{};
         for (std::size_t k = 0; k < 2; ++k) {
             const auto axis = static_cast<Eigen::Index>(k);
-            cell[k] = folded(static_cast<std::int64_t>(
-                                 std::floor((piece.from[axis] + piece.along[axis] / 2) / m_width[k])),
-                             k);
+            const double place = std::floor((piece.from[axis] + piece.along[axis] / 2) / m_width[k]);
+            cell[k] = folded(static_cast<std::int64_t>(std::clamp(place, -most, most)), k);
         }
         return cell;
     }
