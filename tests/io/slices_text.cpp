@@ -85,4 +85,9 @@ TEST_CASE("what is no slice is refused with its line") {
     CHECK_THAT(refused("P0 T0\n\nP0 T0\nT0 PP\n"), Catch::Contains("line 4"));
     CHECK_THAT(refused("# P0 T0\n\n \n"), Catch::Contains("holds no slice"));
     CHECK_THAT(refused(""), Catch::Contains("holds no slice"));
+    std::string many;
+    for (int k = 0; k < 2049; ++k) many += "P0 T0\n\n";
+    CHECK_THAT(refused(many.c_str()), Catch::Contains("line 4097") && Catch::Contains("2048 slices"));
+    many.resize(many.size() - 7);
+    CHECK(check(design_of_slices(read_slices(many, System::weft).value())));
 }

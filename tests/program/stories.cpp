@@ -456,7 +456,6 @@ TEST_CASE("a design is made from slices written as text, with the yarns of anoth
     shop.put("plain.txt", "P0 T0\nT0 P0\n\nT0 P0\nP0 T0\n");
     CHECK(shop.must({"slices", "plain.txt", "-o", "plain.weave"}).out == "plain.weave: 2 picks and 2 ends in 2 rows and 2 columns, 2 high\n");
     const Json plain = shop.json({"info", "plain.weave"});
-    shop.must({"samples", "plain", "-o", "known.weave"});
     shop.must({"slices", "plain.txt", "--yarns", "yarns.weave", "--title", "Plain", "-o", "other.weave"});
     const Json other = Json::parse(shop.get("other.weave")), source = Json::parse(shop.get("yarns.weave"));
     CHECK(other.at("title") == "Plain");

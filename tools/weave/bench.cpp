@@ -20,8 +20,8 @@ namespace {
 
 namespace fs = std::filesystem;
 
-std::string file_of(const std::string& folder, const std::string& name) {
-    return (fs::path(folder) / ("tradeoff-" + name + ".json")).string();
+std::string file_of(const std::string& name) {
+    return "tradeoff-" + name + ".json";
 }
 
 /// A place that nothing can be written to is told before anything is measured.
@@ -46,7 +46,7 @@ Status put(const std::string& folder, const std::string& name, const std::string
 
 /// What the folder holds of earlier runs; null where there is nothing.
 Result<Json> earlier(const std::string& folder, const std::string& name) {
-    const std::string file = file_of(folder, name);
+    const std::string file = (fs::path(folder) / file_of(name)).string();
     if (folder.empty() || !fs::exists(file)) return Json();
     WEAVE_TRY(const std::string bytes, read_file(file));
     Json json = Json::parse(bytes, nullptr, false);
@@ -109,7 +109,7 @@ Result<std::size_t> measure_all(const std::vector<std::string>& asked, const Ben
         known[name] = std::move(measured).value();
         ++done;
         if (options.folder.empty()) continue;
-        WEAVE_CHECK_OK(put(options.folder, "tradeoff-" + name + ".json", known[name].dump(1) + "\n"));
+        WEAVE_CHECK_OK(put(options.folder, file_of(name), known[name].dump(1) + "\n"));
         WEAVE_CHECK_OK(write_report(options.folder, in_order(known)));
     }
     return done;

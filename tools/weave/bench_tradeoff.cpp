@@ -225,9 +225,9 @@ class Tradeoff {
     /// if not, how they differ.
     [[nodiscard]] Json basins() const {
         if (m_paper.empty()) return {{"comparable", false}};
-        const Shape fast = shape_of(m_plans[1], m_raw[standard].control),
-                    slow = shape_of(m_plans[1], m_paper[standard].control);
-        Json basins = error_json(m_plans[1], slow, fast);
+        const Shape fast = shape_of(m_plans[standard], m_raw[standard].control),
+                    slow = shape_of(m_plans[standard], m_paper[standard].control);
+        Json basins = error_json(m_plans[standard], slow, fast);
         const bool both = m_raw[standard].result.residual <= 1e-3 && m_paper[standard].result.residual <= 1e-3;
         basins["comparable"] = both;
         basins["same"] = both && std::abs(basins.at("crimp_warp_pp").get<double>()) < 0.1 &&

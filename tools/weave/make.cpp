@@ -138,7 +138,8 @@ struct SlicesWish {
 
 Status make_from_slices(CommandOutcome& outcome, const SlicesWish& wish) {
     WEAVE_CHECK_OK(keep_apart(wish.out, wish.file, "the text that is read"));
-    WEAVE_TRY(const std::string text, read_file(wish.file));
+    constexpr std::uint64_t most_bytes = std::uint64_t{32} << 20;
+    WEAVE_TRY(const std::string text, read_file(wish.file, most_bytes));
     auto slices = read_slices(text, wish.dots == "weft" ? System::weft : System::warp);
     if (!slices) return std::move(slices).error().in(wish.file);
     Design design = design_of_slices(std::move(*slices));

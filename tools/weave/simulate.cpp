@@ -176,25 +176,19 @@ Status sweep(CommandOutcome& outcome, wire::Follower& server, const Cloth& cloth
     return sweep_on(outcome, server, tasks, settings, wish);
 }
 
-/// What cannot be held is refused, what may not be is said: amounts are known within a factor of four (sim/forecast.hpp).
-Status check_memory(CommandOutcome& outcome, const sim::MemoryNeed& need, const std::string& file) {
+/// What cannot be held is refused, and what may not be is said where it is known: amounts are right within a factor of four
+/// (sim/forecast.hpp), and a guess before the plan is made within one of two. To lay out what has no room at all takes a minute,
+/// and would end without a word.
+Status check_memory(CommandOutcome& outcome, const sim::MemoryNeed& need, bool is_guess, const std::string& file) {
     const std::optional<sim::MemoryRoom> room = sim::room_here();
     if (!room) return {};
     const Status doubt = sim::check_room(need, *room);
     if (doubt) return {};
-    if (sim::is_hopeless(need, *room)) return Error(doubt.error()).in(file);
-    outcome.note(on_one_line(file) + ": " + doubt.error().message + "; it is tried all the same");
+    sim::MemoryNeed least = need;
+    if (is_guess) least.points /= 2;
+    if (sim::is_hopeless(least, *room)) return Error(doubt.error()).in(file);
+    if (!is_guess) outcome.note(on_one_line(file) + ": " + doubt.error().message + "; it is tried all the same");
     return {};
-}
-
-/// Laying out a cloth that has no room at all takes a minute, and ends without a word.
-Status foresee_memory(const SimulateTask& task, const Block& block, const std::string& file) {
-    const std::optional<sim::MemoryRoom> room = sim::room_here();
-    std::optional<sim::MemoryNeed> need = sim::foreseen_need(task.design, block, task.request);
-    if (!room || !need) return {};
-    const Status doubt = sim::check_room(*need, *room);
-    need->points /= 2;  // as many as it has at least
-    return sim::is_hopeless(*need, *room) ? Status(Error(doubt.error()).in(file)) : Status();
 }
 
 Status explain(CommandOutcome& outcome, const sim::Plan& plan) {
@@ -229,7 +223,8 @@ Status run_simulation(CommandOutcome& outcome, const SimulateWish& wish) {
     if (!understood) return std::move(understood).error().in(wish.file);
     SimulateTask& task = *understood;
     const bool computes_here = !server && !wish.explain;
-    if (computes_here) WEAVE_CHECK_OK(foresee_memory(task, block, wish.file));
+    if (const auto guess = computes_here ? sim::foreseen_need(task.design, block, task.request) : std::nullopt)
+        WEAVE_CHECK_OK(check_memory(outcome, *guess, true, wish.file));
     WEAVE_TRY(sim::Plan plan, plan_of(task.design, block, task.request, wish.file));
     if (!server) {
         const Result<sim::BackendChoice> choice = sim::choose_backend(task.options.backend, plan.scene);
@@ -247,7 +242,7 @@ Status run_simulation(CommandOutcome& outcome, const SimulateWish& wish) {
         plan = {};
         return simulate_on(outcome, *server, cloth.design, task, wish, goal);
     }
-    WEAVE_CHECK_OK(check_memory(outcome, sim::need_of(plan), wish.file));
+    WEAVE_CHECK_OK(check_memory(outcome, sim::need_of(plan), false, wish.file));
     const HeldInterrupt held("the yarns are written as they lie; again to end at once, without the state");
     WEAVE_TRY(const Yarns yarns, watched(block, task, plan, wish));
     WEAVE_TRY(const std::string bytes, write_yarns(yarns));

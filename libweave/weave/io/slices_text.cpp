@@ -8,6 +8,9 @@ namespace weave {
 
 namespace {
 
+/// Side by side they are nearly twice as many blocks.
+constexpr std::size_t most_slices = most_blocks / 2;
+
 /// The line without its remark and the blanks at its end.
 std::string_view content_of(std::string_view line) {
     line = line.substr(0, line.find('#'));
@@ -47,6 +50,7 @@ Result<std::vector<Slice>> read_slices(std::string_view text, System dots) {
         }
         auto position = parse_slice_position(content);
         if (!position) return std::move(position).error().in("line " + std::to_string(number));
+        if (is_between && slices.size() == most_slices) return bad_input("there are more than " + std::to_string(most_slices) + " slices", "line " + std::to_string(number));
         if (is_between) slices.push_back({dots, {}});
         is_between = false;
         slices.back().positions.push_back(std::move(*position));

@@ -1,5 +1,6 @@
 #include <weave/picture/yarn_knots.hpp>
 
+#include <weave/curve/drawn_by.hpp>
 #include <weave/design/yarns.hpp>
 #include <weave/picture/look.hpp>
 #include <weave/sim/sampled.hpp>
@@ -64,13 +65,8 @@ namespace {
 
 /// Whether the curve at a control point is drawn by points that all left their planned place: a held one never does.
 bool is_free_at(const SimulatedYarn& yarn, std::size_t point) {
-    const std::size_t points = yarn.spline.control.size();
-    for (std::size_t k = 0; k < 4; ++k) {  // of the segment that begins there
-        const std::size_t beyond = point + k;
-        const std::size_t at = yarn.spline.is_periodic ? (beyond + points - 1) % points : std::min(std::max<std::size_t>(beyond, 1) - 1, points - 1);
-        if (yarn.spline.control[at] == yarn.planned[at]) return false;
-    }
-    return true;
+    const std::vector<Vec3>& control = yarn.spline.control;
+    return !any_that_draws(control.size(), yarn.spline.is_periodic, point, [&](std::size_t at) { return control[at] == yarn.planned[at]; });
 }
 
 /// Least and greatest strain of what is not held, %; nothing where all is.

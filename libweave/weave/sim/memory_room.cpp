@@ -1,6 +1,7 @@
 #include <weave/sim/memory_room.hpp>
 
 #include <weave/sim/forecast.hpp>
+#include <weave/sim/resolution.hpp>
 
 #include <algorithm>
 #include <cmath>
@@ -12,19 +13,6 @@ namespace {
 
 /// A part with fewer rows or columns of stacks has nothing that can move.
 constexpr std::size_t fewest_lines = 3;
-
-double points_per_key(const SimulationRequest& request) {
-    if (request.points_per_key) return *request.points_per_key;
-    switch (request.fidelity) {
-        case Fidelity::draft:
-            return 2;
-        case Fidelity::standard:
-            return 4;
-        case Fidelity::reference:
-            break;
-    }
-    return 8;
-}
 
 std::size_t stacks_of(const Region& region) {
     return (region.last_row - region.first_row + 1) * (region.last_column - region.first_column + 1);
@@ -62,7 +50,7 @@ std::optional<MemoryNeed> foreseen_need(const Design& design, const Block& block
     const std::size_t rows = part.last_row - part.first_row + 1, columns = part.last_column - part.first_column + 1;
     const std::size_t picks = block.first_pick(part.last_row + 1) - block.first_pick(part.first_row),
                       ends = block.first_end(part.last_column + 1) - block.first_end(part.first_column);
-    const double points = points_per_key(request) * static_cast<double>(picks * columns + ends * rows);
+    const double points = request.points_per_key.value_or(resolution_of(request.fidelity).points_per_key) * static_cast<double>(picks * columns + ends * rows);
     return MemoryNeed{static_cast<std::size_t>(points), stacks_of(part), request.fidelity};
 }
 

@@ -17,7 +17,8 @@ struct MemoryNeed {
 
 MemoryNeed need_of(const Plan& plan);
 /// The need of a plan that is not made yet, a guess that takes no time: a key point where a pick passes a column of
-/// stacks, or an end a row; the plan may have half as many points, or twice. Nothing where the smallest repeat of the cloth may do, which only the plan finds.
+/// stacks, or an end a row; the plan may have half as many points, or twice. Nothing where the smallest repeat of the cloth
+/// may do, which only the plan finds.
 std::optional<MemoryNeed> foreseen_need(const Design& design, const Block& block,
                                         const SimulationRequest& request);
 

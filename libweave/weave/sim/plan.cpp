@@ -1,6 +1,7 @@
 #include <weave/sim/plan.hpp>
 
 #include <weave/sim/plan_in_stretches.hpp>
+#include <weave/sim/resolution.hpp>
 
 #include <weave/core/text.hpp>
 #include <weave/core/units.hpp>
@@ -20,22 +21,6 @@ namespace {
 /// Wefts are inserted a little longer than the cloth is wide.
 constexpr double weft_excess = 0.01;
 constexpr double most_neighbours = 1e4;  ///< of one contact sample, as a rough bound from above tells
-
-struct Resolution {
-    double points_per_key, sample_spacing, goal;
-};
-
-Resolution resolution_of(Fidelity fidelity) {
-    switch (fidelity) {
-        case Fidelity::draft:
-            return {2, 0.25, 1e-2};
-        case Fidelity::standard:
-            return {4, 0.25, 1e-3};
-        case Fidelity::reference:
-            break;
-    }
-    return {8, 0.125, 1e-8};
-}
 
 /// The smallest period of a line: equal(i, i + period) for all i, and a divisor of the length.
 template <class Equal>
@@ -441,6 +426,18 @@ class Planner {
     Plan& m_plan = m_made.m_plan;
     Eigen::AlignedBox3d& m_box = m_made.m_box;
 };
+
+Resolution resolution_of(Fidelity fidelity) {
+    switch (fidelity) {
+        case Fidelity::draft:
+            return {2, 0.25, 1e-2};
+        case Fidelity::standard:
+            return {4, 0.25, 1e-3};
+        case Fidelity::reference:
+            break;
+    }
+    return {8, 0.125, 1e-8};
+}
 
 Result<Fidelity> parse_fidelity(std::string_view text) {
     for (const Fidelity fidelity : {Fidelity::draft, Fidelity::standard, Fidelity::reference}) {

@@ -1,5 +1,6 @@
 #include <weave/sim/result.hpp>
 
+#include <weave/curve/drawn_by.hpp>
 #include <weave/design/document.hpp>
 #include <weave/design/picks.hpp>
 #include <weave/sim/planned_yarns.hpp>
@@ -20,13 +21,7 @@ std::uint64_t peak_bytes() {
 }
 
 bool is_held_at(const SimYarn& yarn, std::size_t begin) {
-    const std::size_t points = yarn.frozen.size();
-    for (std::size_t k = 0; points > 0 && k < 4; ++k) {
-        const std::size_t beyond = begin + k;  // one further than the point itself
-        const std::size_t at = yarn.is_periodic ? (beyond + points - 1) % points : std::min(std::max<std::size_t>(beyond, 1) - 1, points - 1);
-        if (yarn.frozen[at] != 0) return true;
-    }
-    return false;
+    return !yarn.frozen.empty() && any_that_draws(yarn.frozen.size(), yarn.is_periodic, begin, [&](std::size_t at) { return yarn.frozen[at] != 0; });
 }
 
 namespace {
