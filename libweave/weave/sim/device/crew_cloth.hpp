@@ -182,8 +182,8 @@ class CrewCloth {
   private:
     struct Apply {
         CrewCloth& cloth;
-        WEAVE_ANYWHERE WEAVE_CALLED WEAVE_HD void operator()(const View<const Real>& residual, const View<Real>& step) {
-            apply(cloth.m_crew, cloth.m_room.pieces, residual, step);
+        WEAVE_ANYWHERE WEAVE_CALLED WEAVE_HD void operator()(const View<const Real>& residual, const View<Real>& solved) {
+            apply(cloth.m_crew, cloth.m_room.pieces, residual, solved);
         }
     };
 
