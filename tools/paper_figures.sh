@@ -121,7 +121,7 @@ WEAVE
     pictures
     local run
     for run in before first after; do
-        picture fig9-$run.yarns 3d fig9-$run "$run" --side 20,40 --cut x=1.24 --size 600x420
+        picture fig9-$run.yarns 3d fig9-$run "$run" --side 20,40 --cut x=1.30 --size 600x420
     done
     done_with_pictures
 }
@@ -182,7 +182,7 @@ fig13() {
     pictures
     local run
     for run in closed open; do
-        picture fig13-$run.yarns 3d fig13-$run "$run" --side 60,25 --size 600x400
+        picture fig13-$run.yarns 3d fig13-$run "$run" --side 60,8 --size 600x400
         picture fig13-$run.yarns 3d fig13-$run-cut "$run, cut through the middle" --side front --cut x=13 --size 600x340
     done
     done_with_pictures
@@ -215,8 +215,8 @@ fig16() {
     heading "Figure 16: details of the adult shoe"
     sample shoe-adult
     pictures
-    picture shoe-adult.weave weft:3000 fig16-middle "Through the middle: sole, insole, upper" --from-end 1081
-    picture shoe-adult.weave weft:3000 fig16-rim "At the rim: ends that bind nothing" --from-end 301
+    picture shoe-adult.weave weft:3000 fig16-middle "Through the middle: sole, insole, upper" --from-end 1081 --to-end 1200
+    picture shoe-adult.weave weft:3000 fig16-rim "At the rim: ends that bind nothing" --from-end 541 --to-end 660
     done_with_pictures
 }
 

@@ -212,7 +212,7 @@ TEST_CASE("slices and the block begin where they are asked to, and say so") {
     const Evaluation cloth = evaluate(design).value();
     const Block& block = *cloth.block;
     PictureRequest request = parse_view("weft:3000", block).value();
-    REQUIRE(begin_at(request, block, std::nullopt, 1081));
+    REQUIRE(show_span(request, block, {.from_end = 1081}));
     CHECK(request.first_column == block.column_of_end(1080));
     const SlicePicture slice = slice_of(design, block, request);
     CHECK(says(slice.marks, "Shown: columns 181–240 of 400, ends 1081–1440."));
@@ -232,7 +232,7 @@ TEST_CASE("slices and the block begin where they are asked to, and say so") {
         }
     }
     PictureRequest whole{.view = View::block};
-    REQUIRE(begin_at(whole, block, 3000, 1081));
+    REQUIRE(show_span(whole, block, {.from_pick = 3000, .from_end = 1081}));
     const auto marks = marks_of(design, block, whole);
     CHECK(says(marks, "Shown: rows 500–511 of 1000, columns 181–192 of 400."));
     CHECK(places_of(marks, "pick 2995").size() == 1);
@@ -255,25 +255,43 @@ TEST_CASE("a yarn that turns before the shown part runs in from its edge") {
     CHECK(says(slice.marks, "Shown: columns 4–8 of 8, ends 4–8."));
 }
 
+TEST_CASE("slices and the block end where they are asked to, whole rows and columns at a time") {
+    const Design design = sample_design("shoe-adult");
+    const Evaluation cloth = evaluate(design).value();
+    const Block& block = *cloth.block;
+    PictureRequest weft = parse_view("weft:3000", block).value(), warp = parse_view("warp:1200", block).value();
+    REQUIRE(show_span(weft, block, {.from_end = 1081, .to_end = 1200}));
+    CHECK(says(slice_of(design, block, weft).marks, "Shown: columns 181–200 of 400, ends 1081–1200."));
+    REQUIRE(show_span(weft, block, {.from_end = 1, .to_end = 2400}));  // no more than there is room for
+    CHECK(says(slice_of(design, block, weft).marks, "Shown: columns 1–60 of 400, ends 1–360."));
+    const auto pick = block.first_pick(500) + 1;  // the first of its row
+    REQUIRE(show_span(warp, block, {.from_pick = pick, .to_pick = pick}));
+    CHECK(says(slice_of(design, block, warp).marks, "Shown: row 501 of 1000, picks " + std::to_string(pick) + "–" +
+                                                        std::to_string(block.first_pick(501)) + "."));
+}
+
 TEST_CASE("only views that begin somewhere can begin elsewhere") {
     const Block block = layered();
     for (const View view : {View::card, View::face, View::back, View::floats, View::layers}) {
         PictureRequest request{.view = view};
-        CHECK(begin_at(request, block, std::nullopt, std::nullopt));
-        CHECK(begin_at(request, block, 1, std::nullopt).error().code == ErrorCode::usage);
-        CHECK(begin_at(request, block, std::nullopt, 1).error().code == ErrorCode::usage);
+        CHECK(show_span(request, block, {}));
+        for (const PictureSpan& span : {PictureSpan{.from_pick = 1}, PictureSpan{.to_pick = 1}, PictureSpan{.from_end = 1}, PictureSpan{.to_end = 1}})
+            CHECK(show_span(request, block, span).error().code == ErrorCode::usage);
     }
     PictureRequest weft{.view = View::weft_slice}, warp{.view = View::warp_slice}, whole{.view = View::block};
-    CHECK(begin_at(weft, block, 1, std::nullopt).error().message ==
-          "only warp slices and the block can begin at a pick");
-    CHECK(begin_at(warp, block, std::nullopt, 1).error().message ==
-          "only weft slices and the block can begin at an end");
-    CHECK(begin_at(whole, block, 6, 1).error().message == "there is no such pick as 6: the cloth has 1 to 5");
-    CHECK(begin_at(whole, block, 1, 0).error().message == "there is no such end as 0: the cloth has 1 to 5");
-    CHECK(begin_at(whole, block, 4, 3));
+    const auto refusal = [&](PictureRequest& request, const PictureSpan& span) { return show_span(request, block, span).error().message; };
+    CHECK(refusal(weft, {.from_pick = 1}) == "only warp slices and the block can begin or end at a chosen pick");
+    CHECK(refusal(warp, {.to_end = 1}) == "only weft slices and the block can begin or end at a chosen end");
+    CHECK(refusal(whole, {.from_pick = 6, .from_end = 1}) == "there is no such pick as 6: the cloth has 1 to 5");
+    CHECK(refusal(whole, {.from_pick = 1, .to_end = 0}) == "there is no such end as 0: the cloth has 1 to 5");
+    CHECK(refusal(whole, {.from_end = 4, .to_end = 3}) == "a picture from end 4 cannot end at end 3");
+    CHECK(show_span(whole, block, {.from_pick = 4, .to_pick = 4, .from_end = 3}));
     CHECK(whole.first_row == 1);
+    CHECK(whole.last_row == 1);
     CHECK(whole.first_column == 1);
+    CHECK(whole.last_column == PictureRequest::no_limit);
     CHECK_FALSE(draw({}, cloth_of(block), {.view = View::block, .first_row = 2}, PictureFormat::png));
+    CHECK_FALSE(draw({}, cloth_of(block), {.view = View::block, .first_row = 1, .last_row = 0}, PictureFormat::png));
 }
 
 TEST_CASE("a tall block says how much of its height is shown, a wide one does not") {

@@ -77,7 +77,7 @@ TEST_CASE("pictures, exports and imports spare what they are made from") {
 
 TEST_CASE("a picture of relaxed cloth takes no option for pictures of designs") {
     const Workshop shop;
-    for (const Words& words : {Words{"--trim"}, {"--from-pick", "1"}, {"--from-end", "1"}}) {
+    for (const Words& words : {Words{"--trim"}, {"--from-pick", "1"}, {"--to-pick", "1"}, {"--from-end", "1"}, {"--to-end", "1"}}) {
         Words all{"render", "y.yarns", "--view", "3d", "-o", "y.png"};
         all.insert(all.end(), words.begin(), words.end());
         shop.refused(all, 2, {words[0], "--view 3d"});

@@ -52,6 +52,8 @@ TEST_CASE("slices and the block begin at the pick and end that are asked for") {
     const std::string first = picture({"weft:3000"});
     CHECK(picture({"weft:3000", "--from-end", "1"}) == first);
     CHECK(picture({"weft:3000", "--from-end", "1081"}) != first);
+    CHECK(picture({"weft:3000", "--from-end", "1", "--to-end", "60"}) != first);
+    CHECK(picture({"weft:3000", "--to-end", "2400"}) == first);  // no more than there is room for
     CHECK(picture({"warp:1200", "--from-pick", "3000"}) != picture({"warp:1200"}));
     std::set<std::string> blocks{picture({"block"}), picture({"block", "--from-pick", "3000"}),
                                  picture({"block", "--from-end", "1081"}),
@@ -63,6 +65,8 @@ TEST_CASE("slices and the block begin at the pick and end that are asked for") {
                  {"weft slices and the block"});
     shop.refused({"render", "d.weave", "--view", "block", "--from-end", "2401", "-o", "n.png"}, 2,
                  {"2401", "1 to 2400"});
+    shop.refused({"render", "d.weave", "--view", "weft:1", "--from-end", "9", "--to-end", "8", "-o", "n.png"}, 2,
+                 {"from end 9 cannot end at end 8"});
     shop.refused({"render", "d.weave", "--view", "block", "--from-pick", "middle", "-o", "n.png"}, 2,
                  {"--from-pick"});
 }

@@ -170,7 +170,7 @@ TEST_CASE("what a server cannot do is refused by name before anything is sent") 
     mill.shop.refused(mill.on({"jobs", "fetch", "1", "-o", "no/folder.yarns"}), 5, {"no/folder.yarns"});
     CHECK(mill.simd.look([](ScriptedSimd& s) { return s.count_of<wire::Submit>(); }) == 0);
     // And so is what the protocol does not take.
-    mill.shop.refused(mill.on({"simulate", "d.weave", "-o", "x", "--residual", "2"}), 2, {"simulation.residual"});
+    mill.shop.refused(mill.on({"simulate", "d.weave", "-o", "x", "--seconds", "2e9"}), 2, {"simulation.most_seconds"});
 }
 
 TEST_CASE("a server computes on what it was set up for, and is asked for nothing else") {

@@ -127,7 +127,7 @@ TEST_CASE("planning and relaxing that take their time are told, the latter with 
     CHECK((said || std::chrono::steady_clock::now() - began < std::chrono::seconds(2)));
 
     shop.must({"samples", "layer-to-layer", "-o", "d.weave"});
-    Workshop::Running running = shop.start({"simulate", "d.weave", "--threads", "1", "--solver", "paper", "--residual", "1e-30", "-o", "d.yarns"});
+    Workshop::Running running = shop.start({"simulate", "d.weave", "--threads", "1", "--solver", "paper", "--residual", "1e-15", "-o", "d.yarns"});
     REQUIRE(running.says("relaxing ... residual"));
     CHECK(running.says("steps, order kept, "));
     ::kill(running.child, SIGINT);
@@ -164,7 +164,7 @@ TEST_CASE("a relaxation goes on from a file, in more points too, and not from on
 TEST_CASE("a run that begins in fewer points shows them first, marked, and then those asked for") {
     const Workshop shop;
     shop.must({"samples", "tl013-wrong", "-o", "d.weave"});
-    Workshop::Running running = shop.start({"simulate", "d.weave", "--threads", "1", "--start-from", "draft", "--residual", "1e-30", "-o", "d.yarns"});
+    Workshop::Running running = shop.start({"simulate", "d.weave", "--threads", "1", "--start-from", "draft", "--residual", "1e-15", "-o", "d.yarns"});
     REQUIRE(running.says("in all points"));
     const weave::Yarns shown = yarns_in(shop, "d.yarns");
     CHECK(shown.report.at("goes_on") == "standard");

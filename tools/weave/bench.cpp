@@ -288,7 +288,7 @@ void add_scale(CLI::App& bench, CommandOutcome& outcome) {
         ->capture_default_str()
         ->type_name("N");
     command->add_option("--residual", wish->scale.residual, "how still is still")
-        ->check(positive_number())
+        ->check(residual_goal())
         ->capture_default_str()
         ->type_name("N");
     add_shared_options(command, wish->options,

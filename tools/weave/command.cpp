@@ -22,6 +22,15 @@ namespace {
 
 namespace fs = std::filesystem;
 
+std::optional<double> positive(const std::string& word) {
+    double value = 0;
+    const auto [end, code] = std::from_chars(word.data(), word.data() + word.size(), value);
+    const bool is_number = code == std::errc{} && end == word.data() + word.size();
+    return is_number && value > 0 && std::isfinite(value) ? std::optional(value) : std::nullopt;
+}
+
+std::string not_positive(const std::string& word) { return "'" + word + "' is not a number above 0"; }
+
 /// The place that a file of this name is written to: links are followed, to a file that is still missing too.
 fs::path written_place(fs::path name) {
     std::error_code trouble;
@@ -73,11 +82,14 @@ CLI::Validator whole_number() {
 }
 
 CLI::Validator positive_number() {
-    return {[](std::string& word) {
-                double value = 0;
-                const auto [end, code] = std::from_chars(word.data(), word.data() + word.size(), value);
-                const bool is_number = code == std::errc{} && end == word.data() + word.size();
-                return is_number && value > 0 && std::isfinite(value) ? "" : "'" + word + "' is not a number above 0";
+    return {[](std::string& word) { return positive(word) ? "" : not_positive(word); }, ""};
+}
+
+CLI::Validator residual_goal() {
+    return {[](std::string& word) -> std::string {
+                const std::optional<double> goal = positive(word);
+                if (!goal) return not_positive(word);
+                return *goal >= least_residual && *goal <= 1 ? "" : "'" + word + "' is not from 1e-15 to 1";
             },
             ""};
 }

@@ -171,7 +171,7 @@ void add_card(CLI::App& app, CommandOutcome& outcome) {
 struct Rendering {
     std::string file, view, out;
     bool trim = false;
-    std::optional<std::size_t> from_pick, from_end;
+    PictureSpan span;
     ClothWords cloth;  ///< how relaxed cloth is looked at
     std::string given_3d_option;  ///< the first of the options for `cloth` that was given
     std::string given_flat_option;  ///< the first of those for pictures of designs
@@ -200,12 +200,12 @@ Status render(CommandOutcome& outcome, const Rendering& wish) {
     WEAVE_CHECK_OK(keep_apart(wish.out, wish.file, "the file that is read"));
     if (wish.view == "3d") return render_cloth(outcome, wish);
     WEAVE_CHECK_OK(refuse_3d_options(wish));
-    const auto& [file, view, out, trim, from_pick, from_end, cloth_words, given_3d_option, given_flat_option] = wish;
+    const auto& [file, view, out, trim, span, cloth_words, given_3d_option, given_flat_option] = wish;
     WEAVE_TRY(const PictureFormat format, picture_format_of(out));
     WEAVE_TRY(const Cloth cloth, load_cloth(outcome, file));
     const Progress progress("drawing " + out);
     WEAVE_TRY(PictureRequest request, parse_view(view, *cloth.evaluation.block));
-    WEAVE_CHECK_OK(begin_at(request, *cloth.evaluation.block, from_pick, from_end));
+    WEAVE_CHECK_OK(show_span(request, *cloth.evaluation.block, span));
     request.trim = trim;
     WEAVE_TRY(const std::string bytes, draw(cloth.design, cloth.evaluation, request, format));
     WEAVE_CHECK_OK(write_file(out, bytes));
@@ -226,11 +226,17 @@ void add_render(CLI::App& app, CommandOutcome& outcome) {
         ->required();
     command->add_flag("--trim", wish->trim, "leave out yarns that are loose on purpose");
     command
-        ->add_option("--from-pick", wish->from_pick,
+        ->add_option("--from-pick", wish->span.from_pick,
                      "for warp:N and block: begin at this pick, where the cloth is too large to show whole")
         ->transform(whole_number())
         ->type_name("N");
-    command->add_option("--from-end", wish->from_end, "for weft:N and block: begin at this end")
+    command->add_option("--to-pick", wish->span.to_pick, "for warp:N and block: end at this pick; up to 60 rows are shown")
+        ->transform(whole_number())
+        ->type_name("N");
+    command->add_option("--from-end", wish->span.from_end, "for weft:N and block: begin at this end")
+        ->transform(whole_number())
+        ->type_name("N");
+    command->add_option("--to-end", wish->span.to_end, "for weft:N and block: end at this end; up to 60 columns are shown")
         ->transform(whole_number())
         ->type_name("N");
     command->add_option("--side", wish->cloth.side, "3d: top, bottom, front, back, left, right, corner, or AZIMUTH,ELEVATION")
@@ -246,7 +252,7 @@ void add_render(CLI::App& app, CommandOutcome& outcome) {
         ->required();
     on_run(command, outcome, [=, &outcome] {
         wish->given_3d_option = given_of(command, {"--side", "--cut", "--colour", "--repeat", "--size", "--perspective"});
-        wish->given_flat_option = given_of(command, {"--trim", "--from-pick", "--from-end"});
+        wish->given_flat_option = given_of(command, {"--trim", "--from-pick", "--to-pick", "--from-end", "--to-end"});
         return render(outcome, *wish);
     });
 }

@@ -264,8 +264,8 @@ void add_simulate(CLI::App& app, CommandOutcome& outcome) {
     command->add_option("--solver", wish->solver, "relax (if nothing is said), or paper: in time as the paper did, the slow baseline")
         ->type_name("WORD");
     command->add_option("--points", wish->points, "control points for each crossing, instead of the fidelity's")->check(positive_number())->type_name("N");
-    command->add_option("--residual", wish->residual, "how still is still: greatest force over the reference force")
-        ->check(positive_number())
+    command->add_option("--residual", wish->residual, "how still is still: greatest force over the reference force, 1e-15 to 1 (below some 1e-12 rounding lets no cloth come to rest)")
+        ->check(residual_goal())
         ->type_name("N");
     command->add_option("--set", wish->set, "a number of the scene for this run, such as warp.strain=1.02 or friction=0.2")->type_name("NAME=N");
     CLI::Option* sweeping = command->add_option("--sweep", wish->sweep, "with --on: a job for each of these numbers of the scene, and for each combination where it is given again; "

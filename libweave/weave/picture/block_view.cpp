@@ -25,9 +25,9 @@ struct Shown {
 /// The longer side gives way first, so that a narrow block is shown over its whole length.
 Shown shown_part(const Subject& subject) {
     const Block& block = subject.block;
-    const std::size_t row = subject.request.first_row, column = subject.request.first_column;
-    Shown shown{row, column, std::min(most_shown, block.rows() - row),
-                std::min(most_shown, block.columns() - column),
+    const PictureRequest& request = subject.request;
+    Shown shown{request.first_row, request.first_column, std::min(most_shown, request.rows_of(block.rows())),
+                std::min(most_shown, request.columns_of(block.columns())),
                 std::clamp<std::size_t>(block.height(), 1, SliceMap::most_levels)};
     const auto is_too_much = [&] {
         const std::size_t stacks = shown.rows * shown.columns;

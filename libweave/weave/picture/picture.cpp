@@ -74,25 +74,28 @@ Result<PictureRequest> parse_view(std::string_view text, const Block& block) {
                  {}};
 }
 
-Status begin_at(PictureRequest& request, const Block& block, std::optional<std::size_t> pick,
-                std::optional<std::size_t> end) {
+Status show_span(PictureRequest& request, const Block& block, const PictureSpan& span) {
     const auto refused = [](std::string message) { return Error{ErrorCode::usage, std::move(message), {}}; };
-    const auto check = [&](std::optional<std::size_t> number, std::size_t count, View slice, const char* yarn,
-                           const char* views) -> Status {
-        if (!number) return {};
-        if (request.view != slice && request.view != View::block) {
-            return refused(std::string("only ") + views + " can begin at " + yarn);
+    using Number = std::optional<std::size_t>;
+    const auto check = [&](Number from, Number to, std::size_t count, View slice, const std::string& yarn,
+                           const std::string& views) -> Status {
+        if ((from || to) && request.view != slice && request.view != View::block)
+            return refused("only " + views + " can begin or end at a chosen " + yarn);
+        for (const Number number : {from, to}) {
+            if (number && (*number < 1 || *number > count))
+                return refused("there is no such " + yarn + " as " + std::to_string(*number) + ": the cloth has 1 to " +
+                               std::to_string(count));
         }
-        if (*number < 1 || *number > count) {
-            return refused("there is no such " + std::string(yarn).substr(yarn[1] == 'n' ? 3 : 2) + " as " +
-                           std::to_string(*number) + ": the cloth has 1 to " + std::to_string(count));
-        }
+        if (from && to && *to < *from)
+            return refused("a picture from " + yarn + " " + std::to_string(*from) + " cannot end at " + yarn + " " + std::to_string(*to));
         return {};
     };
-    WEAVE_CHECK_OK(check(pick, block.picks(), View::warp_slice, "a pick", "warp slices and the block"));
-    WEAVE_CHECK_OK(check(end, block.ends(), View::weft_slice, "an end", "weft slices and the block"));
-    if (pick) request.first_row = block.row_of_pick(*pick - 1);
-    if (end) request.first_column = block.column_of_end(*end - 1);
+    WEAVE_CHECK_OK(check(span.from_pick, span.to_pick, block.picks(), View::warp_slice, "pick", "warp slices and the block"));
+    WEAVE_CHECK_OK(check(span.from_end, span.to_end, block.ends(), View::weft_slice, "end", "weft slices and the block"));
+    if (span.from_pick) request.first_row = block.row_of_pick(*span.from_pick - 1);
+    if (span.to_pick) request.last_row = block.row_of_pick(*span.to_pick - 1);
+    if (span.from_end) request.first_column = block.column_of_end(*span.from_end - 1);
+    if (span.to_end) request.last_column = block.column_of_end(*span.to_end - 1);
     return {};
 }
 
@@ -117,6 +120,8 @@ Result<std::string> draw(const Design& design, const Evaluation& cloth, const Pi
                          std::to_string(request.first_column + 1),
                      {}};
     }
+    if (request.last_row < request.first_row || request.last_column < request.first_column)
+        return Error{ErrorCode::usage, "a picture cannot end before it begins", {}};
     try {
         return draw_view({design, block, request, format});
     } catch (const std::bad_alloc&) {

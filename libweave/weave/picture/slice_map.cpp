@@ -107,7 +107,7 @@ SliceMap slice_map(const Subject& subject, const YarnColours& colours, const Wef
     map.all_positions = warps_run ? block.rows() : block.columns();
     map.all_levels = block.height();
     map.begin = warps_run ? subject.request.first_row : subject.request.first_column;
-    map.positions = std::min(map.all_positions - map.begin, limits.positions);
+    map.positions = std::min(limits.positions, warps_run ? subject.request.rows_of(block.rows()) : subject.request.columns_of(block.columns()));
     map.levels = std::min(map.all_levels, limits.levels);
     list_dots(subject, colours, map);
     list_paths(subject, map, warps_run ? block.p()[line] : block.t()[line]);
