@@ -57,7 +57,7 @@ struct Mill {
     Workshop shop;
     ScriptedSimd simd;
     Mill() {
-        simd.work = [](const wire::Submit& submit) { return relaxed(submit); };
+        simd.script()->work = [](const wire::Submit& submit) { return relaxed(submit); };
         shop.must({"samples", "plain", "-o", "d.weave"});
     }
     [[nodiscard]] std::vector<std::string> on(std::vector<std::string> words) const {
@@ -189,7 +189,7 @@ TEST_CASE("broken connections and a restarted server change nothing but the time
     for (std::size_t at = 0; at < 8; ++at) {
         INFO("broken with " << code << " at message " << at);
         Mill mill;
-        mill.simd.mishaps[at + 1] = {code, "", ""};
+        mill.simd.script()->mishaps[at + 1] = {code, "", ""};
         const Ended ended = mill.shop.run(mill.on({"simulate", "d.weave", "-o", "d.yarns"}));
         INFO(ended.err);
         CHECK(ended.exit == 0);
@@ -197,7 +197,7 @@ TEST_CASE("broken connections and a restarted server change nothing but the time
         CHECK(mill.settled() == std::set<std::uint64_t>{1});  // submitted once, whatever was sent twice
     }
     Mill mill;
-    mill.simd.holds_jobs = true;
+    mill.simd.script()->holds_jobs = true;
     Workshop::Running running = mill.shop.start(mill.on({"simulate", "d.weave", "-o", "d.yarns"}));
     while (mill.simd.look([](ScriptedSimd& s) { return s.count_of<wire::Submit>(); }) == 0) std::this_thread::sleep_for(std::chrono::milliseconds(5));
     mill.simd.stop();
@@ -215,7 +215,7 @@ TEST_CASE("broken connections and a restarted server change nothing but the time
 
 TEST_CASE("a job that the server lost is not waited for") {
     Mill mill;
-    mill.simd.holds_jobs = true;
+    mill.simd.script()->holds_jobs = true;
     Workshop::Running running = mill.shop.start(mill.on({"simulate", "d.weave", "-o", "d.yarns"}));
     while (mill.simd.look([](ScriptedSimd& s) { return s.count_of<wire::Submit>(); }) == 0) std::this_thread::sleep_for(std::chrono::milliseconds(5));
     const bool by_hand = GENERATE(false, true);
@@ -230,7 +230,7 @@ TEST_CASE("a job that the server lost is not waited for") {
 
 TEST_CASE("a job that waits tells its place and how long, and Ctrl-C takes it out of the queue") {
     Mill mill;
-    mill.simd.holds_queue = true;
+    mill.simd.script()->holds_queue = true;
     Workshop::Running running = mill.shop.start(mill.on({"simulate", "d.weave", "-o", "d.yarns"}));
     while (mill.simd.look([](ScriptedSimd& s) { return s.count_of<wire::Submit>(); }) == 0) std::this_thread::sleep_for(std::chrono::milliseconds(5));
     std::this_thread::sleep_for(std::chrono::milliseconds(1100));
@@ -247,8 +247,8 @@ TEST_CASE("a job that waits tells its place and how long, and Ctrl-C takes it ou
 
 TEST_CASE("Ctrl-C cancels the job and leaves its yarns as they lay, as on this machine") {
     Mill mill;
-    mill.simd.holds_jobs = true;
-    mill.simd.work = [](const wire::Submit& submit) { return relaxed(submit, 2); };
+    mill.simd.script()->holds_jobs = true;
+    mill.simd.script()->work = [](const wire::Submit& submit) { return relaxed(submit, 2); };
     Workshop::Running running = mill.shop.start(mill.on({"simulate", "d.weave", "-o", "d.yarns", "--evidence", "d.evidence", "--json"}));
     while (mill.simd.look([](ScriptedSimd& s) { return s.count_of<wire::Submit>(); }) == 0) std::this_thread::sleep_for(std::chrono::milliseconds(5));
     ::kill(running.child, SIGINT);
@@ -267,7 +267,7 @@ TEST_CASE("Ctrl-C cancels the job and leaves its yarns as they lay, as on this m
 
 TEST_CASE("a token goes to the server and nowhere else") {
     Mill mill;
-    mill.simd.token = "a-very-secret-token";
+    mill.simd.script()->token = "a-very-secret-token";
     mill.shop.put("right", "a-very-secret-token\n");
     mill.shop.put("wrong", "another-secret-token\n");
     mill.shop.put("none", "no token\n");
@@ -290,7 +290,7 @@ TEST_CASE("a token goes to the server and nowhere else") {
 
 TEST_CASE("a failed job ends with the server's reason and its exit status") {
     Mill mill;
-    mill.simd.work = [](const wire::Submit&) { return JobResult{system_fault("the worker ran out of memory"), Json::object(), "", {}}; };
+    mill.simd.script()->work = [](const wire::Submit&) { return JobResult{system_fault("the worker ran out of memory"), Json::object(), "", {}}; };
     mill.shop.refused(mill.on({"simulate", "d.weave", "-o", "d.yarns"}), 5, {"d.weave: ", "ran out of memory"});
     CHECK(mill.settled() == std::set<std::uint64_t>{1});
 }
@@ -299,7 +299,7 @@ TEST_CASE("what a server gives is believed only so far as it fits together") {
     const auto refused = [](const std::string& why, auto change) {
         INFO(why);
         Mill mill;
-        mill.simd.work = [&](const wire::Submit& submit) {
+        mill.simd.script()->work = [&](const wire::Submit& submit) {
             JobResult result = relaxed(submit);
             change(result);
             return result;
@@ -334,14 +334,14 @@ TEST_CASE("what a server gives is believed only so far as it fits together") {
 TEST_CASE("what the server signed is written beside, byte by byte") {
     Mill mill;
     std::string signed_bytes;
-    mill.simd.work = [&](const wire::Submit& submit) {
+    mill.simd.script()->work = [&](const wire::Submit& submit) {
         JobResult result = relaxed(submit);
         signed_bytes = *result.evidence;
         return result;
     };
     mill.shop.must(mill.on({"simulate", "d.weave", "-o", "d.yarns", "--evidence", "d.evidence"}));
-    CHECK(mill.shop.get("d.evidence") == signed_bytes);
-    mill.simd.work = [](const wire::Submit& submit) {
+    CHECK(mill.shop.get("d.evidence") == mill.simd.look([&](ScriptedSimd&) { return signed_bytes; }));
+    mill.simd.script()->work = [](const wire::Submit& submit) {
         JobResult result = relaxed(submit);
         result.evidence.reset();
         return result;
@@ -361,14 +361,14 @@ TEST_CASE("what the server signed is written beside, byte by byte") {
 
 TEST_CASE("evidence that a server will not sign is refused before it is given a job") {
     Mill mill;
-    mill.simd.signs = false;
+    mill.simd.script()->signs = false;
     const std::vector<std::string> words = mill.on({"simulate", "d.weave", "-o", "d.yarns", "--evidence", "d.evidence"});
     mill.shop.refused(words, 4, {mill.simd.place().name, "no key to sign", "--evidence"});
     CHECK(mill.simd.look([](ScriptedSimd& s) { return s.count_of<wire::Submit>(); }) == 0);
     CHECK(mill.shop.names() == std::set<std::string>{"d.weave"});
     CHECK(mill.shop.json(mill.on({"jobs"})).at("signs") == false);
     mill.shop.must(mill.on({"simulate", "d.weave", "-o", "d.yarns"}));
-    mill.simd.signs = true;
+    mill.simd.script()->signs = true;
     mill.shop.must(words);
     CHECK(mill.shop.has("d.evidence"));
     CHECK(mill.shop.json(mill.on({"jobs"})).at("signs") == true);
@@ -406,7 +406,7 @@ TEST_CASE("a job that is fetched later leaves the flipped design too, made of th
 
 TEST_CASE("a flip that was not made leaves the design as it was, and is not written") {
     Mill mill;
-    mill.simd.work = [](const wire::Submit& submit) { return relaxed(submit, 2); };  // over before its flips
+    mill.simd.script()->work = [](const wire::Submit& submit) { return relaxed(submit, 2); };  // over before its flips
     CHECK(mill.shop.run(mill.on({"simulate", "d.weave", "-o", "full.yarns", "--flip", "1,1"}), full_disk).exit == 5);
     const Ended fetched = mill.shop.run(mill.on({"jobs", "fetch", "1", "-o", "d.yarns", "--of", "d.weave", "--save-design", "flipped.weave"}));
     INFO(fetched.err);
@@ -417,7 +417,7 @@ TEST_CASE("a flip that was not made leaves the design as it was, and is not writ
 
 TEST_CASE("sessions are listed, and closed for good") {
     Mill mill;
-    mill.simd.session = {wire::ServerMessage(wire::PhaseChanged{1, 1, 0, wire::Phase::at_rest}),
+    mill.simd.script()->session = {wire::ServerMessage(wire::PhaseChanged{1, 1, 0, wire::Phase::at_rest}),
                          wire::ServerMessage(wire::Ended{1, 2, 20, wire::Why::closed, {}, {{"converged", true}}})};
     CHECK(mill.shop.must(mill.on({"sessions"})).out == "no sessions\n");
     for (int k = 0; k < 3; ++k) {
@@ -480,7 +480,7 @@ TEST_CASE("a sweep that makes no sense is refused before any job is handed over"
 
 TEST_CASE("jobs are listed, fetched and cancelled") {
     Mill mill;
-    mill.simd.holds_jobs = true;
+    mill.simd.script()->holds_jobs = true;
     Workshop::Running running = mill.shop.start(mill.on({"simulate", "d.weave", "-o", "full.yarns"}), full_disk);
     while (mill.simd.look([](ScriptedSimd& s) { return s.count_of<wire::Submit>(); }) == 0) std::this_thread::sleep_for(std::chrono::milliseconds(5));
     CHECK(mill.shop.must(mill.on({"jobs"})).out == "1  cloth: running, residual 5.00e-01 after 20 steps, to go some 12 s\n");

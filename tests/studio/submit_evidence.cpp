@@ -78,7 +78,7 @@ TEST_CASE("submit: a simulation server signs what it finds, and the mill takes i
     const Mill mill;
     const KeyPair key = load_server_key(mill.enrol_machine(), ServerKeyRole::evidence).value();
     ScriptedSimd simd;
-    simd.work = signing(key, mill.site());
+    simd.script()->work = signing(key, mill.site());
     const KnownServer known(simd.origin());
     SubmitWindow window(mill);
     window.type("new_design", "cloth");
@@ -146,14 +146,14 @@ TEST_CASE("submit: a server that has no key, or gives evidence of something else
     ScriptedSimd simd;
     const KnownServer known(simd.origin());
     SubmitWindow window(mill);
-    simd.signs = false;
-    simd.work = signing(key, mill.site());
+    simd.script()->signs = false;
+    simd.script()->work = signing(key, mill.site());
     choose(window, "reference");
     window.wait_for("evidence_trouble", "no key to sign evidence with");
     CHECK(simd.look([](ScriptedSimd& s) { return s.count_of<wire::Submit>(); }) == 0);
 
-    simd.signs = true;
-    simd.work = [&](const wire::Submit&) {
+    simd.script()->signs = true;
+    simd.script()->work = [&](const wire::Submit&) {
         const Json report = report_of(find_sample("twill-2-2")->make());
         return JobResult{{}, report, "yarns", wire::write_evidence(signed_by(key, mill.site(), report))};
     };
@@ -166,7 +166,7 @@ TEST_CASE("submit: a server that has no key, or gives evidence of something else
         });
     }));
 
-    simd.holds_jobs = true;
+    simd.script()->holds_jobs = true;
     choose(window, "standard");
     REQUIRE(window.wait([&] { return simd.look([](ScriptedSimd& s) { return s.count_of<wire::Submit>(); }) == 2; }));
     window.click("cancel_evidence");

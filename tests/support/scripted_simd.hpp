@@ -43,17 +43,29 @@ class ScriptedSimd {
     ScriptedSimd(const ScriptedSimd&) = delete;
     ScriptedSimd& operator=(const ScriptedSimd&) = delete;
 
-    // ---- What the test writes down, before clients come ----
+    /// What the test writes down.
+    struct Script {
+        std::string token;                    ///< that every client must have; empty: none is asked for
+        std::vector<wire::Received> session;  ///< events and frames of every session, numbered from 1
+        Work work;                            ///< of every job
+        bool holds_jobs = false;              ///< jobs run on until they are cancelled, or let_go() is called
+        bool holds_queue = false;             ///< jobs wait likewise
+        bool signs = true;                    ///< says that it has a key to sign with
+        std::map<std::size_t, Mishap> mishaps;
+        std::size_t break_every = 0;          ///< every so many messages the connection ends with break_code instead
+        std::uint16_t break_code = 1001;
+    };
+    /// No client is heard while it is written: `simd.script()->signs = false`.
+    class Written {
+      public:
+        Written(std::mutex& mutex, Script& script) : m_lock(mutex), m_script(script) {}
+        Script* operator->() { return &m_script; }
 
-    std::string token;                     ///< that every client must have; empty: none is asked for
-    std::vector<wire::Received> session;   ///< events and frames of every session, numbered from 1
-    Work work;                             ///< of every job
-    bool holds_jobs = false;               ///< jobs run on until they are cancelled, or let_go() is called
-    bool holds_queue = false;              ///< jobs wait likewise
-    bool signs = true;                     ///< says that it has a key to sign with
-    std::map<std::size_t, Mishap> mishaps;
-    std::size_t break_every = 0;           ///< every so many messages the connection ends with break_code instead
-    std::uint16_t break_code = 1001;
+      private:
+        std::unique_lock<std::mutex> m_lock;
+        Script& m_script;
+    };
+    [[nodiscard]] Written script() { return {m_mutex, m_script}; }
 
     // ---- What it saw ----
 
@@ -61,7 +73,8 @@ class ScriptedSimd {
     [[nodiscard]] wire::ServerPlace place() const {
         auto place = wire::place_of(origin());
         REQUIRE(place);
-        if (!token.empty()) REQUIRE(wire::use_token(*place, token));
+        const std::lock_guard lock(m_mutex);
+        if (!m_script.token.empty()) REQUIRE(wire::use_token(*place, m_script.token));
         return *place;
     }
     template <class Read>
@@ -99,7 +112,7 @@ class ScriptedSimd {
     /// Lets held jobs run to their end.
     void let_go() {
         const std::lock_guard lock(m_mutex);
-        holds_jobs = holds_queue = false;
+        m_script.holds_jobs = m_script.holds_queue = false;
         for (auto& [number, job] : m_jobs)
             if (!job.end) finish(number, job);
     }
@@ -165,7 +178,8 @@ class ScriptedSimd {
     }
 
     [[nodiscard]] bool is_known(const net::Request& request) const {
-        return token.empty() || request.headers.get("Authorization") == "Bearer " + token;
+        const std::lock_guard lock(m_mutex);
+        return m_script.token.empty() || request.headers.get("Authorization") == "Bearer " + m_script.token;
     }
     const Job* job_of(const net::Request& request) const {
         const auto found = m_jobs.find(std::stoull(request.place("job")));
@@ -189,11 +203,11 @@ class ScriptedSimd {
         if (line.broken) return;
         const std::size_t number = sent++;
         Mishap mishap;
-        const auto found = mishaps.find(number);
-        if (found != mishaps.end()) mishap = found->second;
-        const bool breaks = break_every > 0 && number % break_every == break_every - 1;
-        if (breaks) mishap.close = break_code;
-        if (found == mishaps.end() && !breaks) {
+        const auto found = m_script.mishaps.find(number);
+        if (found != m_script.mishaps.end()) mishap = found->second;
+        const bool breaks = m_script.break_every > 0 && number % m_script.break_every == m_script.break_every - 1;
+        if (breaks) mishap.close = m_script.break_code;
+        if (found == m_script.mishaps.end() && !breaks) {
             line.socket->send_control(net::make_bytes(std::move(bytes)), binary);
             return;
         }
@@ -264,12 +278,12 @@ class ScriptedSimd {
         const std::uint64_t number = m_jobs.size() + 1;
         Job& job = m_jobs[number];
         job.submit = submit;
-        answer(line, submit.request, wire::Accepted{submit.request, {}, number, holds_queue ? std::optional(240.0) : std::nullopt});
+        answer(line, submit.request, wire::Accepted{submit.request, {}, number, m_script.holds_queue ? std::optional(240.0) : std::nullopt});
         tell_all(wire::JobProgress{state_of(number, job)});
-        if (!holds_jobs && !holds_queue) finish(number, job);
+        if (!m_script.holds_jobs && !m_script.holds_queue) finish(number, job);
     }
     void hear_one(Line& line, const wire::ListJobs& list) {
-        wire::JobList jobs{list.request, {}, signs};
+        wire::JobList jobs{list.request, {}, m_script.signs};
         for (const auto& [number, job] : m_jobs)
             if (!acknowledged_jobs.contains(number)) jobs.jobs.push_back(state_of(number, job));
         answer(line, list.request, jobs);
@@ -280,7 +294,7 @@ class ScriptedSimd {
             return answer(line, cancel.request, wire::Refused{cancel.request, {ErrorCode::usage, "there is no such job", {}}, {}});
         answer(line, cancel.request, wire::Accepted{cancel.request, {}, {}, {}});
         if (found->second.end) return;
-        if (holds_queue) end_with(found->first, found->second, wire::JobEnded{found->first, wire::JobPhase::cancelled, {}, Json::object(), {}});
+        if (m_script.holds_queue) end_with(found->first, found->second, wire::JobEnded{found->first, wire::JobPhase::cancelled, {}, Json::object(), {}});
         else finish(found->first, found->second, wire::JobPhase::cancelled);
     }
     void hear_one(Line&, const wire::AcknowledgeJob& known) { acknowledged_jobs.insert(known.job); }
@@ -289,14 +303,14 @@ class ScriptedSimd {
 
     std::uint64_t events() const {
         std::uint64_t count = 0;
-        for (const wire::Received& item : session) count += std::holds_alternative<wire::ServerMessage>(item) ? 1 : 0;
+        for (const wire::Received& item : m_script.session) count += std::holds_alternative<wire::ServerMessage>(item) ? 1 : 0;
         return count;
     }
     /// All of a session, or what one that was attached has not had of it: events, then the newest frame.
     void show(Line& line, std::uint64_t number, std::uint64_t seq, std::uint64_t frame, bool all) {
         std::uint64_t event = 0, shown = 0;
         std::optional<wire::Frame> newest;
-        for (wire::Received item : session) {
+        for (wire::Received item : m_script.session) {
             if (auto* picture = std::get_if<wire::Frame>(&item)) {
                 picture->head.session = number;
                 picture->head.number = ++shown;
@@ -313,11 +327,11 @@ class ScriptedSimd {
     }
     wire::JobState state_of(std::uint64_t number, const Job& job) const {
         if (job.end) return {number, job.end->phase, "cloth", 20, {}, {}, {}, {}, {}, {}};
-        if (holds_queue) return {number, wire::JobPhase::waiting, "cloth", 0, {}, {}, {}, 3, 240, {}};
+        if (m_script.holds_queue) return {number, wire::JobPhase::waiting, "cloth", 0, {}, {}, {}, 3, 240, {}};
         return {number, wire::JobPhase::running, "cloth", 20, 0.5, {}, 12, {}, {}, {}};
     }
     void finish(std::uint64_t number, Job& job, wire::JobPhase phase = wire::JobPhase::done) {
-        job.result = work(job.submit);
+        job.result = m_script.work(job.submit);
         wire::JobEnded end{number, job.result.error ? wire::JobPhase::failed : phase, job.result.error, job.result.report, {}};
         if (phase == wire::JobPhase::cancelled) job.result.evidence.reset();
         if (job.result.evidence) end.evidence = parse_json(*job.result.evidence).value();
@@ -332,7 +346,8 @@ class ScriptedSimd {
             if (line->greeted && !line->broken) say(*line, message);
     }
 
-    std::mutex m_mutex;
+    mutable std::mutex m_mutex;
+    Script m_script;
     std::vector<std::shared_ptr<Line>> m_lines;
     std::map<std::string, wire::ServerMessage> m_answers;
     std::map<std::uint64_t, Job> m_jobs;

@@ -30,7 +30,7 @@ Client connected(const ScriptedSimd& simd) {
 /// The error of a connection on which this happens in place of the welcome.
 Error greeted_with(const Mishap& mishap) {
     ScriptedSimd simd;
-    simd.mishaps[0] = mishap;
+    simd.script()->mishaps[0] = mishap;
     ServerPlace place = simd.place();
     place.options.answer_time = patience_for(mishap);
     const auto client = Client::connect(place, "test");
@@ -41,7 +41,7 @@ Error greeted_with(const Mishap& mishap) {
 /// The error of a question on which this happens in place of its answer.
 Error answered_with(const Mishap& mishap) {
     ScriptedSimd simd;
-    simd.mishaps[1] = mishap;
+    simd.script()->mishaps[1] = mishap;
     Client client = connected(simd);
     const auto answer = client.ask(ListJobs{new_request_id()}, patience_for(mishap));
     REQUIRE_FALSE(answer);
@@ -88,8 +88,8 @@ TEST_CASE("a token is taken as a file holds it, and no error repeats it") {
 
 TEST_CASE("a client says hello with its token, asks, and is told what else comes") {
     ScriptedSimd simd;
-    simd.token = "right";
-    simd.work = [](const Submit&) { return weave::testing::JobResult{{}, {{"converged", true}}, "yarns", {}}; };
+    simd.script()->token = "right";
+    simd.script()->work = [](const Submit&) { return weave::testing::JobResult{{}, {{"converged", true}}, "yarns", {}}; };
     Client client = connected(simd);
     CHECK(client.welcome().person == "dora");
     const auto accepted = answer_of<Accepted>(client.ask(Submit{new_request_id(), "{}", {}, {}}, 20s));
@@ -110,7 +110,7 @@ TEST_CASE("a client says hello with its token, asks, and is told what else comes
 
 TEST_CASE("who has no valid token is told so, and the token is not") {
     ScriptedSimd simd;
-    simd.token = "right";
+    simd.script()->token = "right";
     ServerPlace place = simd.place();
     place.token = "secret-but-wrong";
     const auto client = Client::connect(place, "test");

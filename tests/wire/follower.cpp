@@ -95,8 +95,8 @@ void follow_to_the_end(ScriptedSimd& simd) {
 /// The error with which a follower gives up on a session that brings this in place of message `at`.
 Error given_up_on(const Mishap& mishap, std::size_t at = 3) {
     ScriptedSimd simd;
-    simd.session = script();
-    simd.mishaps[at] = mishap;
+    simd.script()->session = script();
+    simd.script()->mishaps[at] = mishap;
     Follower follower = following(simd);
     REQUIRE(follower.create("{}", {}, 20s));
     Seen seen;
@@ -117,11 +117,11 @@ std::string event_text(std::uint64_t seq, std::uint64_t session = 1) {
 
 TEST_CASE("a session is followed to its end and acknowledged as it goes") {
     ScriptedSimd simd;
-    simd.session = script();
+    simd.script()->session = script();
     follow_to_the_end(simd);
-    CHECK(simd.acknowledged.at(1) == 10);
-    CHECK(simd.connections == 1);
-    CHECK(simd.count_of<Acknowledge>() >= 1);
+    CHECK(simd.look([](ScriptedSimd& s) { return s.acknowledged; }).at(1) == 10);
+    CHECK(simd.look([](ScriptedSimd& s) { return s.connections; }) == 1);
+    CHECK(simd.look([](ScriptedSimd& s) { return s.count_of<Acknowledge>(); }) >= 1);
 }
 
 TEST_CASE("no event is lost or told twice, whichever message the connection breaks at") {
@@ -129,16 +129,16 @@ TEST_CASE("no event is lost or told twice, whichever message the connection brea
     std::size_t messages = 0;
     {
         ScriptedSimd simd;
-        simd.session = script();
+        simd.script()->session = script();
         follow_to_the_end(simd);
-        messages = simd.sent;
+        messages = simd.look([](ScriptedSimd& s) { return s.sent; });
     }
     REQUIRE(messages >= 20);
     for (std::size_t at = 1; at < messages; ++at) {
         INFO("broken with " << code << " at message " << at);
         ScriptedSimd simd;
-        simd.session = script();
-        simd.mishaps[at] = {code, "", ""};
+        simd.script()->session = script();
+        simd.script()->mishaps[at] = {code, "", ""};
         follow_to_the_end(simd);
         CHECK(simd.look([](ScriptedSimd& s) { return s.count_of<Hello>(); }) >= 2);
     }
@@ -148,8 +148,8 @@ TEST_CASE("nor where it breaks again and again") {
     for (const std::size_t every : {4U, 5U, 7U}) {
         INFO("broken every " << every << " messages");
         ScriptedSimd simd;
-        simd.session = script();
-        simd.break_every = every;
+        simd.script()->session = script();
+        simd.script()->break_every = every;
         follow_to_the_end(simd);
         CHECK(simd.look([](ScriptedSimd& s) { return s.connections; }) >= 20 / every);
     }
@@ -157,7 +157,7 @@ TEST_CASE("nor where it breaks again and again") {
 
 TEST_CASE("a restarted server is found again, and its session taken up behind the last event") {
     ScriptedSimd simd;
-    simd.session = script();
+    simd.script()->session = script();
     Follower follower = following(simd);
     REQUIRE(follower.create("{}", {}, 20s));
     REQUIRE(answer_of<Accepted>(follower.ask(WantFrames{new_request_id(), 1, 5}, 20s)));
@@ -173,7 +173,7 @@ TEST_CASE("a restarted server is found again, and its session taken up behind th
 
 TEST_CASE("who attaches to an earlier session gets what came after, though others acknowledged some") {
     ScriptedSimd simd;
-    simd.session = script();
+    simd.script()->session = script();
     REQUIRE(following(simd).create("{}", {}, 20s));
     Follower follower = following(simd);
     REQUIRE(follower.attach(1, 4, 2, 20s));
@@ -211,18 +211,18 @@ TEST_CASE("an event that the server leaves out is missed by who made the session
 
 TEST_CASE("a frame that was seen already is left out, and so is one of another session") {
     ScriptedSimd simd;
-    simd.session = script();
+    simd.script()->session = script();
     Frame late = small_frame(), foreign = small_frame();
     foreign.head.session = 5;
     foreign.head.number = 99;
-    simd.mishaps[7] = {{}, "", encode_frame(late).value()};
-    simd.mishaps[9] = {{}, "", encode_frame(foreign).value()};
+    simd.script()->mishaps[7] = {{}, "", encode_frame(late).value()};
+    simd.script()->mishaps[9] = {{}, "", encode_frame(foreign).value()};
     follow_to_the_end(simd);
 }
 
 TEST_CASE("after the time that its caller named the follower gives up, with the last error") {
     ScriptedSimd simd;
-    simd.session = script();
+    simd.script()->session = script();
     Follower follower = following(simd, 700ms);
     REQUIRE(follower.create("{}", {}, 20s));
     simd.stop();
@@ -243,7 +243,7 @@ TEST_CASE("after the time that its caller named the follower gives up, with the 
 
 TEST_CASE("a server that greets and falls at once is given up as well") {
     ScriptedSimd simd;
-    simd.break_every = 2;
+    simd.script()->break_every = 2;
     Follower follower = following(simd, 700ms);
     const auto answer = follower.ask(ListJobs{new_request_id()}, 60s);
     REQUIRE_FALSE(answer);
@@ -253,8 +253,8 @@ TEST_CASE("a server that greets and falls at once is given up as well") {
 
 TEST_CASE("a question is asked again until it is answered, under the same id") {
     ScriptedSimd simd;
-    simd.work = [](const Submit&) { return JobResult{{}, {{"converged", true}}, "yarns", {}}; };
-    simd.mishaps[1] = {1011, "", ""};  // the answer to the first, which is done all the same
+    simd.script()->work = [](const Submit&) { return JobResult{{}, {{"converged", true}}, "yarns", {}}; };
+    simd.script()->mishaps[1] = {1011, "", ""};  // the answer to the first, which is done all the same
     Follower follower = following(simd);
     const auto accepted = answer_of<Accepted>(follower.ask(Submit{new_request_id(), "{}", {}, {}}, 20s));
     REQUIRE(accepted.value().job == 1U);
@@ -266,7 +266,7 @@ TEST_CASE("a question is asked again until it is answered, under the same id") {
 
 TEST_CASE("a question that nobody answers ends in time") {
     ScriptedSimd simd;
-    simd.mishaps[1] = {};
+    simd.script()->mishaps[1] = {};
     Follower follower = following(simd);
     const auto answer = follower.ask(ListJobs{new_request_id()}, 300ms);
     CHECK_THAT(answer.error().text(), Contains("does not answer in time"));
@@ -275,7 +275,7 @@ TEST_CASE("a question that nobody answers ends in time") {
 
 TEST_CASE("the end of a job is told once, and again to nobody once it is acknowledged") {
     ScriptedSimd simd;
-    simd.work = [](const Submit&) { return JobResult{{}, {{"converged", true}}, "yarns", {}}; };
+    simd.script()->work = [](const Submit&) { return JobResult{{}, {{"converged", true}}, "yarns", {}}; };
     const auto ends_seen = [](Follower& follower) {
         // An answer comes after all that every connection begins with, however slow the machine.
         REQUIRE(follower.ask(ListJobs{new_request_id()}, 60s));
@@ -301,7 +301,7 @@ TEST_CASE("the end of a job is told once, and again to nobody once it is acknowl
 
 TEST_CASE("a file is asked for again while the server is away, and no longer than the caller's patience") {
     ScriptedSimd simd;
-    simd.work = [](const Submit&) { return JobResult{{}, Json::object(), "yarns", {}}; };
+    simd.script()->work = [](const Submit&) { return JobResult{{}, Json::object(), "yarns", {}}; };
     Follower follower = following(simd, 10s), hasty = following(simd, 300ms);
     REQUIRE(follower.ask(Submit{new_request_id(), "{}", {}, {}}, 20s));
     simd.stop();
