@@ -9,6 +9,15 @@
 
 namespace weave::simd {
 
+namespace {
+
+/// What one may take that still plans, of what all may: two plan at once, and most of it is for those that compute.
+std::uint64_t planning_bytes(std::uint64_t memory_bytes) {
+    return std::max(std::uint64_t{2} << 30, memory_bytes / 8);
+}
+
+}  // namespace
+
 Crew::Crew(std::mutex& lock, const Rules& rules)
     : m_lock(lock), m_rules(rules), m_room(rules.memory_bytes),
       m_turns(rules.turns, {[this](Id id, std::size_t threads) { tell_of_turn(id, {{"do", "turn"}, {"threads", threads}}); },
@@ -71,7 +80,7 @@ void Crew::start_some(Clock::time_point now) {
 void Crew::start(Id id, Member& member) {
     WorkOrder order = member.task->order();
     order.backend = m_rules.backend;
-    order.planning_bytes = m_rules.planning_bytes;
+    order.planning_bytes = planning_bytes(m_rules.memory_bytes);
     m_turns.add(id, member.person, member.is_job);  // before its thread may hear of a turn
     auto process = WorkerProcess::start(m_rules.program, to_json(order),
                                         {[this, id](LinkMessage message) { heard(id, std::move(message)); },

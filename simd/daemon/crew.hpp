@@ -29,7 +29,6 @@ class Crew {
         Turns::Rules turns;
         std::string backend = "auto";       ///< what they compute on, by sim::parse_backend
         std::uint64_t memory_bytes = 0;     ///< for all workers together
-        std::uint64_t planning_bytes = std::uint64_t{2} << 30;  ///< for one that still plans
         std::size_t planning_at_once = 2;
         /// One that plans for longer no longer keeps others waiting; its person's next ones wait for it.
         std::chrono::seconds planning_patience{10};

@@ -63,7 +63,7 @@ Status Work::run() {
     try {
         WEAVE_CHECK_OK(begin());
     } catch (const std::bad_alloc&) {
-        return system_fault("out of memory: to lay it out takes more than the " + sim::memory_text(m_order.planning_bytes) + " that a plan may have; simulate a part of the cloth");
+        return system_fault("out of memory: to lay it out takes more of it than the " + sim::memory_text(m_order.planning_bytes) + " that a plan may have; simulate a part of the cloth");
     }
     WEAVE_CHECK_OK(wait_for_admission());
     if (m_inbox.finish() != Finish::no) return finish();

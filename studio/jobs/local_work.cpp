@@ -46,7 +46,6 @@ Status LocalWork::check_room_for(std::size_t times) const {
     if (!m_means.memory_bytes) return {};
     sim::MemoryNeed need = sim::need_of(m_run->now().plan());
     need.points *= times;
-    need.stacks *= times;
     return sim::check_room(need, {*m_means.memory_bytes, {}});
 }
 

@@ -4,9 +4,9 @@
 #include <weave/design/document.hpp>
 #include <weave/design/evaluate.hpp>
 #include <weave/sim/yarns_file.hpp>
+#include <weave/wire/server_room.hpp>
 
 #include <algorithm>
-#include <studio/jobs/server_room.hpp>
 #include <studio/jobs/plan_summary.hpp>
 #include <type_traits>
 #include <utility>
@@ -85,7 +85,7 @@ void RemoteWork::run(std::chrono::milliseconds patience) {
 Status RemoteWork::begin(std::chrono::milliseconds patience) {
     WEAVE_TRY(const wire::ServerPlace place, place_of(m_server));
     WEAVE_TRY(const Evaluation evaluation, evaluate(m_design));
-    const auto room = room_on(place);
+    const auto room = wire::room_on(place);
     const auto foreseen = sim::foreseen_need(m_design, *evaluation.block, m_request.plan);
     if (room && foreseen) WEAVE_CHECK_OK(sim::check_room(*foreseen, *room));
     WEAVE_TRY(const sim::Plan plan, make_plan(m_design, *evaluation.block, m_request.plan));

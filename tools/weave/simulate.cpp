@@ -24,6 +24,7 @@
 #include <weave/sim/starts.hpp>
 #include <weave/sim/symmetry.hpp>
 #include <weave/sim/yarns_file.hpp>
+#include <weave/wire/server_room.hpp>
 
 #include <algorithm>
 #include <cstdio>
@@ -176,19 +177,29 @@ Status sweep(CommandOutcome& outcome, wire::Follower& server, const Cloth& cloth
     return sweep_on(outcome, server, tasks, settings, wish);
 }
 
-/// What cannot be held is refused, and what may not be is said where it is known: amounts are right within a factor of four
-/// (sim/forecast.hpp), and a guess before the plan is made within one of two. To lay out what has no room at all takes a minute,
-/// and would end without a word.
-Status check_memory(CommandOutcome& outcome, const sim::MemoryNeed& need, bool is_guess, const std::string& file) {
-    const std::optional<sim::MemoryRoom> room = sim::room_here();
+/// Where it is computed; nothing where that is not told: a server says itself what has no room there, later.
+std::optional<sim::MemoryRoom> room_for(const std::optional<wire::Follower>& server) {
+    if (!server) return sim::room_here();
+    Result<sim::MemoryRoom> room = wire::room_on(server->place());
+    return room ? std::optional(std::move(*room)) : std::nullopt;
+}
+
+/// Amounts are right within a factor of two (sim/forecast.hpp), so that what is not expected to have room is refused rather than tried: the
+/// system ends a program that takes too much without a word.
+Status check_memory(const sim::MemoryNeed& need, const std::optional<sim::MemoryRoom>& room, const std::string& file) {
     if (!room) return {};
-    const Status doubt = sim::check_room(need, *room);
-    if (doubt) return {};
-    sim::MemoryNeed least = need;
-    if (is_guess) least.points /= 2;
-    if (sim::is_hopeless(least, *room)) return Error(doubt.error()).in(file);
-    if (!is_guess) outcome.note(on_one_line(file) + ": " + doubt.error().message + "; it is tried all the same");
+    Status enough = sim::check_room(need, *room);
+    if (!enough) return std::move(enough).error().in(file);
     return {};
+}
+
+/// What has no room even if its plan has as few points as may be: to lay it out takes a minute and gigabytes.
+Status foresee_memory(const SimulateTask& task, const Block& block, const std::optional<sim::MemoryRoom>& room, const std::string& file) {
+    const std::optional<sim::MemoryNeed> need = sim::foreseen_need(task.design, block, task.request);
+    if (!need || !room) return {};
+    sim::MemoryNeed least = *need;
+    least.points /= 2;
+    return sim::check_room(least, *room) ? Status() : check_memory(*need, room, file);
 }
 
 Status explain(CommandOutcome& outcome, const sim::Plan& plan) {
@@ -222,9 +233,8 @@ Status run_simulation(CommandOutcome& outcome, const SimulateWish& wish) {
     auto understood = understand(cloth, wish);
     if (!understood) return std::move(understood).error().in(wish.file);
     SimulateTask& task = *understood;
-    const bool computes_here = !server && !wish.explain;
-    if (const auto guess = computes_here ? sim::foreseen_need(task.design, block, task.request) : std::nullopt)
-        WEAVE_CHECK_OK(check_memory(outcome, *guess, true, wish.file));
+    const std::optional<sim::MemoryRoom> room = wish.explain ? std::nullopt : room_for(server);
+    WEAVE_CHECK_OK(foresee_memory(task, block, room, wish.file));
     WEAVE_TRY(sim::Plan plan, plan_of(task.design, block, task.request, wish.file));
     if (!server) {
         const Result<sim::BackendChoice> choice = sim::choose_backend(task.options.backend, plan.scene);
@@ -237,12 +247,12 @@ Status run_simulation(CommandOutcome& outcome, const SimulateWish& wish) {
     if (task.request.region) {
         WEAVE_CHECK_OK(check_flips_within(plan, task.flips));
     }
+    WEAVE_CHECK_OK(check_memory(sim::need_of(plan), room, wish.file));
     if (server) {  // which plans by itself; what it would refuse is known now, and not after its queue
         const double goal = wish.residual.value_or(plan.goal);
         plan = {};
         return simulate_on(outcome, *server, cloth.design, task, wish, goal);
     }
-    WEAVE_CHECK_OK(check_memory(outcome, sim::need_of(plan), false, wish.file));
     const HeldInterrupt held("the yarns are written as they lie; again to end at once, without the state");
     WEAVE_TRY(const Yarns yarns, watched(block, task, plan, wish));
     WEAVE_TRY(const std::string bytes, write_yarns(yarns));

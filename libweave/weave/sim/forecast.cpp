@@ -7,7 +7,7 @@ namespace weave::sim {
 
 namespace {
 
-constexpr std::uint64_t of_a_process = 40U << 20U, of_a_point = 8192, of_a_point_at_least = 3000;  // bytes
+constexpr std::uint64_t of_a_process = 40U << 20U, of_a_point = 8192;  // bytes
 
 }  // namespace
 
@@ -19,10 +19,6 @@ std::size_t points_of(const Plan& plan) {
 
 std::uint64_t expected_bytes(std::size_t points) {
     return of_a_process + of_a_point * points;
-}
-
-std::uint64_t least_bytes(std::size_t points) {
-    return of_a_point_at_least * points;
 }
 
 std::size_t points_within(std::uint64_t bytes) {

@@ -16,8 +16,6 @@ std::size_t points_of(const Plan& plan);
 /// 30 MiB in all; but 56,249 and 333,711 points of parts of the shoe, whose many layers begin close together, 11 to
 /// 13.6 kB.
 std::uint64_t expected_bytes(std::size_t points);
-/// What a cloth of so many points takes at least, bytes: 980,000 had 3.1 kB each before their first matrix was made.
-std::uint64_t least_bytes(std::size_t points);
 /// The most points that are expected to take so many bytes; 0 where none does.
 std::size_t points_within(std::uint64_t bytes);
 

@@ -6,6 +6,10 @@
 #include <algorithm>
 #include <cmath>
 #include <fstream>
+#include <limits>
+#include <span>
+#include <sys/resource.h>
+#include <unistd.h>
 
 namespace weave::sim {
 
@@ -13,31 +17,57 @@ namespace {
 
 /// A part with fewer rows or columns of stacks has nothing that can move.
 constexpr std::size_t fewest_lines = 3;
+/// How much denser than on average the points of a plan may lie somewhere, and how many more a plan may have than was foreseen.
+constexpr double densest = 1.5, more_than_foreseen = 2;
 
-std::size_t stacks_of(const Region& region) {
-    return (region.last_row - region.first_row + 1) * (region.last_column - region.first_column + 1);
-}
-
-/// Rows, and as many columns, of stacks that the room does for; 0 where a part of so few is none.
+/// Rows, and as many columns, of stacks that the room does for wherever they are taken; 0 where a part of so few is none.
 std::size_t lines_within(const MemoryNeed& need, const MemoryRoom& room) {
-    const double share = static_cast<double>(points_within(room.bytes)) / static_cast<double>(need.points);
-    const auto lines = static_cast<std::size_t>(std::sqrt(share * static_cast<double>(need.stacks)));
+    const auto lines = static_cast<std::size_t>(std::sqrt(static_cast<double>(points_within(room.bytes)) / need.points_in_a_stack));
     return lines < fewest_lines ? 0 : lines;
 }
 
+bool does_as_draft(const MemoryNeed& need, const MemoryRoom& room) {
+    const double share = resolution_of(Fidelity::draft).points_per_key / need.points_per_key;
+    return share < 1 && expected_bytes(static_cast<std::size_t>(share * static_cast<double>(need.points))) <= room.bytes;
+}
+
+std::string part_within(const MemoryNeed& need, const MemoryRoom& room) {
+    const std::size_t lines = lines_within(need, room);
+    if (lines == 0) return "simulate a part of it";
+    const auto yarns = [&](double in_a_line) { return std::to_string(static_cast<std::size_t>(static_cast<double>(lines) * in_a_line)); };
+    return "simulate a part of it, up to " + yarns(need.picks_in_a_row) + " picks and " + yarns(need.ends_in_a_column) + " ends";
+}
+
 std::string help_for(const MemoryNeed& need, const MemoryRoom& room) {
-    std::string help = "simulate a part of the cloth";
-    if (const std::size_t lines = lines_within(need, room); lines > 0)
-        help += ", of about " + std::to_string(lines) + " rows and " + std::to_string(lines) + " columns of stacks at most";
-    if (need.fidelity != Fidelity::draft) help += ", or as draft";
-    if (room.server.empty()) help += ", or on a server";
+    std::string help = part_within(need, room);
+    if (does_as_draft(need, room)) help += ", or all of it as draft";
+    if (room.server.empty()) help += ", or have a server do it that has so much";
     return help;
+}
+
+/// What the limit on the address space of this process, if there is one, leaves.
+std::uint64_t left_of_address_space() {
+    constexpr std::uint64_t no_limit = std::numeric_limits<std::uint64_t>::max();
+    rlimit limit{};
+    std::uint64_t pages = 0;
+    if (::getrlimit(RLIMIT_AS, &limit) != 0 || limit.rlim_cur == RLIM_INFINITY) return no_limit;
+    if (!(std::ifstream("/proc/self/statm") >> pages)) return no_limit;
+    const std::uint64_t taken = pages * static_cast<std::uint64_t>(::sysconf(_SC_PAGESIZE));
+    return limit.rlim_cur - std::min<std::uint64_t>(taken, limit.rlim_cur);
 }
 
 }  // namespace
 
 MemoryNeed need_of(const Plan& plan) {
-    return {points_of(plan), stacks_of(plan.curves.region), plan.fidelity};
+    const auto lines = [](std::size_t first, std::size_t last) { return static_cast<double>(last - first + 1); };
+    const Region& region = plan.curves.region;
+    const auto in_each = [](std::size_t yarns, std::size_t of) { return static_cast<double>(yarns) / static_cast<double>(of); };
+    MemoryNeed need{points_of(plan), plan.fidelity, plan.points_per_key};
+    need.points_in_a_stack = densest * static_cast<double>(need.points) /
+                             (lines(region.first_row, region.last_row) * lines(region.first_column, region.last_column));
+    need.picks_in_a_row = in_each(plan.cloth_picks, plan.cloth_rows);
+    need.ends_in_a_column = in_each(plan.cloth_ends, plan.cloth_columns);
+    return need;
 }
 
 std::optional<MemoryNeed> foreseen_need(const Design& design, const Block& block,
@@ -50,15 +80,21 @@ std::optional<MemoryNeed> foreseen_need(const Design& design, const Block& block
     const std::size_t rows = part.last_row - part.first_row + 1, columns = part.last_column - part.first_column + 1;
     const std::size_t picks = block.first_pick(part.last_row + 1) - block.first_pick(part.first_row),
                       ends = block.first_end(part.last_column + 1) - block.first_end(part.first_column);
-    const double points = request.points_per_key.value_or(resolution_of(request.fidelity).points_per_key) * static_cast<double>(picks * columns + ends * rows);
-    return MemoryNeed{static_cast<std::size_t>(points), stacks_of(part), request.fidelity};
+    const std::span<const std::uint32_t> t(block.t()), p(block.p());
+    const std::uint32_t keys_in_a_stack = std::ranges::max(t.subspan(part.first_row, rows)) + std::ranges::max(p.subspan(part.first_column, columns));
+    MemoryNeed need{0, request.fidelity, request.points_per_key.value_or(resolution_of(request.fidelity).points_per_key)};
+    need.points = static_cast<std::size_t>(need.points_per_key * static_cast<double>(picks * columns + ends * rows));
+    need.points_in_a_stack = more_than_foreseen * need.points_per_key * keys_in_a_stack;
+    need.picks_in_a_row = static_cast<double>(picks) / static_cast<double>(rows);
+    need.ends_in_a_column = static_cast<double>(ends) / static_cast<double>(columns);
+    return need;
 }
 
 std::optional<MemoryRoom> room_here() {
     std::ifstream table("/proc/meminfo");
     std::string name, unit;
     for (std::uint64_t kibibytes = 0; table >> name >> kibibytes && std::getline(table, unit);) {
-        if (name == "MemAvailable:") return MemoryRoom{kibibytes << 10U, {}};
+        if (name == "MemAvailable:") return MemoryRoom{std::min(kibibytes << 10U, left_of_address_space()), {}};
     }
     return {};
 }
@@ -71,10 +107,6 @@ Status check_room(const MemoryNeed& need, const MemoryRoom& room) {
                  "this takes about " + memory_text(needed) + " of memory, and " + memory_text(room.bytes) +
                      there + "; " + help_for(need, room),
                  {}};
-}
-
-bool is_hopeless(const MemoryNeed& need, const MemoryRoom& room) {
-    return least_bytes(need.points) > room.bytes;
 }
 
 }  // namespace weave::sim

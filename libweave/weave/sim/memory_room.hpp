@@ -11,8 +11,11 @@ namespace weave::sim {
 
 /// What a simulation takes, as far as memory goes.
 struct MemoryNeed {
-    std::size_t points = 0, stacks = 0;  ///< control points of its yarns, and stacks of the cloth that they are of
+    std::size_t points = 0;  ///< control points of its yarns
     Fidelity fidelity = Fidelity::standard;
+    double points_per_key = 0;     ///< see SimScene
+    double points_in_a_stack = 0;  ///< where they are densest, rather too many than too few
+    double picks_in_a_row = 0, ends_in_a_column = 0;  ///< on average
 };
 
 MemoryNeed need_of(const Plan& plan);
@@ -28,12 +31,10 @@ struct MemoryRoom {
     std::string server;  ///< its name; empty: this computer
 };
 
-/// What is free here; nothing where the system does not say.
+/// What is free here, and what a limit on the address space of this process leaves of it; nothing where the system does not say.
 std::optional<MemoryRoom> room_here();
 
 /// An error where the room is not expected to do, with both amounts and what would have room.
 Status check_room(const MemoryNeed& need, const MemoryRoom& room);
-/// Whether it cannot do, however little this cloth takes.
-bool is_hopeless(const MemoryNeed& need, const MemoryRoom& room);
 
 }  // namespace weave::sim

@@ -1,4 +1,4 @@
-#include <studio/jobs/server_room.hpp>
+#include <weave/wire/server_room.hpp>
 
 #include <weave/core/json_reader.hpp>
 #include <weave/wire/client.hpp>
@@ -6,7 +6,7 @@
 #include <chrono>
 #include <limits>
 
-namespace weave::studio {
+namespace weave::wire {
 
 namespace {
 
@@ -15,11 +15,11 @@ constexpr std::chrono::seconds patience{5};
 
 }  // namespace
 
-Result<sim::MemoryRoom> room_on(const wire::ServerPlace& place) {
+Result<sim::MemoryRoom> room_on(const ServerPlace& place) {
     constexpr std::uint64_t most_bytes = std::uint64_t{16} << 20;
-    wire::ServerPlace hasty = place;
+    ServerPlace hasty = place;
     hasty.options.connect_time = hasty.options.answer_time = patience;
-    WEAVE_TRY(const std::string text, wire::download(hasty, "/api/v1/status", most_bytes));
+    WEAVE_TRY(const std::string text, download(hasty, "/api/v1/status", most_bytes));
     WEAVE_TRY(const Json status, parse_json(text));
     JsonReader reader(status, "");
     JsonReader memory = reader.object("memory");
@@ -28,4 +28,4 @@ Result<sim::MemoryRoom> room_on(const wire::ServerPlace& place) {
     return sim::MemoryRoom{static_cast<std::uint64_t>(bytes), place.name};
 }
 
-}  // namespace weave::studio
+}  // namespace weave::wire
