@@ -43,7 +43,7 @@ each position along the slice, from the bottom up; the studio’s section editor
 
 stencil() {
     chapter "A picture says where each weave goes"
-    text "The leaves are painted in three colours, one pixel for each stack of yarns. Where a colour ends, the layers change places."
+    text "The leaves are painted in three colours, one pixel for each stack of yarns. Where the leaf ends and the ground begins, the layers change places."
     tell dora 0 weave stencil leaves.png --map '#1f3a5f=ground.weave' --map '#e0a830=leaf.weave' --map '#b0741c=shade.weave' -o ginkgo.weave
     pictures two
     figure leaves.png "<code>leaves.png</code>, as it was painted" "big drawn"
@@ -117,15 +117,12 @@ mending() {
     text "In the middle of the float one end comes up over the pick. The two yarns change sides in the relaxed cloth, which comes to rest again, and the flip goes \
 into the design as well."
     tell dora 0 weave simulate ginkgo.weave --region "$part" --resume part.yarns --flip "$pick,$end" --save-design mended.weave -o mended.yarns
-    pictures two
-    figure part-top.png "Before" big
-    draw mended.yarns 3d mended-top "After: in the middle of the float end $end holds the weft down" big --side top --size 1400x1200
-    pictures_end
     pictures
     figure part-cut.png "Before: the cloth cut along pick $pick" wide
     draw mended.yarns 3d mended-cut "After: the gold weft dips under end $end" wide --size 1600x420 --side front --cut "x=$place"
     pictures_end
     tell dora 0 weave inspect mended.yarns
+    text "What <code>inspect</code> says of yarns that lie bunched or have moved from the plan is how the cloth lies; it would end with 1 if the cloth were not at rest, leaned, or had a crossing other than on the card."
     tell dora 1 weave diff ginkgo.weave mended.weave -o difference.png
     tell dora 0 weave check mended.weave --loom tc2.json
     ! long_float "$scratch/said" > /dev/null || { echo "== FAILED: the float is still there" >&2; return 5; }

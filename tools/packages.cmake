@@ -29,13 +29,16 @@ set(CPACK_COMPONENT_SERVICES_DESCRIPTION "simd, which simulates cloth for many p
 set(CPACK_DEBIAN_DEVELOPMENT_PACKAGE_NAME libweave-dev)
 set(CPACK_COMPONENT_DEVELOPMENT_DESCRIPTION "designs, simulates and checks 3D woven cloth: headers, and a package for CMake")
 set(CPACK_DEBIAN_DEVELOPMENT_PACKAGE_SECTION libdevel)
+set(CPACK_DEBIAN_COMMANDS_PACKAGE_SECTION graphics)
+set(CPACK_DEBIAN_STUDIO_PACKAGE_SECTION graphics)
+set(CPACK_DEBIAN_SERVICES_PACKAGE_SECTION science)
 set(CPACK_DEBIAN_DEVELOPMENT_PACKAGE_DEPENDS "nlohmann-json3-dev (>= 3.11), libeigen3-dev (>= 3.4)")
 set(CPACK_DEBIAN_DEVELOPMENT_PACKAGE_SHLIBDEPS OFF)
 foreach(component COMMANDS STUDIO SERVICES DEVELOPMENT)
   set(CPACK_COMPONENT_${component}_DEPENDS library)
 endforeach()
 set(CPACK_DEBIAN_STUDIO_PACKAGE_DEPENDS libqt6svg6) # a plugin, which no program asks for by name
-set(CPACK_DEBIAN_STUDIO_PACKAGE_RECOMMENDS "weave, fonts-dejavu-core")
+set(CPACK_DEBIAN_STUDIO_PACKAGE_RECOMMENDS "weave, fonts-dejavu-core, shared-mime-info")
 set(CPACK_DEBIAN_COMMANDS_PACKAGE_RECOMMENDS "fonts-dejavu-core")
 
 set(CPACK_COMPONENTS_ALL library commands services development)

@@ -21,7 +21,7 @@ picture() { # FILE VIEW NAME CAPTION [OPTION...]
 
 # A picture that is there.
 shown() { # NAME CAPTION
-    echo "<figure><a href=\"$1.png\"><img src=\"$1.png\" alt=\"$2\"></a><figcaption>$2</figcaption></figure>" >> "$page"
+    echo "<figure><a href=\"$1.png\"><img src=\"$1.png\" alt=\"$(sed 's/<[^>]*>//g' <<< "$2")\"></a><figcaption>$2</figcaption></figure>" >> "$page"
 }
 
 # Relaxes NAME.weave into RUN.yarns and puts what was said, and what `weave inspect` tells a weaver, on the page. Yarns that did

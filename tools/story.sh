@@ -39,7 +39,7 @@ pictures_end() { echo "</section>" >> "$page"; }
 
 # A picture that is there already.
 figure() { # FILE CAPTION [CLASS]
-    printf '<figure class="%s"><a href="%s"><img src="%s" alt="%s"></a><figcaption>%s</figcaption></figure>\n' "${3:-}" "$1" "$1" "${2//\"/}" "$2" >> "$page"
+    printf '<figure class="%s"><a href="%s"><img src="%s" alt="%s"></a><figcaption>%s</figcaption></figure>\n' "${3:-}" "$1" "$1" "$(sed 's/<[^>]*>//g; s/"//g' <<< "$2")" "$2" >> "$page"
 }
 
 # One that `weave render` makes; nobody needs to see that command each time.

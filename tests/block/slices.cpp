@@ -139,7 +139,7 @@ TEST_CASE("a slice that is no cloth is refused at its position") {
     };
     REQUIRE_THAT(error({}).message, Catch::Contains("at least one position"));
     REQUIRE(error({"T0 P0", "T0 P0 P1"}).text() ==
-            "positions[1]: has 2 warps running along the slice, but positions[0] has 1");
+            "positions[1]: has 2 ends running along the slice, but positions[0] has 1");
     REQUIRE(error({"T0 P0", "T0 T0 P0"}).where == "positions[1]");
     REQUIRE(error({"T0 P0", "T1 P0"}).where == "positions[1]");
     REQUIRE(error({"(T1) T1 P0"}).where == "positions[0]");

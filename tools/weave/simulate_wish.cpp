@@ -52,7 +52,7 @@ Status check_wish(const SimulateWish& wish) {
         return usage_error("leaves its jobs to the server, and writes nothing: weave jobs fetch gets what came of each", "--sweep " + wish.sweep.front());
     if (!wish.explain && wish.out.empty() && wish.sweep.empty()) return usage_error("say where the yarns go: -o OUT.yarns", "");
     if (wish.explain && !wish.no_plan_option.empty())
-        return usage_error("nothing is simulated with --explain, and the plan owes nothing to it", wish.no_plan_option);
+        return usage_error("--explain only tells the plan, in which this option changes nothing", wish.no_plan_option);
     if (wish.seed && wish.starts == 0 && !wish.symmetry)
         return usage_error("is of the noise of --starts and --symmetry; without them there is none", "--seed");
     if (!wish.save_design.empty() && wish.flips.empty())

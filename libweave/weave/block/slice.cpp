@@ -57,7 +57,7 @@ Result<std::vector<Stack>> drawn_stacks(const Slice& slice) {
         if (!stack) return std::move(stack).error().under(place_of(position));
         stacks.push_back(std::move(stack).value());
         if (paths_of(stacks.back()) != paths_of(stacks.front())) {
-            return bad_input("has " + counted(paths_of(stacks.back()), wefts_run ? "weft" : "warp") +
+            return bad_input("has " + counted(paths_of(stacks.back()), wefts_run ? "pick" : "end") +
                                  " running along the slice, but " + place_of(0) + " has " +
                                  std::to_string(paths_of(stacks.front())),
                              place_of(position));

@@ -297,7 +297,7 @@ void check_claims(JsonReader& reader, const LoomProfile& profile) {
 }
 
 void read_heading(JsonReader& reader, LoomProfile& profile) {
-    if (reader.text("format", {}, 64) != "weave-loom") reader.fail("must be weave-loom", "format");
+    if (reader.text("format", {}, 64) != "weave-loom") reader.fail("must be weave-loom: this is no profile of a loom", "format");
     const std::int64_t version = reader.integer("version", 1, most_limit);
     if (version > 1) {
         reader.fail("is " + std::to_string(version) + ", newer than this program, which reads version 1",
