@@ -45,9 +45,11 @@ set(CPACK_COMPONENTS_ALL library commands services development)
 if(WEAVE_STUDIO)
   list(APPEND CPACK_COMPONENTS_ALL studio)
 endif()
+file(READ ${PROJECT_SOURCE_DIR}/LICENSE licence)
+file(WRITE ${CMAKE_BINARY_DIR}/packages/copyright "weave: copyright 2026 the authors of weave, under the licence below.\n\n${licence}")
 foreach(component ${CPACK_COMPONENTS_ALL}) # what Debian wants beside every package
   string(TOUPPER ${component} upper)
-  install(FILES ${PROJECT_SOURCE_DIR}/LICENSE DESTINATION ${CMAKE_INSTALL_DATADIR}/doc/${CPACK_DEBIAN_${upper}_PACKAGE_NAME} RENAME copyright COMPONENT ${component})
+  install(FILES ${CMAKE_BINARY_DIR}/packages/copyright DESTINATION ${CMAKE_INSTALL_DATADIR}/doc/${CPACK_DEBIAN_${upper}_PACKAGE_NAME} COMPONENT ${component})
 endforeach()
 install(FILES ${PROJECT_SOURCE_DIR}/docs/licences.md ${PROJECT_SOURCE_DIR}/CHANGELOG.md DESTINATION ${CMAKE_INSTALL_DATADIR}/doc/${CPACK_DEBIAN_LIBRARY_PACKAGE_NAME} COMPONENT library)
 # What a person reads who has the packages and not the tree.

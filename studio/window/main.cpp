@@ -9,8 +9,10 @@
 #include <QIcon>
 #include <QLocale>
 
+#include <algorithm>
 #include <clocale>
 #include <cstdio>
+#include <cstdlib>
 #include <set>
 #include <string_view>
 
@@ -30,6 +32,13 @@ bool only_tells(int argc, char* argv[]) {
     for (int k = 1; k < argc && std::string_view(argv[k]) != "--"; ++k)
         if (tells.contains(argv[k])) return true;
     return false;
+}
+
+/// Whether there is somewhere to open a window: without it Qt ends the program with SIGABRT.
+bool has_display(int argc, char* argv[]) {
+    for (const char* name : {"DISPLAY", "WAYLAND_DISPLAY", "QT_QPA_PLATFORM"})
+        if (const char* value = std::getenv(name); value != nullptr && *value != '\0') return true;
+    return std::any_of(argv + 1, argv + argc, [](std::string_view word) { return word == "-platform" || word == "--platform"; });
 }
 
 void name_the_program() {
@@ -53,6 +62,11 @@ int tell(int argc, char* argv[]) {
 int main(int argc, char* argv[]) {
     using namespace weave::studio;
     if (only_tells(argc, argv)) return tell(argc, argv);
+    if (!has_display(argc, argv)) {
+        constexpr int fault_of_the_system = 5;
+        std::fputs("studio: there is no display to open a window on (neither DISPLAY nor WAYLAND_DISPLAY is set)\n", stderr);
+        return fault_of_the_system;
+    }
     QApplication application(argc, argv);
     std::setlocale(LC_NUMERIC, "C");  // documents have points in their numbers, whatever the desk's language
     name_the_program();

@@ -274,7 +274,7 @@ TEST_CASE("ends: as many as the loom carries or as are said, and a hint where th
     CHECK(card({"X.X....."}, profile).card.ends() == 8);
     CHECK(card({"X.X....."}, profile).warnings ==
           Lines{"ends 4 to 8 never lift; a design with fewer ends than the loom carries is read with their "
-                "number given"});
+                "number given (weave import --ends N)"});
     CHECK(card({"XXXXXXX."}, profile).warnings[0].rfind("end 8 never", 0) == 0);
     CHECK(card({"X.X....."}, profile, 3).warnings.empty());
     CHECK_THAT(refusal({"X......."}, profile, 9), Catch::Contains("1 to 8 ends, not 9"));

@@ -285,7 +285,7 @@ void check_last_ends(Reading& reading) {
         "end" + std::string(card.ends() - ends == 1 ? " " : "s " + person(ends) + " to ") +
         std::to_string(card.ends()) +
         " never lift; a design with fewer ends than the loom carries is read with their "
-        "number given");
+        "number given (weave import --ends N)");
 }
 
 }  // namespace
