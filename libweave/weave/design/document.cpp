@@ -44,7 +44,7 @@ Status check_version(const Json& document) {
 Error no_design(std::string_view text, Error trouble) {
     if (text.starts_with("weave-yarns ")) return bad_input("holds relaxed yarns, no design");
     const std::size_t first = text.find_first_not_of(" \t\r\n");
-    if (first == std::string_view::npos || text[first] == '{') return trouble;
+    if (first == std::string_view::npos || text[first] == '{' || text[first] == '[') return trouble;
     return bad_input("is no design, which would begin with {; cards, WIF and files of loom controllers have to be imported first");
 }
 

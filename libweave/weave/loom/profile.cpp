@@ -322,7 +322,7 @@ Result<Json> profile_document(std::string_view text) {
     const Json format = json->is_object() ? json->value("format", Json()) : Json();
     if (format == "weave") return bad_input("is a design, no profile of a loom");
     if (format != "weave-loom")
-        return bad_input("is no profile of a loom: it has no \"format\": \"weave-loom\"");
+        return bad_input("must be weave-loom, as a profile of a loom has it", "format");
     return json;
 }
 
