@@ -2,6 +2,8 @@
 
 #include <weave/core/text.hpp>
 
+#include <algorithm>
+
 namespace weave::loomlink {
 
 namespace {
@@ -44,6 +46,28 @@ CLI::Option* add_text(CLI::App* command, const std::string& name, std::string& v
         return word.empty() ? std::string("must not be empty") : "";
     };
     return command->add_option(name, value, help)->check(CLI::Validator(filled, ""));
+}
+
+CLI::Option* add_words(CLI::App* command, const std::string& name, std::string& value,
+                       const std::string& help) {
+    const auto readable = [](std::string& words) {
+        return is_utf8(words) ? std::string() : "'" + on_one_line(words) + "' is not UTF-8";
+    };
+    return add_text(command, name, value, help)->check(CLI::Validator(readable, ""));
+}
+
+void add_reason(CLI::App* command, std::string& reason) {
+    add_words(command, "-r,--reason", reason, "why; it stands in the log")->type_name("WHY")->required();
+}
+
+CLI::Validator one_of(const std::vector<std::string>& choices) {
+    const auto check = [choices](std::string& word) {
+        if (std::find(choices.begin(), choices.end(), word) != choices.end()) return std::string();
+        std::string all;
+        for (const std::string& choice : choices) all += (all.empty() ? "" : ", ") + choice;
+        return "'" + on_one_line(word) + "' is none of " + all;
+    };
+    return {check, ""};
 }
 
 }  // namespace weave::loomlink

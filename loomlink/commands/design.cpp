@@ -5,6 +5,8 @@
 #include <weave/design/document.hpp>
 #include <weave/wire/mill_designs.hpp>
 
+#include <cctype>
+
 #include <loomlink/commands/client_command.hpp>
 #include <loomlink/commands/names.hpp>
 #include <loomlink/commands/revision_place.hpp>
@@ -93,8 +95,11 @@ void add_save(CLI::App& app, CommandOutcome& outcome) {
     const auto words = std::make_shared<SaveWords>();
     add_text(command.command, "FILE", words->file, "the .weave file")->required();
     add_name(command.command, "DESIGN", words->design, "the design")->required();
-    add_text(command.command, "-m,--message", words->message, "what changed")->required();
-    add_text(command.command, "--branch", words->branch, "the branch that it goes on, main if not given; a new one starts from --expected, or from main");
+    add_words(command.command, "-m,--message", words->message, "what changed")
+        ->type_name("WHAT")
+        ->required();
+    add_text(command.command, "--branch", words->branch, "the branch that it goes on, main if not given; a new one starts from --expected, or from main")
+        ->type_name("BRANCH");
     add_number(command.command, "--expected", words->expected,
                "the revision that it was made from: refused where the branch has moved on since. If not "
                "given, the branch as the server has it now");
@@ -107,10 +112,13 @@ void add_save(CLI::App& app, CommandOutcome& outcome) {
 Status export_revision(wire::MillClient& client, const RevisionPlace& place, const std::string& out,
                        CommandOutcome& outcome) {
     constexpr std::size_t most_bundle = std::size_t{256} << 20;
+    const std::string ending = lower_extension(out);
+    if (ending.size() > 1 && std::isalpha(static_cast<unsigned char>(ending[1])) != 0 && ending != ".weave")
+        return Error{ErrorCode::usage, "takes a name that ends in .weave, or a folder, and " + ending + " is the ending of neither", "--out"};
     const std::string name = place.design + "-" + std::to_string(place.revision());
     WEAVE_TRY(const std::string document, wire::document_of(client, place.design, place.revision()));
     Json files = Json::array();
-    if (lower_extension(out) == ".weave") {
+    if (ending == ".weave") {
         WEAVE_CHECK_OK(write_file(out, document));
         files.push_back(out);
     } else {

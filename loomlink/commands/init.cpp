@@ -38,11 +38,13 @@ void add_init_command(CLI::App& app, CommandOutcome& outcome) {
     auto folder = std::make_shared<std::string>(".");
     auto config = std::make_shared<ServeConfig>();
     add_text(command, "FOLDER", *folder, "the folder of the site; the current one if not given");
-    command->add_option("--site", config->site, "the name of the site (mill)");
+    command->add_option("--site", config->site, "the name of the site (mill)")->type_name("NAME");
     add_text(command, "--store", config->store,
-             "connection string of the PostgreSQL database to keep it in (postgresql://HOST/DATABASE); a file if not given");
+             "connection string of the PostgreSQL database to keep it in (postgresql://HOST/DATABASE); a file if not given")
+        ->type_name("CONNECTION");
     command->add_option("--host", config->hosts,
-                        "a name or address that clients use, for the certificate; may be repeated");
+                        "a name or address that clients use, for the certificate; may be repeated")
+        ->type_name("HOST");
     on_run(command, outcome,
            [folder, config, &outcome] { return make_new_site({*folder}, *config, outcome); });
 }

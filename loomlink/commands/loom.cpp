@@ -2,6 +2,7 @@
 
 #include <weave/core/file.hpp>
 #include <weave/core/text.hpp>
+#include <weave/loom/profile.hpp>
 
 #include <loomlink/commands/client_command.hpp>
 #include <loomlink/commands/names.hpp>
@@ -50,8 +51,10 @@ Status send_profile(wire::MillClient& client, const ProfileWish& wish, bool is_n
     if (is_new) body["name"] = wish.loom;
     auto answer = is_new ? client.post("/looms", std::move(body))
                          : client.change("PUT", wire::mill_path({"looms", wish.loom, "profile"}), std::move(body));
-    if (!answer && answer.error().where.starts_with("profile"))
+    if (!answer && answer.error().code != ErrorCode::refused && answer.error().code != ErrorCode::system) {
+        WEAVE_CHECK_OK(load_profile(wish.file));  // which knows a picture, or a design, for what it is
         return std::move(answer).error().in(wish.file);
+    }
     if (!answer) return std::move(answer).error();
     outcome.answer(*answer, on_one_line(wish.loom) + ": profile version " + told(*answer, "profile_version") +
                                 " is in force\n");

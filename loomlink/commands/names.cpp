@@ -16,16 +16,21 @@ CLI::Validator name_check(bool spaces) {
     return {check, ""};
 }
 
+/// What stands for an option's value in the help; a place has its own name.
+const char* word_for(const std::string& option, const char* word) {
+    return option.starts_with('-') ? word : "";
+}
+
 }  // namespace
 
 CLI::Option* add_name(CLI::App* command, const std::string& name, std::string& value,
                       const std::string& help) {
-    return command->add_option(name, value, help)->check(name_check(false));
+    return command->add_option(name, value, help)->check(name_check(false))->type_name(word_for(name, "NAME"));
 }
 
 CLI::Option* add_loom_name(CLI::App* command, const std::string& name, std::string& value,
                            const std::string& help) {
-    return command->add_option(name, value, help)->check(name_check(true));
+    return command->add_option(name, value, help)->check(name_check(true))->type_name(word_for(name, "LOOM"));
 }
 
 CLI::Validator loom_name() {

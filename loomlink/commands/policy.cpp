@@ -3,6 +3,7 @@
 #include <weave/core/text.hpp>
 
 #include <algorithm>
+#include <charconv>
 #include <loomlink/commands/client_command.hpp>
 
 namespace weave::loomlink {
@@ -60,6 +61,14 @@ Status tell_policy(wire::MillClient& client, const PolicyWish& wish, CommandOutc
     return {};
 }
 
+/// Why a word is no share of a cloth; empty where it is one.
+std::string not_a_share(std::string& word) {
+    double share = -1;
+    const char* const end = word.data() + word.size();
+    const bool is_number = std::from_chars(word.data(), end, share).ptr == end;
+    return is_number && share >= 0 && share <= 1 ? "" : "'" + on_one_line(word) + "' is no share from 0 to 1";
+}
+
 }  // namespace
 
 void add_policy_command(CLI::App& app, CommandOutcome& outcome) {
@@ -71,15 +80,15 @@ void add_policy_command(CLI::App& app, CommandOutcome& outcome) {
     add_number(command.command, "--release-signatures", wish->release_signatures,
                "different people who must sign a release; a new trust document is due then");
     command.command->add_option("--simulation", wish->simulation, "required or optional")
-        ->check(CLI::IsMember({"required", "optional"}))
+        ->check(one_of({"required", "optional"}))
         ->type_name("WORD");
     command.command
         ->add_option("--fidelity", wish->fidelity, "the least that counts: draft, standard, reference")
-        ->check(CLI::IsMember({"draft", "standard", "reference"}))
+        ->check(one_of({"draft", "standard", "reference"}))
         ->type_name("WORD");
     command.command
         ->add_option("--coverage", wish->coverage, "least share of the crossings that is simulated, 0 to 1")
-        ->check(CLI::Range(0.0, 1.0))
+        ->check(CLI::Validator(not_a_share, ""))
         ->type_name("SHARE");
     add_number(command.command, "--index-valid-hours", wish->index_valid_hours,
                "how long a loom may go on with its last index");

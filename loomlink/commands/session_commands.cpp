@@ -39,7 +39,8 @@ void add_login(CLI::App& app, CommandOutcome& outcome) {
     const auto login = std::make_shared<LoginWish>();
     add_text(command.command, "ORIGIN", login->origin,
              "the server, such as https://mill:8443; the last one if not given");
-    add_text(command.command, "--name", login->name, "who you are; whoever signed in last if not given");
+    add_text(command.command, "--name", login->name, "who you are; whoever signed in last if not given")
+        ->type_name("NAME");
     add_text(command.command, "--fingerprint", login->fingerprint,
              "SHA-256 of the server's certificate, as it told it when it started; kept from then on. Without "
              "it the system's authorities decide")

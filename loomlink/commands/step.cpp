@@ -30,7 +30,7 @@ SignedStep add_signed_step(CLI::App& app, CommandOutcome& outcome, const std::st
     SignedStep step{add_client_command(app, outcome, name, help, example), nullptr,
                     std::make_shared<StepWords>()};
     step.place = add_revision_place(step.client.command);
-    add_text(step.client.command, "-r,--reason", step.words->reason, "why; it stands in the log")->required();
+    add_reason(step.client.command, step.words->reason);
     add_password_option(step.client);
     return step;
 }
@@ -101,7 +101,9 @@ void add_waive(CLI::App& app, CommandOutcome& outcome) {
     const auto step =
         add_signed_step(app, outcome, "waive", "Let the findings of one rule for one loom pass",
                         "loomlink waive shoe 3 --rule float.back --loom 'EP 1' --reason 'Wanted'");
-    add_text(step.client.command, "--rule", step.words->rule, "the rule, as check names it")->required();
+    add_text(step.client.command, "--rule", step.words->rule, "the rule, as check names it")
+        ->type_name("RULE")
+        ->required();
     add_loom_name(step.client.command, "--loom", step.words->loom, "the loom")->required();
     const auto body_of = [](const StepWords& words) {
         return Json{{"rule", words.rule}, {"loom", words.loom}, {"reason", words.reason}};
@@ -127,7 +129,7 @@ void add_comment(CLI::App& app, CommandOutcome& outcome) {
                            "loomlink comment shoe 3 'Is this float wanted?' --pick 120 --end 7");
     const auto place = add_revision_place(command.command);
     const auto words = std::make_shared<StepWords>();
-    add_text(command.command, "TEXT", words->reason, "the comment")->required();
+    add_words(command.command, "TEXT", words->reason, "the comment")->required();
     add_number(command.command, "--pick", words->pick, "the pick that it is about");
     add_number(command.command, "--end", words->end, "the end that it is about");
     on_client_run(command, outcome, [place, words, &outcome](wire::MillClient& client) -> Status {

@@ -17,7 +17,7 @@ const std::vector<std::string> role_names{"designer", "approver", "operator", "e
 CLI::Option* add_roles(CLI::App* command, std::vector<std::string>& roles) {
     return command
         ->add_option("ROLE", roles, "what the person may do: designer, approver, operator, engineer, admin")
-        ->check(CLI::IsMember(role_names))
+        ->check(one_of(role_names))
         ->type_name("")
         ->required();
 }
@@ -88,8 +88,11 @@ void add_join(CLI::App& app, CommandOutcome& outcome) {
         ->type_name("ORIGIN");
     add_text(command.command, "--fingerprint", wish->fingerprint, "SHA-256 of the server's certificate")
         ->type_name("HEX");
-    add_text(command.command, "--name", wish->name, "the name to sign in with")->required();
-    add_text(command.command, "--full-name", wish->full_name, "stands beside everything that you sign")
+    add_text(command.command, "--name", wish->name, "the name to sign in with")
+        ->type_name("NAME")
+        ->required();
+    add_words(command.command, "--full-name", wish->full_name, "stands beside everything that you sign")
+        ->type_name("NAME")
         ->required();
     on_run(command.command, outcome,
            [client = command.wish, wish, &outcome] { return join(*client, without_link(*wish), outcome); });

@@ -119,7 +119,7 @@ class Gate::Keeper {
         if (route.body.empty() && !request.body.empty()) return bad_input("this takes no body");
         for (const std::string& place : places_of(route.path))
             if (place == number_place && !place_number(request.place(place)))
-                return bad_input("is no number from 1 on", place);
+                return bad_input("must be a whole number from 1 on", place);
         WEAVE_TRY(call.query, read_query(request.query, route.query));
         if (route.body.empty()) return {};
         WEAVE_TRY(call.body, read_body(request.body, route.body));

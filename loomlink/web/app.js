@@ -9,6 +9,8 @@ const views = [
     ['/account', 'account'],
 ];
 
+const numbers = [':revision', ':release'];
+
 let me = null;
 let shown = { leave() {} };
 let latest = 0; // which of several views that are on their way is wanted
@@ -17,6 +19,7 @@ function found(path) {
     for (const [pattern, name] of views) {
         const parts = pattern.split('/'), given = path.replace(/(.)\/$/, '$1').split('/');
         if (parts.length !== given.length || !parts.every((part, i) => part.startsWith(':') || part === given[i])) continue;
+        if (parts.some((part, i) => numbers.includes(part) && !/^[1-9]\d{0,8}$/.test(given[i]))) return null;
         try {
             return { name, names: Object.fromEntries(parts.flatMap((part, i) =>
                 part.startsWith(':') ? [[part.slice(1), decodeURIComponent(given[i])]] : [])) };

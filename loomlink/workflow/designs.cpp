@@ -102,12 +102,12 @@ Status check_head(const Reader& reader, Id design, const SaveWish& wish, const H
     if (branch == branches.end()) {
         return check_free(branches, wish.branch, "branch");  // a new one starts where `expected` says
     }
+    WEAVE_TRY(const auto parents, parents_of(reader, design, wish));  // a revision that is not there is no head either
     WEAVE_TRY(const auto head, reader.revision(branch->head));
     if (!head || wish.expected != head->number)
         return deny(Denial::conflict, "the branch has moved on" +
                                           (head ? " to revision " + std::to_string(head->number) : "") +
                                           ": somebody else saved first; compare and merge");
-    WEAVE_TRY(const auto parents, parents_of(reader, design, wish));
     if (parents.size() > 1 || head->document != document) return {};
     return deny(Denial::conflict,
                 "this is what revision " + std::to_string(head->number) + " holds already: nothing to save");

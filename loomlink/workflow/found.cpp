@@ -38,6 +38,15 @@ Result<FoundRevision> find_revision(const Reader& reader, const Caller& caller, 
     return FoundRevision{std::move(found), *std::move(revision)};
 }
 
+Status check_on_card(const Revision& revision, std::optional<std::int64_t> pick, std::optional<std::int64_t> end) {
+    const auto check = [](const char* what, std::optional<std::int64_t> place, std::int64_t most) -> Status {
+        if (!place || (*place >= 1 && *place <= most)) return {};
+        return bad_input("the card has " + std::string(what) + "s 1 to " + std::to_string(most), what);
+    };
+    WEAVE_CHECK_OK(check("pick", pick, revision.picks));
+    return check("end", end, revision.ends);
+}
+
 Result<Loom> find_loom(const Reader& reader, const Caller& caller, const std::string& loom) {
     if (!caller.reads_designs() && !caller.is(PersonRole::administrator)) {
         WEAVE_TRY(const auto own, reader.looms_of(caller.id));

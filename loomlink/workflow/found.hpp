@@ -4,6 +4,7 @@
 #include <loomlink/store/reader.hpp>
 #include <loomlink/workflow/caller.hpp>
 #include <loomlink/workflow/denial.hpp>
+#include <optional>
 #include <string>
 
 namespace weave::loomlink {
@@ -17,6 +18,9 @@ Status need_designs_open(const Caller& caller);
 Result<Design> find_design(const Reader& reader, const Caller& caller, const std::string& design);
 Result<FoundRevision> find_revision(const Reader& reader, const Caller& caller, const std::string& design,
                                     std::int64_t number);
+
+/// Whether a pick and an end, from 1, are on the card of a revision. Errors name the one that is not.
+Status check_on_card(const Revision& revision, std::optional<std::int64_t> pick, std::optional<std::int64_t> end);
 
 /// A loom that the caller may see: readers all, operators those that name them, admins all.
 Result<Loom> find_loom(const Reader& reader, const Caller& caller, const std::string& loom);

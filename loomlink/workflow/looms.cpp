@@ -47,9 +47,7 @@ Result<Release> own_release(const Reader& reader, const Caller& caller, const st
 Status check_place(const Reader& reader, const Release& release, std::optional<std::int64_t> pick,
                    std::optional<std::int64_t> end) {
     WEAVE_TRY(const auto revision, reader.revision(release.revision));
-    if (pick && (*pick < 1 || *pick > revision->picks)) return bad_input("is not on the card", "pick");
-    if (end && (*end < 1 || *end > revision->ends)) return bad_input("is not on the card", "end");
-    return {};
+    return check_on_card(*revision, pick, end);
 }
 
 /// The release that was confirmed last, as long as it may be woven.

@@ -1,18 +1,22 @@
 #include <loomlink/workflow/release_files.hpp>
 
 #include <loomlink/export/signed_manifest.hpp>
+#include <utility>
 
 namespace weave::loomlink {
 
-Result<FeederMap> feeder_map(const weave::Design& design, const std::vector<std::int64_t>& feeders) {
+Result<FeederMap> feeder_map(const weave::Design& design, const LoomProfile& profile,
+                             const std::vector<std::int64_t>& feeders) {
     if (feeders.size() != design.weft.feeders.size())
         return bad_input("must name a feeder of the loom for each of the design's " +
                              std::to_string(design.weft.feeders.size()),
                          "feeders");
-    constexpr std::int64_t most_feeders = 64;
     FeederMap map;
     for (std::size_t k = 0; k < feeders.size(); ++k) {
-        if (feeders[k] < 1 || feeders[k] > most_feeders) return bad_input("counts from 1", "feeders");
+        if (feeders[k] < 1 || std::cmp_greater(feeders[k], profile.feeders))
+            return bad_input("this loom has no feeder " + std::to_string(feeders[k]) + ", it has " +
+                                 (profile.feeders == 1 ? "one" : "1 to " + std::to_string(profile.feeders)),
+                             "feeders");
         map[static_cast<std::uint32_t>(k)] = static_cast<std::size_t>(feeders[k] - 1);
     }
     return map;

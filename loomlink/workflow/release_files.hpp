@@ -9,8 +9,10 @@
 
 namespace weave::loomlink {
 
-/// The feeders of a loom (given from 1) for those of a design. Errors: not one for each.
-Result<FeederMap> feeder_map(const weave::Design& design, const std::vector<std::int64_t>& feeders);
+/// The feeders of a loom (given from 1) for those of a design. Errors: not one for each, or one that the loom
+/// does not have.
+Result<FeederMap> feeder_map(const weave::Design& design, const LoomProfile& profile,
+                             const std::vector<std::int64_t>& feeders);
 
 /// The name that a revision's files have: the design's and the revision's number.
 std::string release_stem(const std::string& design, std::int64_t revision);

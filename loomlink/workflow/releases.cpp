@@ -202,7 +202,7 @@ Result<Json> ReleaseDesk::release(const Caller& caller, const Ask& ask, const Re
             return parts_of(reader, caller, *m_shelf, wish);
         }));
         WEAVE_CHECK_OK(check_text(wish.reason, "reason", 1, most_reason));
-        WEAVE_TRY(const FeederMap feeders, feeder_map(parts.cloth->design, wish.feeders));
+        WEAVE_TRY(const FeederMap feeders, feeder_map(parts.cloth->design, parts.profile.profile, wish.feeders));
         const std::string stem = release_stem(wish.design, wish.revision);
         const Validation validation = validate(*parts.cloth, wish.loom, parts.profile, feeders, stem);
         WEAVE_CHECK_OK(m_desk->store().read(

@@ -151,6 +151,14 @@ Json summary_of(const DesignDiff& diff) {
     return lines;
 }
 
+/// Whether no approval is possible before somebody simulates.
+Result<bool> needs_simulation(const Reader& reader, const Revision& revision) {
+    if (revision.state != RevisionState::draft && revision.state != RevisionState::submitted) return false;
+    WEAVE_TRY(const SitePolicy policy, policy_in_force(reader));
+    WEAVE_TRY(const auto simulations, simulations_of(reader, revision));
+    return !missing_simulation(simulations, revision, policy).empty();
+}
+
 }  // namespace
 
 Result<Json> revision_json(const Reader& reader, const Caller& caller, const FoundRevision& found,
@@ -162,7 +170,11 @@ Result<Json> revision_json(const Reader& reader, const Caller& caller, const Fou
     WEAVE_TRY(json["decisions"], decisions_json(reader, found.revision));
     WEAVE_TRY(json["comments"], comments_json(reader, found.revision));
     json["feeders"] = feeders_json(design);
-    json["may"] = allowed_actions(caller, found.revision);
+    WEAVE_TRY(const bool needs, needs_simulation(reader, found.revision));
+    json["needs_simulation"] = needs;
+    std::vector<std::string> actions = allowed_actions(caller, found.revision);
+    if (needs) std::erase(actions, word(Action::approve));
+    json["may"] = std::move(actions);
     return json;
 }
 

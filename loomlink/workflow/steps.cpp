@@ -139,9 +139,7 @@ Result<Json> Steps::comment(const Caller& caller, const Ask& ask, const StepWish
     return m_desk->attempt(caller, ask, deed, [&]() -> Result<Json> {
         WEAVE_TRY(const FoundRevision here, found(caller, Action::comment, wish));
         WEAVE_CHECK_OK(check_text(wish.reason, "text", 1, most_reason));
-        if ((pick && (*pick < 1 || *pick > here.revision.picks)) ||
-            (end && (*end < 1 || *end > here.revision.ends)))
-            return bad_input("is not on the card", "pick");
+        WEAVE_CHECK_OK(check_on_card(here.revision, pick, end));
         deed.data.update(bound(here));
         return m_desk->commit(
             caller, ask, deed, check_action(wish, Action::comment),

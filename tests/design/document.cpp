@@ -133,6 +133,8 @@ TEST_CASE("what is not JSON is refused with line and column, or with what is odd
                Catch::Contains("repeats the member 'format'"));
     CHECK_THAT(message(std::string(100000, '[')), Catch::Contains("nests deeper than 64 levels"));
     CHECK_THAT(message("{\"title\": \"\xff\"}"), Catch::Contains("is not JSON"));
+    CHECK_THAT(message("\x89PNG\r\n"), Catch::StartsWith("is no design, which would begin with {"));
+    CHECK(message("weave-yarns 1\n") == "holds relaxed yarns, no design");
     CHECK_THAT(message(R"({"format": "weave", "version": 1, "blocks": {"a": {}, "a": {}}})"),
                Catch::Contains("repeats the member 'a'"));
 }

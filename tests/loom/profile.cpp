@@ -116,6 +116,14 @@ TEST_CASE("every member is refused when it has the wrong kind, and what is unkno
     }
 }
 
+TEST_CASE("a file of another kind is told for what it is") {
+    const auto told = [](std::string_view text) { return read_profile(text).error().text(); };
+    CHECK(told("\x89PNG\r\n") == "is no profile of a loom, which would begin with {");
+    CHECK(told(R"({"format": "weave", "version": 1})") == "is a design, no profile of a loom");
+    CHECK(told(R"({"format": "trust"})") == "format: must be weave-loom, as a profile of a loom has it");
+    CHECK_THAT(told("{\"format\": "), Catch::Contains("is not JSON: line 1"));
+}
+
 TEST_CASE("values out of range or at odds with each other are refused") {
     const std::vector<std::pair<std::string, std::string>> wrong{{"/version", "2"},
                                                                  {"/format", "\"weave\""},

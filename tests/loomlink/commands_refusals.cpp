@@ -48,6 +48,12 @@ TEST_CASE("a call that makes no sense ends with 2 and says what is missing", "[c
         {{"signer", "revoke", "../x"}, "'../x' is no name"},
         {{"log", "--design", "a/b"}, "'a/b' is no name"},
         {{"serve", ""}, "FOLDER: must not be empty"},
+        {{"comment", "cloth", "1", "gr\xfc" "n"}, "is not UTF-8"},
+        {{"approve", "cloth", "1", "--reason", "gr\xfc" "n"}, "is not UTF-8"},
+        {{"user", "invite", "weaver"}, "'weaver' is none of designer, approver, operator, engineer, admin"},
+        {{"policy", "--coverage", "2"}, "'2' is no share from 0 to 1"},
+        {{"policy", "--coverage", "half"}, "'half' is no share from 0 to 1"},
+        {{"policy", "--fidelity", "fine"}, "'fine' is none of draft, standard, reference"},
     };
     for (const Call& call : calls) {
         const Ended ended = Running(call.words, folder.path).wait();
@@ -93,6 +99,34 @@ TEST_CASE("every command explains itself with an example or in words", "[command
     }
 }
 
+TEST_CASE("the help has a word for every value and none of the parser's own", "[commands]") {
+    const TemporaryFolder folder;
+    const auto help_of = [&](std::vector<std::string> words) {
+        words.emplace_back("--help");
+        return Running(words, folder.path).wait().out;
+    };
+    for (const char* step : {"submit", "approve", "request-changes", "waive", "release", "sign", "withdraw"})
+        CHECK_THAT(help_of({step}), Catch::Contains("-r,--reason WHY REQUIRED"));
+    CHECK_THAT(help_of({"save"}), Catch::Contains("--message WHAT REQUIRED") && Catch::Contains("--branch BRANCH "));
+    CHECK_THAT(help_of({"waive"}), Catch::Contains("--rule RULE ") && Catch::Contains("--loom LOOM "));
+    CHECK_THAT(help_of({"login"}), Catch::Contains("--name NAME "));
+    CHECK_THAT(help_of({"user", "join"}), Catch::Contains("--name NAME ") && Catch::Contains("--full-name NAME "));
+    CHECK_THAT(help_of({"init"}), Catch::Contains("--site NAME ") && Catch::Contains("--store CONNECTION ") &&
+                                      Catch::Contains("--host HOST "));
+    CHECK_THAT(help_of({"user", "invite"}), !Catch::Contains("{"));
+    CHECK_THAT(help_of({"policy"}), !Catch::Contains("FLOAT") && !Catch::Contains("{"));
+}
+
+TEST_CASE("an export has no name of another kind of file", "[commands]") {
+    CommandMill mill;
+    mill.set_up();
+    mill.done("dora", {"design", "make", "cloth"});
+    const Ended ended = mill.as("dora", {"export", "cloth", "1", "-o", mill.at("q.png")});
+    CHECK(ended.code == 2);
+    CHECK_THAT(ended.err, Catch::Contains("--out: takes a name that ends in .weave, or a folder"));
+    CHECK_FALSE(std::filesystem::exists(mill.at("q.png")));
+}
+
 TEST_CASE("what is saved and is no design is told for what it is", "[commands]") {
     CommandMill mill;
     mill.set_up();
@@ -109,6 +143,9 @@ TEST_CASE("what is saved and is no design is told for what it is", "[commands]")
     refused("card.png", "is no design, which would begin with {");
     refused("cloth.yarns", "holds relaxed yarns, no design");
     refused("half.weave", "is not JSON");
+    const Ended picture = mill.as("mary", {"loom", "add", "nine", mill.at("card.png")});
+    CHECK(picture.code == 3);
+    CHECK_THAT(picture.err, Catch::Contains("card.png: is no profile of a loom"));
 }
 
 TEST_CASE("a list of nothing says so", "[commands]") {

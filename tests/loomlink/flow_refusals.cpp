@@ -298,4 +298,40 @@ TEST_CASE("who comes at the wrong time is told what can be done instead") {
     CHECK(outcome.error().message == "your roles do not let you request changes");
 }
 
+TEST_CASE("a refusal says what it is about and what there is") {
+    BusyMill mill;
+    Workflow& flow = *mill.flow;
+    const Caller& dora = mill.people.at("dora");
+    const Caller& abe = mill.people.at("abe");
+    const auto told = [](const Result<Json>& outcome) {
+        if (outcome) FAIL("was done");
+        return outcome.error().text();
+    };
+    const auto save = [&](const std::string& document, std::int64_t expected) {
+        return told(flow.designs().save(dora, mill.ask(), {"shoe", "main", "next", document, expected, {}}));
+    };
+    CHECK_THAT(save("\x89PNG\r\n", 1), Catch::StartsWith("is no design, which would begin with {"));
+    CHECK(save("weave-yarns 1\n", 1) == "holds relaxed yarns, no design");
+    CHECK_THAT(save(FlowSite::document("new"), 9), Catch::EndsWith("the design has no revision 9"));
+    const auto add_loom = [&](const std::string& profile) {
+        return told(flow.looms().add(mill.people.at("ada"), mill.ask(), "EP 3", profile));
+    };
+    CHECK_THAT(add_loom(FlowSite::document()), Catch::EndsWith("is a design, no profile of a loom"));
+    CHECK_THAT(add_loom("\x89PNG\r\n"), Catch::EndsWith("is no profile of a loom, which would begin with {"));
+    const auto comment = [&](std::optional<std::int64_t> pick, std::optional<std::int64_t> end) {
+        return told(flow.steps().comment(abe, mill.ask(), {"shoe", 1, "here"}, pick, end));
+    };
+    CHECK(comment(5, 1) == "pick: the card has picks 1 to 4");
+    CHECK(comment(4, 9) == "end: the card has ends 1 to 8");
+    mill.approve(1);
+    const auto release = [&](std::int64_t feeder) {
+        return flow.releases().release(abe, mill.ask("abe"), {"shoe", 1, "EP 1", {feeder}, {}, "go"});
+    };
+    CHECK(told(release(99)) == "feeders: this loom has no feeder 99, it has 1 to 6");
+    CHECK(told(release(0)) == "feeders: this loom has no feeder 0, it has 1 to 6");
+    got(release(1));
+    CHECK(told(flow.looms().report_fault(mill.people.at("otto"), mill.ask(), "EP 1", 1, "a float", 9999, {})) ==
+          "pick: the card has picks 1 to 4");
+}
+
 }  // namespace weave::loomlink::testing

@@ -187,6 +187,14 @@ TEST_CASE("evidence counts for the very design and scene, from a signer that is 
         return flow.steps().approve(site.people.at("abe"), site.ask("abe"), {"shoe", number, "good"});
     };
     CHECK(denied(approve(1)) == Denial::conflict);
+    const auto may_approve = [&] {  // as the page is told, which offers what may be done
+        const Json told = got(flow.designs().revision(site.people.at("abe"), "shoe", 1));
+        const auto may = told.at("may").get<std::vector<std::string>>();
+        const bool offered = std::find(may.begin(), may.end(), "approve") != may.end();
+        CHECK(told.at("needs_simulation") == !offered);
+        return offered;
+    };
+    CHECK_FALSE(may_approve());
 
     wire::SimulationStatement found = site.simulation_of(1);
     const auto hand_in = [&](const KeyPair& key, std::int64_t number) {
@@ -200,6 +208,7 @@ TEST_CASE("evidence counts for the very design and scene, from a signer that is 
     CHECK(denied(approve(1)) == Denial::conflict);
     found.fidelity = "standard";
     got(hand_in(machine, 1));
+    CHECK(may_approve());
     CHECK(got(approve(1)).at("state") == "approved");
 
     weave::Design changed = read_document(FlowSite::document()).value();

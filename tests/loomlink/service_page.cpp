@@ -67,6 +67,32 @@ TEST_CASE("every path of the page shows its index, and no path of the API does")
     CHECK(ask(client, "POST", "/").status == 405);
 }
 
+TEST_CASE("the page sends files as large as the server takes them, and no larger") {
+    std::string page;
+    for (const PageFile& file : page_files())
+        if (file.path == "parts/files.js") page = file.text;
+    const auto takes = [&](const char* kind, std::size_t bytes) {
+        INFO(kind << ": " << bytes);
+        const std::size_t line = page.find(std::string(kind) + ": { what: ");
+        REQUIRE(line != std::string::npos);
+        const std::string most = "most: " + std::to_string(bytes >> 20) + " * 2 ** 20 }";
+        CHECK_THAT(page.substr(line, page.find('\n', line) - line), Catch::Contains(most));
+    };
+    const auto table = api_table();
+    const auto route = [&](const char* name) {
+        return *std::find_if(table.begin(), table.end(), [&](const ApiRoute& one) { return one.name == name; });
+    };
+    const auto field = [&](const char* name, const char* member) {
+        const Fields body = route(name).body;
+        const auto found = std::find_if(body.begin(), body.end(), [&](const Field& one) { return one.name == member; });
+        REQUIRE(found != body.end());
+        return static_cast<std::size_t>(found->high);
+    };
+    takes("design", field("revision.save", "document"));
+    takes("profile", field("loom.make", "profile"));
+    takes("evidence", route("revision.evidence").body_bytes());
+}
+
 TEST_CASE("files are saved under their names, whatever stands in them") {
     CHECK(disposition_of("shoe-12.jc5") == "attachment; filename=\"shoe-12.jc5\"");
     CHECK(disposition_of("a b\"; x=\r\n") == "attachment; filename*=UTF-8''a%20b%22%3B%20x%3D%0D%0A");

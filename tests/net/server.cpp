@@ -161,6 +161,28 @@ TEST_CASE("what is not there, not allowed or too large has its status") {
     REQUIRE(status(last_hello) == 200);
 }
 
+TEST_CASE("a client that sends far too much can send it, and hears that it is too much") {
+    const Server server = started(usual_routes());
+    constexpr std::size_t large = 20'000'000;  // more than sockets hold
+    RawSocket socket(server.port());
+    REQUIRE(socket.send(post("/echo", "Content-Length: " + std::to_string(large) + "\r\n", "")));
+    REQUIRE(socket.send(std::string(large, 'a')));
+    REQUIRE(status_of_reply(socket.read_all()) == 413);
+}
+
+TEST_CASE("what a refused client goes on sending is read for a while and to a size, not for ever") {
+    ServerOptions options;
+    options.limits.linger_bytes = 1'000'000;
+    options.limits.linger_time = 500ms;
+    const Server server = started(usual_routes(), options);
+    RawSocket greedy(server.port());
+    REQUIRE(greedy.send(post("/echo", "Content-Length: 1000000000\r\n", "")));
+    REQUIRE_FALSE(greedy.send(std::string(50'000'000, 'a')));
+    RawSocket slow(server.port());
+    REQUIRE(slow.send(post("/echo", "Content-Length: 1000000000\r\n", "")));
+    REQUIRE(comes_true([&] { return !slow.send("a"); }));  // a byte each 2 ms: far from the bound of bytes
+}
+
 TEST_CASE("bytes that another server could read as two requests are refused, and the connection with them") {
     const Server server = started(usual_routes());
     const std::string hidden = "GET /hello HTTP/1.1\r\nHost: x\r\n\r\n";

@@ -40,6 +40,14 @@ Status check_version(const Json& document) {
     return {};
 }
 
+/// Why a text that is no JSON is no design: another kind of file is named, since where it is no JSON would help nobody.
+Error no_design(std::string_view text, Error trouble) {
+    if (text.starts_with("weave-yarns ")) return bad_input("holds relaxed yarns, no design");
+    const std::size_t first = text.find_first_not_of(" \t\r\n");
+    if (first == std::string_view::npos || text[first] == '{' || text[first] == '[') return trouble;
+    return bad_input("is no design, which would begin with {; cards, WIF and files of loom controllers have to be imported first");
+}
+
 }  // namespace
 
 std::string write_document(const Design& design) {
@@ -50,7 +58,9 @@ std::string write_document(const Design& design) {
 }
 
 Result<Design> read_document(std::string_view text) {
-    WEAVE_TRY(const Json document, parse_json(text));
+    auto parsed = parse_json(text);
+    if (!parsed) return no_design(text, std::move(parsed).error());
+    const Json document = *std::move(parsed);
     WEAVE_CHECK_OK(check_version(document));
     JsonReader reader(document, "");
     static_cast<void>(reader.raw("format"));
@@ -77,22 +87,10 @@ Result<Design> read_document(std::string_view text) {
     return design;
 }
 
-namespace {
-
-/// Why a file cannot be read as a design: another kind of file is named, since where it is no JSON would help nobody.
-Error no_design(const std::string& text, Error trouble) {
-    if (text.starts_with("weave-yarns ")) return bad_input("holds relaxed yarns, no design");
-    const std::size_t first = text.find_first_not_of(" \t\r\n");
-    if (first == std::string::npos || text[first] == '{') return trouble;
-    return bad_input("is no design, which would begin with {; cards, WIF and files of loom controllers have to be imported first");
-}
-
-}  // namespace
-
 Result<Design> load_design(const std::filesystem::path& path) {
     WEAVE_TRY(const std::string text, read_file(path));
     Result<Design> design = read_document(text);
-    if (!design) return no_design(text, std::move(design).error()).in(path.string());
+    if (!design) return std::move(design).error().in(path.string());
     return design;
 }
 

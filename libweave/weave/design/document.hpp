@@ -16,7 +16,7 @@ inline constexpr int document_version = 1;
 std::string write_document(const Design& design);
 
 /// Reads a `.weave` document and checks it (see check()). Errors name the place, such as
-/// `blocks.toe.stacks[3][4]`.
+/// `blocks.toe.stacks[3][4]`; a file of another kind is told for what it is.
 Result<Design> read_document(std::string_view text);
 
 /// The same from and to a file; errors name it. Saving replaces the file whole or leaves it as it was.

@@ -297,7 +297,7 @@ void check_claims(JsonReader& reader, const LoomProfile& profile) {
 }
 
 void read_heading(JsonReader& reader, LoomProfile& profile) {
-    if (reader.text("format", {}, 64) != "weave-loom") reader.fail("must be weave-loom: this is no profile of a loom", "format");
+    static_cast<void>(reader.raw("format"));
     const std::int64_t version = reader.integer("version", 1, most_limit);
     if (version > 1) {
         reader.fail("is " + std::to_string(version) + ", newer than this program, which reads version 1",
@@ -312,6 +312,20 @@ void read_heading(JsonReader& reader, LoomProfile& profile) {
     profile.density_ends_per_cm = reader.optional_number("density_ends_per_cm", {0.01, 1000});
 }
 
+/// The document of a profile, told from other kinds of files by what they say they are.
+Result<Json> profile_document(std::string_view text) {
+    auto json = parse_json(text);
+    const std::size_t first = text.find_first_not_of(" \t\r\n");
+    if (!json && first != std::string_view::npos && text[first] != '{')
+        return bad_input("is no profile of a loom, which would begin with {");
+    if (!json) return json;
+    const Json format = json->is_object() ? json->value("format", Json()) : Json();
+    if (format == "weave") return bad_input("is a design, no profile of a loom");
+    if (format != "weave-loom")
+        return bad_input("must be weave-loom, as a profile of a loom has it", "format");
+    return json;
+}
+
 }  // namespace
 
 const std::string& name_of(OutputFormat output) {
@@ -322,7 +336,7 @@ Result<LoomProfile> read_profile(std::string_view text) {
     if (text.size() > most_profile_bytes) {
         return bad_input("a loom profile may have at most " + std::to_string(most_profile_bytes) + " bytes");
     }
-    WEAVE_TRY(const Json json, parse_json(text));
+    WEAVE_TRY(const Json json, profile_document(text));
     JsonReader reader(json, "");
     LoomProfile profile;
     read_heading(reader, profile);

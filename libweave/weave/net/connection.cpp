@@ -13,6 +13,7 @@
 #include <boost/beast/websocket/rfc6455.hpp>
 #include <ctime>
 #include <exception>
+#include <vector>
 
 namespace weave::net {
 
@@ -22,8 +23,7 @@ namespace http = beast::http;
 using Clock = std::chrono::steady_clock;
 
 constexpr std::size_t small_body = 16384;  // copied behind its head, to leave in one piece
-constexpr Milliseconds linger_time{2'000};
-constexpr std::size_t linger_bytes = 256 << 10;
+constexpr std::size_t linger_piece = 64 << 10;  // on the heap, while it lasts
 constexpr int retry_seconds = 2;
 constexpr std::string_view local_host = "localhost";  // a Unix socket has no name of its own
 
@@ -434,14 +434,21 @@ asio::awaitable<bool> Connection::write(Response response, const Incoming& incom
 }
 
 /// Says that no more is coming, and reads on for a while: closed at once, a client that is still sending
-/// would lose the answer.
+/// would lose the answer. What comes is dropped unread, within bounds of bytes and of time.
 asio::awaitable<void> Connection::linger() {
-    m_deadline.set(shared_from_this(), linger_time);
+    const ServerLimits& limits = m_service->options.limits;
+    const auto end = Clock::now() + limits.linger_time;
+    const auto wait_on = [&] {
+        const auto left = std::chrono::duration_cast<Milliseconds>(end - Clock::now());
+        m_deadline.set(shared_from_this(), std::min(limits.linger_pause, left));
+    };
+    wait_on();
     if (m_stream.tls() != nullptr) co_await m_stream.tls()->async_shutdown(as_result);
     error_code ignored;
     m_stream.socket().shutdown(Tcp::socket::shutdown_send, ignored);
-    std::array<char, 4096> nowhere{};
-    for (std::size_t read = 0; read < linger_bytes;) {
+    std::vector<char> nowhere(linger_piece);
+    for (std::size_t read = 0; read < limits.linger_bytes && !m_service->stopping;) {
+        wait_on();
         const auto [error, size] =
             co_await m_stream.socket().async_read_some(asio::buffer(nowhere), as_result);
         if (error) break;

@@ -29,6 +29,11 @@ struct ServerLimits {
     std::chrono::milliseconds transfer_time{30'000};  ///< for a body, in or out, beside what its size needs …
     std::size_t slowest_bytes_per_second = 16384;     ///< … at this pace
 
+    std::size_t linger_bytes = 64u << 20;  ///< of a request that was refused unread: read and dropped, so that the
+                                           ///< client gets the answer …
+    std::chrono::milliseconds linger_time{10'000};  ///< … for so long in all …
+    std::chrono::milliseconds linger_pause{2'000};  ///< … and so long without a byte; then it is closed
+
     std::size_t websockets = 512;
     std::size_t control_messages = 1024;   ///< waiting on one WebSocket
     std::size_t control_bytes = 4u << 20;  ///< waiting on one WebSocket

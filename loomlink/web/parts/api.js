@@ -3,10 +3,19 @@ import { sentence } from './dom.js';
 
 class ApiError extends Error {
     constructor(status, error) {
-        super(sentence(error?.message ?? `The server answered ${status}`));
+        const text = told(error) ?? `the server answered ${status}`;
+        super(sentence(text));
+        this.told = text;
         this.status = status;
-        this.where = error?.where ?? '';
+        this.is_about_input = ['bad input', 'invalid'].includes(error?.kind);
     }
+}
+
+/** What the server says, behind the place that it is about. The place of a refusal is a word for programs. */
+function told(error) {
+    if (!error?.message || !error.where || ['refused', 'system'].includes(error.kind)) return error?.message;
+    const is_field = /^[a-z_]+$/.test(error.where);
+    return `${is_field ? error.where.replaceAll('_', ' ') : error.where}: ${error.message}`;
 }
 
 let csrf = '';

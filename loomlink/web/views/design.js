@@ -1,6 +1,7 @@
 import { h, link, say } from '../parts/dom.js';
 import { get, post, at } from '../parts/api.js';
 import { ask } from '../parts/dialog.js';
+import { kinds, send_file } from '../parts/files.js';
 import { history } from '../parts/graph.js';
 
 export async function show({ design, me, go, refresh }) {
@@ -22,10 +23,10 @@ export async function show({ design, me, go, refresh }) {
                 { name: 'file', label: 'Design file (.weave)', kind: 'file' },
                 { name: 'branch', label: 'Branch', value: content.branches[0]?.name ?? 'main' },
                 { name: 'message', label: 'What changed', kind: 'area' }],
-            act: async values => post(at('designs', design, 'revisions'), {
-                document: await values.file.text(), branch: values.branch, message: values.message,
+            act: values => send_file(values.file, kinds.design, document => post(at('designs', design, 'revisions'), {
+                document, branch: values.branch, message: values.message,
                 expected: content.branches.find(branch => branch.name === values.branch)?.head ?? null,
-            }),
+            })),
         });
         if (made) { say(`Saved as revision ${made.number}`); refresh(); }
     };

@@ -4,6 +4,7 @@ import { get, at } from '../parts/api.js';
 /** In what two revisions differ, in a weaver's words. */
 export async function show({ design, search }) {
     const [from, to] = [search.get('from'), search.get('to')];
+    if (![from, to].every(number => /^[1-9]\d{0,8}$/.test(number ?? ''))) throw new Error('This address does not name two revisions: choose them in the history of the design');
     const query = `?from=${encodeURIComponent(from)}&to=${encodeURIComponent(to)}`;
     const path = at('designs', design, 'diff');
     const diff = await get(path + query);

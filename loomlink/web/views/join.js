@@ -3,7 +3,7 @@ import { post } from '../parts/api.js';
 
 // The code stands behind # in the invitation's link, so it is never sent in a request line.
 export async function show({ signed_in, go }) {
-    const code = h('input', { required: true, value: decodeURIComponent(location.hash.slice(1)), autocomplete: 'off' });
+    const code = h('input', { required: true, value: location.hash.slice(1), autocomplete: 'off' });
     const name = h('input', { required: true, autocomplete: 'username', autocapitalize: 'none', maxlength: 64, pattern: '[a-z0-9][a-z0-9._\\-]*' });
     const full_name = h('input', { required: true, autocomplete: 'name', maxlength: 128 });
     const password = h('input', { type: 'password', required: true, minlength: 12, autocomplete: 'new-password' });

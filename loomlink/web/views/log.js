@@ -17,6 +17,11 @@ const words = {
     'revision.commented': 'Comment', 'revision.exported': 'Evidence downloaded', 'revision.pulled': 'Design downloaded', 'revision.saved': 'Revision saved',
     'revision.submitted': 'Submitted', 'revision.validated': 'Validated', 'revision.viewed': 'Revision looked at', 'revision.waived': 'Finding waived',
     'signer.enrolled': 'Machine enrolled', 'signer.invited': 'Machine invited', 'signer.revoked': 'Machine revoked', 'trust.published': 'List of keys signed',
+    // Only looks, which leave a record where they are refused and at no other time.
+    'access.key': 'Key of access tokens looked at', 'audit.consistency': 'Proof that the log only grew', 'audit.head': 'Head of the log looked at',
+    'audit.inclusion': 'Proof that the log holds a record', 'designs': 'List of designs looked at', 'looms': 'List of looms looked at', 'me': 'Own account looked at',
+    'me.waiting': 'What waits looked at', 'openapi': 'Description of the API looked at', 'people': 'List of people looked at', 'policy': 'Policy looked at', 'signers': 'List of machines looked at',
+    'trust': 'List of keys looked at', 'trust.pending': 'What a next list of keys would change looked at',
 };
 
 /** What a record is about: a design or loom, and which revision, release or file of it. */
@@ -25,7 +30,7 @@ function about({ subject, data }) {
         data?.pick ? `pick ${grouped(data.pick)}` : null, data?.file].filter(Boolean).join(', ');
 }
 
-// What is not logged where it is done is told by the name of its call, and so is what older versions sent away before it came to a step.
+// What older versions sent away is told by the name of its call, where that is no longer one.
 const what = event => (event.kind === 'refused' ? `Refused: ${words[event.data.what] ?? 'call ' + event.data.what}` : words[event.kind] ?? event.kind);
 
 export async function show({ search, go }) {
@@ -52,7 +57,8 @@ export async function show({ search, go }) {
             h('button', { type: 'button', class: 'main', onclick: check }, 'Verify what is shown'),
             h('a', { class: 'button', href: '/api/v1/audit/bundle', download: 'audit-bundle.json' }, 'Download the bundle'))),
         h('section', { class: 'card' }, facts([['Records', grouped(head.size)], ['Root', hash(head.root)], ['Signed', when(head.at, true)]]), verdict,
-            h('p', { class: 'hint' }, 'To verify offline: ', h('code', {}, 'loomlink audit verify audit-bundle.json --key KEY'))),
+            h('p', { class: 'hint' }, 'To verify offline what you download here: ', h('code', {}, 'loomlink audit verify audit-bundle.json --trust trust.json'),
+                '. The list of keys, trust.json, is best taken once and kept: ', h('code', {}, 'loomlink trust show -o trust.json'), '.')),
         h('form', { class: 'row', onsubmit: event => { event.preventDefault(); go(`/log?from=0&design=${encodeURIComponent(filter.value)}`); } }, field('Only this design', filter), h('button', {}, 'Show')),
         events.length === 0 ? h('p', { class: 'empty' }, design ? `There is no record about a design '${design}'.` : 'No record yet.')
             : table('Records', ['No.', 'When', 'Who', 'What', 'About', 'Why', 'Signed'], events.toReversed().map(event => [grouped(event.seq), when(event.at, true), event.actor, h('span', { title: event.kind }, what(event)), about(event), event.reason ?? '', event.signed ? h('span', { class: 'good' }, '✓ ' + event.signed) : '']), { class: 'records' }),

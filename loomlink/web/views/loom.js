@@ -1,6 +1,7 @@
 import { h, link, state, when, facts, hash, table, counted, grouped, say } from '../parts/dom.js';
 import { get, put, at } from '../parts/api.js';
 import { ask } from '../parts/dialog.js';
+import { kinds, send_file } from '../parts/files.js';
 import { watch_loom } from '../parts/watch.js';
 
 export async function show({ loom, me, refresh }) {
@@ -34,6 +35,6 @@ const tile = (loom, release, loaded, may_look) => h(may_look ? 'a' : 'div', { cl
 function admin(loom, content, refresh) {
     const done = text => answer => { if (answer) { say(text); refresh(); } };
     return h('div', { class: 'buttons' },
-        h('button', { type: 'button', onclick: () => ask({ title: 'New version of the profile', text: 'Releases made for the version until now can no longer be pulled: release them again.', button: 'Put it in force', fields: [{ name: 'file', label: 'Profile (JSON)', kind: 'file' }], act: async values => put(at('looms', loom, 'profile'), { profile: await values.file.text() }) }).then(done('The profile is in force')) }, 'New profile …'),
+        h('button', { type: 'button', onclick: () => ask({ title: 'New version of the profile', text: 'Releases made for the version until now can no longer be pulled: release them again.', button: 'Put it in force', fields: [{ name: 'file', label: 'Profile (JSON)', kind: 'file' }], act: values => send_file(values.file, kinds.profile, profile => put(at('looms', loom, 'profile'), { profile })) }).then(done('The profile is in force')) }, 'New profile …'),
         h('button', { type: 'button', onclick: () => ask({ title: 'Operators', button: 'Set', fields: [{ name: 'operators', label: 'Names to sign in with, with commas between', required: false, value: content.operators.join(', ') }], act: values => put(at('looms', loom, 'operators'), { operators: values.operators.split(',').map(name => name.trim()).filter(Boolean) }) }).then(done('The operators are set')) }, 'Operators …'));
 }

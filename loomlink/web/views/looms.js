@@ -1,13 +1,14 @@
 import { h, link, counted, say } from '../parts/dom.js';
 import { get, post, at } from '../parts/api.js';
 import { ask } from '../parts/dialog.js';
+import { kinds, send_file } from '../parts/files.js';
 
 export async function show({ me, refresh }) {
     const { looms } = await get('/looms');
     const is_admin = me.roles.includes('admin');
     const add = () => ask({
         title: 'New loom', button: 'Add it', fields: [{ name: 'name', label: 'Name' }, { name: 'file', label: 'Profile (JSON)', kind: 'file' }],
-        act: async values => post('/looms', { name: values.name, profile: await values.file.text() }),
+        act: values => send_file(values.file, kinds.profile, profile => post('/looms', { name: values.name, profile })),
     }).then(done => { if (done) { say('The loom is added'); refresh(); } });
     return {
         title: 'Looms',

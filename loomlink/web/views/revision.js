@@ -1,6 +1,7 @@
 import { h, link, state, when, facts, hash, table, counted, grouped, say, field, sentence } from '../parts/dom.js';
 import { get, post, at } from '../parts/api.js';
 import { ask, sign } from '../parts/dialog.js';
+import { kinds, send_file } from '../parts/files.js';
 import { card_view } from '../parts/card_view.js';
 
 const views = [['card', 'Card image'], ['face', 'Face'], ['back', 'Back'], ['floats', 'Floats'], ['layers', 'Layers']];
@@ -21,14 +22,15 @@ export async function show({ design, revision, me, refresh }) {
             content.message ? h('p', {}, content.message) : null,
             missing(content),
             h('div', { class: 'two wide_left' }, h('div', {}, pictures(path, card), comments(path, content, place, refresh)), h('div', {}, what_it_is(design, path, content, me), decisions(content))),
-            checks(path, content, looms, refresh), evidence(content)],
+            checks(path, content, looms, refresh), evidence(path, content, refresh)],
     };
 }
 
 /** What still stands between this revision and the loom. */
 function missing(content) {
     if (!content.missing.length) return null;
-    return h('section', { class: 'notice' }, h('h2', {}, 'Still missing'), h('ul', {}, content.missing.map(text => h('li', {}, sentence(text)))));
+    return h('section', { class: 'notice' }, h('h2', {}, 'Still missing'), h('ul', {}, content.missing.map(text => h('li', {}, sentence(text)))),
+        content.needs_simulation ? h('p', {}, 'Simulations count that a machine known here has signed: simulate in the studio on its server, or by ', h('code', {}, 'weave simulate FILE --on SERVER --evidence FILE'), ', and file the evidence below.') : null);
 }
 
 function what_it_is(design, path, content, me) {
@@ -91,10 +93,23 @@ function report_of(path, content, loom, report, refresh) {
             table('Rules not evaluated', ['Rule', 'Why'], report.not_evaluated.map(rule => [rule.rule, sentence(rule.reason)])))];
 }
 
-function evidence(content) {
+function evidence(path, content, refresh) {
+    const file = () => ask({
+        title: 'File evidence', text: 'What a machine found and signed, for this very design and scene.', button: 'File it',
+        fields: [{ name: 'file', label: 'Evidence file', kind: 'file', hint: 'As weave simulate --evidence or the studio wrote it' }],
+        act: values => send_file(values.file, kinds.evidence, text => post(`${path}/evidence`, signed_evidence(text))),
+    }).then(answer => { if (answer) { say('Filed'); refresh(); } });
     return h('section', { class: 'card' }, h('h2', {}, 'Evidence'), content.evidence.length === 0 ? h('p', { class: 'empty' }, 'No evidence yet.')
         : table('Evidence', ['Kind', 'Of', 'Result', 'Signed by', 'When', 'Counts'], content.evidence.map(item => [item.kind, item.covers, item.result, item.signer, when(item.at),
-            item.stale ? h('span', { class: 'bad' }, 'stale: ' + item.stale) : h('span', { class: 'good' }, 'counts')])));
+            item.stale ? h('span', { class: 'bad' }, 'stale: ' + item.stale) : h('span', { class: 'good' }, 'counts')])),
+    h('p', { class: 'buttons' }, h('button', { type: 'button', onclick: file }, 'File evidence …')));
+}
+
+/** What of an evidence file the server takes; it judges the signature. */
+function signed_evidence(text) {
+    const { format, statement, signature, report } = (() => { try { return JSON.parse(text) ?? {}; } catch { return {}; } })();
+    if (format !== 'weave-signed-evidence') throw new Error('is no evidence that a machine signed: weave simulate --evidence writes it, or the studio');
+    return { statement, signature, report };
 }
 
 function decisions(content) {

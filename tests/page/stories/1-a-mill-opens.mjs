@@ -39,10 +39,32 @@ async function set_policy(admin) {
     await admin.button('Cancel', admin.dialog()).click();
 }
 
+/** A file that cannot be a profile is told by its name: a picture and what is too large before anything is sent, a design by the server. */
+async function refused_files(admin) {
+    const says = async (file, words) => {
+        await admin.dialog().getByLabel('Profile (JSON)').setInputFiles(file);
+        await admin.answer('Add it', { Name: loom });
+        await admin.dialog().getByRole('alert').filter({ hasText: words }).waitFor();
+    };
+    const bytes = (name, buffer) => ({ name, mimeType: 'application/octet-stream', buffer });
+    await says(bytes('four.png', Buffer.from('\x89PNG\r\n', 'latin1')), 'four.png: is no profile of a loom, which is a text');
+    await says(bytes('large.json', Buffer.alloc(2 ** 20 + 1, ' ')), 'large.json: has 1.0 MB, and a profile of a loom has 1.0 MB at most');
+    await admin.refused(() => says(admin.mill.designs.plain, 'plain.weave: profile: is a design, no profile of a loom'));
+}
+
+/** A browser that sends far too much hears so from the server, and is not cut off. */
+async function send_too_much(admin) {
+    await admin.refused(async () => {
+        const status = await admin.page.evaluate(() => fetch('/api/v1/looms', { method: 'POST', headers: { 'Content-Type': 'application/json' }, body: ' '.repeat(2e7) }).then(answer => answer.status));
+        assert.equal(status, 413);
+    });
+}
+
 async function add_loom(admin) {
     await admin.to('Looms');
     await admin.sees('There is no loom yet');
     await admin.button('New loom …').click();
+    await refused_files(admin);
     await admin.dialog().getByLabel('Profile (JSON)').setInputFiles(admin.mill.profile);
     await admin.answered('Add it', { Name: loom });
     await admin.page.getByRole('link', { name: loom }).click();
@@ -88,6 +110,8 @@ export async function run({ browser, mill, people }) {
         assert.ok(!people[who.name].page.url().includes('#'), 'the code stays in the address');
     }
     const late = await Person.enter(browser, mill, { name: 'late', full_name: 'Late Comer' });
+    await late.page.goto(mill.origin + '/join#%ff'); // no link of ours, and no reason to break down
+    await late.sees_heading('Join with an invitation');
     await late.refused(async () => { // a link works once
         await late.ask_to_join(mill.invitation);
         await late.sees('this code is not, or no longer, good');
@@ -98,5 +122,6 @@ export async function run({ browser, mill, people }) {
     await admin.sees('Policy of the site');
     assert.equal(await admin.page.getByText('until more join').count(), 0);
     await add_loom(admin);
+    await send_too_much(admin);
     await sign_keys(admin);
 }

@@ -25,7 +25,7 @@ async function make_design(designer, { designs }) {
         await designer.button('Save a revision …').click();
         await designer.dialog().getByLabel('Design file (.weave)').setInputFiles({ name: 'x.weave', mimeType: 'text/plain', buffer: Buffer.from('{"no": "design"}') });
         await designer.answer('Save', { 'What changed': 'Nothing good' });
-        await designer.dialog().getByRole('alert').filter({ hasText: /./ }).waitFor();
+        await designer.dialog().getByRole('alert').filter({ hasText: /^x.weave: is not a .weave document/ }).waitFor();
         await picture(designer.page, 'a-file-is-refused');
         await designer.button('Cancel', designer.dialog()).click();
     });
@@ -109,7 +109,13 @@ async function approve_and_release(approver) {
     await approver.dialog().getByLabel('Loom').selectOption(loom);
     await approver.answer('Next');
     await approver.sees(`Release to ${loom}`);
-    await approver.answered('Sign and release', { Reason: 'For the autumn season' });
+    await approver.refused(async () => {
+        await approver.dialog().getByLabel(/^Loom feeder/).first().fill('99');
+        await approver.answer('Sign and release', { Reason: 'For the autumn season' });
+        await approver.dialog().getByRole('alert').filter({ hasText: 'Feeders: this loom has no feeder 99, it has 1 to' }).waitFor();
+    });
+    await approver.dialog().getByLabel(/^Loom feeder/).first().fill('1');
+    await approver.answered('Sign and release');
     await approver.page.getByRole('heading', { level: 1 }).getByText('Released').waitFor();
     await picture(approver.page, 'released', { whole: true });
 }

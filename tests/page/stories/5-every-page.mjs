@@ -12,6 +12,7 @@ const pages = [
     ['looms', '/looms', 'Looms'], ['a loom', hall, loom], ['a release', hall + '/1', /toddler, release 1/], ['the log', '/log', 'Log'],
     ['people', '/people', 'People'], ['the account', '/account', /Vera/], ['no such page', '/nowhere', /no such page/],
     ['no such design', '/designs/nothing', /did not work/],
+    ['no number', '/designs/toddler/abc', /no such page/], ['no two revisions', '/designs/toddler/diff', /did not work/],
 ];
 
 /** Somebody who may see everything. */
