@@ -93,7 +93,7 @@ void add_save(CLI::App& app, CommandOutcome& outcome) {
     const auto words = std::make_shared<SaveWords>();
     add_text(command.command, "FILE", words->file, "the .weave file")->required();
     add_name(command.command, "DESIGN", words->design, "the design")->required();
-    add_text(command.command, "-m,--message", words->message, "what changed")->required();
+    add_said(command.command, "-m,--message", words->message, "what changed");
     add_text(command.command, "--branch", words->branch, "the branch that it goes on, main if not given; a new one starts from --expected, or from main");
     add_number(command.command, "--expected", words->expected,
                "the revision that it was made from: refused where the branch has moved on since. If not "

@@ -16,6 +16,11 @@ CLI::Validator name_check(bool spaces) {
     return {check, ""};
 }
 
+std::string said_check(std::string& text) {
+    const Status said = check_text(text, "");
+    return said ? std::string() : said.error().message;
+}
+
 }  // namespace
 
 CLI::Option* add_name(CLI::App* command, const std::string& name, std::string& value,
@@ -30,6 +35,11 @@ CLI::Option* add_loom_name(CLI::App* command, const std::string& name, std::stri
 
 CLI::Validator loom_name() {
     return name_check(true);
+}
+
+CLI::Option* add_said(CLI::App* command, const std::string& name, std::string& value,
+                      const std::string& help) {
+    return command->add_option(name, value, help)->check(CLI::Validator(said_check, ""))->required();
 }
 
 }  // namespace weave::loomlink

@@ -56,7 +56,7 @@ void add_release(CLI::App& app, CommandOutcome& outcome) {
                 "the loom's feeder of each of the design's; 1,2,3 … if not given");
     add_number(command.command, "--supersedes", words->supersedes,
                "the release of this design that the loom has now, which this one takes the place of");
-    add_text(command.command, "-r,--reason", words->reason, "why; it stands in the log")->required();
+    add_said(command.command, "-r,--reason", words->reason, "why; it stands in the log");
     add_password_option(command);
     on_client_run(command, outcome, [wish = command.wish, place, words, &outcome](wire::MillClient& client) {
         return release(client, *wish, *place, *words, outcome);
@@ -74,7 +74,7 @@ void add_step(CLI::App& app, CommandOutcome& outcome, const std::string& step, c
     const auto place = std::make_shared<ReleasePlace>();
     add_loom_name(command.command, "LOOM", place->loom, "the loom")->required();
     add_number(command.command, "RELEASE", place->number, "the number of its release")->required();
-    add_text(command.command, "-r,--reason", place->reason, "why; it stands in the log")->required();
+    add_said(command.command, "-r,--reason", place->reason, "why; it stands in the log");
     add_password_option(command);
     on_client_run(
         command, outcome, [wish = command.wish, place, step, &outcome](wire::MillClient& client) -> Status {

@@ -30,7 +30,7 @@ SignedStep add_signed_step(CLI::App& app, CommandOutcome& outcome, const std::st
     SignedStep step{add_client_command(app, outcome, name, help, example), nullptr,
                     std::make_shared<StepWords>()};
     step.place = add_revision_place(step.client.command);
-    add_text(step.client.command, "-r,--reason", step.words->reason, "why; it stands in the log")->required();
+    add_said(step.client.command, "-r,--reason", step.words->reason, "why; it stands in the log");
     add_password_option(step.client);
     return step;
 }
@@ -127,7 +127,7 @@ void add_comment(CLI::App& app, CommandOutcome& outcome) {
                            "loomlink comment shoe 3 'Is this float wanted?' --pick 120 --end 7");
     const auto place = add_revision_place(command.command);
     const auto words = std::make_shared<StepWords>();
-    add_text(command.command, "TEXT", words->reason, "the comment")->required();
+    add_said(command.command, "TEXT", words->reason, "the comment");
     add_number(command.command, "--pick", words->pick, "the pick that it is about");
     add_number(command.command, "--end", words->end, "the end that it is about");
     on_client_run(command, outcome, [place, words, &outcome](wire::MillClient& client) -> Status {
