@@ -2,11 +2,13 @@
 # signs what it finds. Sourced by tools/demo, with $simd and $loomlink the programs, $made the folder that is being made and $scratch
 # one that nobody else sees.
 
-# Makes the machine known to the mill: it is enrolled to sign, and knows the key of the mill's tokens. Dora gets a token.
+# Makes the machine known to the mill: it is enrolled to sign, a new trust document names it, and it knows the key of the mill's tokens.
+# Dora gets a token.
 set_up_box() {
     mkdir "$scratch/box"
     as mary signer invite box
     as mary signer enrol "$(answered code)" --key-file "$scratch/box/box.key"
+    publish_trust
     as mary key access
     printf '{"site":"mill","access_keys":["%s"],"evidence_key":"box.key","hosts":["127.0.0.1"]}\n' "$(answered public)" > "$scratch/box/config.json"
     as dora token -o "$scratch/home/dora/token"

@@ -60,6 +60,11 @@ set_up_mill() {
     as mary loom add 'EP 1' db/looms/ep-2688.json
     as mary loom operators TC2 otto
     as mary loom operators 'EP 1' otto
+    publish_trust
+}
+
+# Whose keys count from now on, in $made/trust.json, and the fingerprint by which a loom knows it.
+publish_trust() {
     signed mary trust publish
     as mary trust show -o "$made/trust.json"
     as mary trust show

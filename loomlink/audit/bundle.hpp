@@ -36,6 +36,8 @@ struct BundleTrust {
     std::optional<SignedTreeHead>
         retained;               ///< a head kept from earlier; without one a rollback cannot be seen
     SignatureCheck statements;  ///< the keys of people; empty: their signatures are not looked at
+    /// Whether the statement of an `evidence.added` is signed by the machine that it names; empty: not looked at.
+    std::function<bool(const Statement&)> evidence{};
 };
 
 struct BundleReport {

@@ -17,8 +17,8 @@ std::string text_of(const Json& data, const char* member) {
 
 }  // namespace
 
-std::map<std::string, ToldPublicKey> told_keys(std::string_view bundle) {
-    std::map<std::string, ToldPublicKey> keys;
+ToldPublicKeys told_keys(std::string_view bundle) {
+    ToldPublicKeys keys;
     for (std::string_view line : bundle::split(bundle).records) {
         if (line.ends_with(',')) line.remove_suffix(1);
         const auto record = parse_record(line);

@@ -14,10 +14,12 @@ struct ToldPublicKey {
     std::string holder;  ///< a person, or a machine
 };
 
+using ToldPublicKeys = std::map<std::string, ToldPublicKey>;
+
 /// The keys of people and machines that the records of a bundle hand out, by their ids: in `person.joined` and
 /// `signer.enrolled`. Revoked ones too, since they counted once. A record that cannot be read, or whose id is
 /// not that of its key, hands out none. Whoever trusts the log's key can judge by them all signatures of the
 /// log, those of designers and engineers as well, whom no trust document lists. Reads any bytes.
-std::map<std::string, ToldPublicKey> told_keys(std::string_view bundle);
+ToldPublicKeys told_keys(std::string_view bundle);
 
 }  // namespace weave::loomlink

@@ -108,6 +108,8 @@ class Verification {
         if (m_trust.statements && record->signature &&
             !m_trust.statements(statement_bytes(record->statement), *record->signature))
             find_in(seq, "its signature is not good");
+        if (m_trust.evidence && record->statement.kind == "evidence.added" && !m_trust.evidence(record->statement))
+            find_in(seq, "its evidence is not signed by the machine that it names");
     }
 
     void hold_to_head() {

@@ -1,5 +1,7 @@
 #include <loomlink/commands/command.hpp>
 
+#include <loomlink/commands/names.hpp>
+
 #include <weave/core/text.hpp>
 
 #include <algorithm>
@@ -50,14 +52,11 @@ CLI::Option* add_text(CLI::App* command, const std::string& name, std::string& v
 
 CLI::Option* add_words(CLI::App* command, const std::string& name, std::string& value,
                        const std::string& help) {
-    const auto readable = [](std::string& words) {
-        return is_utf8(words) ? std::string() : "'" + on_one_line(words) + "' is not UTF-8";
-    };
-    return add_text(command, name, value, help)->check(CLI::Validator(readable, ""));
+    return add_text(command, name, value, help)->check(utf8_words());
 }
 
 void add_reason(CLI::App* command, std::string& reason) {
-    add_words(command, "-r,--reason", reason, "why; it stands in the log")->type_name("WHY")->required();
+    add_said(command, "-r,--reason", reason, "why; it stands in the log")->type_name("WHY");
 }
 
 CLI::Validator one_of(const std::vector<std::string>& choices) {

@@ -95,9 +95,7 @@ void add_save(CLI::App& app, CommandOutcome& outcome) {
     const auto words = std::make_shared<SaveWords>();
     add_text(command.command, "FILE", words->file, "the .weave file")->required();
     add_name(command.command, "DESIGN", words->design, "the design")->required();
-    add_words(command.command, "-m,--message", words->message, "what changed")
-        ->type_name("WHAT")
-        ->required();
+    add_said(command.command, "-m,--message", words->message, "what changed")->type_name("WHAT");
     add_text(command.command, "--branch", words->branch, "the branch that it goes on, main if not given; a new one starts from --expected, or from main")
         ->type_name("BRANCH");
     add_number(command.command, "--expected", words->expected,

@@ -73,7 +73,7 @@ void add_pull_command(CLI::App& app, CommandOutcome& outcome) {
                            "At the loom: fetch what is released for it, hold every byte to what people "
                            "signed, and remove what was recalled or superseded (exit 1: bytes that are not "
                            "what was signed, or such files that could not be removed; 4: recalled, expired or "
-                           "replayed)",
+                           "replayed, or another mill than this terminal trusts)",
                            "loomlink pull 'EP 1' --to /loom --watch --password-file operator.password");
     const auto words = std::make_shared<PullWords>();
     add_loom_name(command.command, "LOOM", words->loom, "the loom")->required();
@@ -83,9 +83,12 @@ void add_pull_command(CLI::App& app, CommandOutcome& outcome) {
     add_number(command.command, "--release", words->release, "this one; the newest in force if not given");
     command.command->add_flag("--all", words->all, "every release that is in force");
     add_text(command.command, "--trust", words->trust,
-             "the first time: the fingerprint of the site's trust document, as an administrator told it")
+             "the first time: the fingerprint of the site's trust document, as an administrator told it; later it "
+             "changes nothing, and is refused where this terminal trusts another mill")
         ->type_name("HEX");
-    add_text(command.command, "--state", words->state_file, "what this terminal trusts and has seen")
+    add_text(command.command, "--state", words->state_file,
+             "what this terminal trusts and has seen; if not given, loomlink/LOOM.json below $XDG_STATE_HOME or "
+             "~/.local/state")
         ->type_name("FILE");
     command.command->add_flag("--watch", words->watch,
                               "go on for ever: pull whenever something changes, and remove what is recalled. "

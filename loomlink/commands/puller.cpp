@@ -22,6 +22,23 @@ namespace fs = std::filesystem;
 
 namespace {
 
+/// Whether `papers`, oldest first, lead from one trust document to the one of this fingerprint, each signed as
+/// the next of the one before. Those that are not the next, such as older ones, are passed over.
+bool lead_to(const std::vector<std::string>& papers, TrustDocument from, const std::string& fingerprint) {
+    for (const std::string& paper : papers) {
+        if (from.fingerprint() == fingerprint) return true;
+        if (auto next = next_trust(from, paper)) from = *std::move(next);
+    }
+    return from.fingerprint() == fingerprint;
+}
+
+/// The one of `papers` with this fingerprint, sound in itself; nothing where there is none.
+std::optional<TrustDocument> paper_of(const std::vector<std::string>& papers, const std::string& fingerprint) {
+    for (const std::string& paper : papers)
+        if (auto trust = read_trust(paper); trust && trust->fingerprint() == fingerprint) return *std::move(trust);
+    return {};
+}
+
 /// One pull, from its first question to the last file.
 class Pull {
   public:
@@ -73,14 +90,32 @@ class Pull {
         return wire::mill_path({"looms", m_wish->loom}) + wire::mill_path(below);
     }
 
+    /// Refused where --trust names another mill than the one that the terminal trusts. A fingerprint of the same
+    /// chain of documents, be it older or newer, is in order. Whatever it names, it takes the place of nothing.
+    [[nodiscard]] Status check_wished_trust(const TrustDocument& known) const {
+        if (m_wish->trust.empty() || m_wish->trust == known.fingerprint()) return {};
+        WEAVE_TRY(const auto papers, trust_papers(*m_client));
+        const auto meant = paper_of(papers, m_wish->trust);
+        if (meant && (lead_to(papers, *meant, known.fingerprint()) || lead_to(papers, known, m_wish->trust))) return {};
+        return Error{ErrorCode::refused,
+                     "this terminal trusts document " + std::to_string(known.version) + " of the site '" + known.site +
+                         "' with the fingerprint " + known.fingerprint() + ", and no document of this server leads from there to the " +
+                         m_wish->trust + " of --trust, nor back: another mill, or somebody who stands in for one. "
+                         "Nothing was changed. Ask an administrator, by another way than this network; for another mill give a "
+                         "state of its own (--state) and a folder of its own (--to)",
+                     m_wish->state_file.string()};
+    }
+
     /// What the terminal remembers, or its first trust.
     Result<TerminalState> known_state() {
         std::error_code code;
         if (fs::exists(fs::symlink_status(m_wish->state_file, code))) {
             WEAVE_TRY(TerminalState state, load_state(m_wish->state_file));
-            if (state.loom == m_wish->loom) return state;
-            return Error{ErrorCode::refused, "is the state of the loom '" + state.loom + "'",
-                         m_wish->state_file.string()};
+            if (state.loom != m_wish->loom)
+                return Error{ErrorCode::refused, "is the state of the loom '" + state.loom + "'",
+                             m_wish->state_file.string()};
+            WEAVE_CHECK_OK(check_wished_trust(state.trust));
+            return state;
         }
         if (m_wish->trust.empty())
             return Error{ErrorCode::usage,
@@ -90,11 +125,8 @@ class Pull {
         WEAVE_TRY(const auto papers, trust_papers(*m_client));
         if (papers.empty())
             return Error{ErrorCode::refused, "nobody has signed a trust document yet", "trust"};
-        const auto meant = std::find_if(papers.begin(), papers.end(), [&](const std::string& paper) {
-            const auto trust = read_trust(paper);
-            return trust && trust->fingerprint() == m_wish->trust;
-        });
-        return first_state(m_wish->loom, meant == papers.end() ? papers.back() : *meant, m_wish->trust);
+        const auto meant = paper_of(papers, m_wish->trust);
+        return first_state(m_wish->loom, meant ? write_signed(meant->document) : papers.back(), m_wish->trust);
     }
 
     /// The index with what the terminal needs to judge it. A head that the server cannot go on from is left

@@ -56,7 +56,8 @@ Result<std::filesystem::path> usual_state_file(const std::string& loom);
 /// superseded goes, each held to what the terminal trusts and remembers (loomlink/terminal). A release appears
 /// whole or not at all. Pulls with one state wait for one another.
 /// Errors as of adopt_trust() and check_index(), usage where the terminal trusts nobody yet and no fingerprint is
-/// given; those of single releases, as of check_release() and place_release(), stand in the report.
+/// given, refused where the one that is given is of another mill than the state's; those of single releases, as of
+/// check_release() and place_release(), stand in the report.
 Result<PullReport> pull(wire::MillClient& client, const PullWish& wish);
 
 }  // namespace weave::loomlink

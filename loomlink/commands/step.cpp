@@ -129,7 +129,7 @@ void add_comment(CLI::App& app, CommandOutcome& outcome) {
                            "loomlink comment shoe 3 'Is this float wanted?' --pick 120 --end 7");
     const auto place = add_revision_place(command.command);
     const auto words = std::make_shared<StepWords>();
-    add_words(command.command, "TEXT", words->reason, "the comment")->required();
+    add_said(command.command, "TEXT", words->reason, "the comment");
     add_number(command.command, "--pick", words->pick, "the pick that it is about");
     add_number(command.command, "--end", words->end, "the end that it is about");
     on_client_run(command, outcome, [place, words, &outcome](wire::MillClient& client) -> Status {

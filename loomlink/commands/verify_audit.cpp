@@ -9,6 +9,7 @@
 #include <loomlink/commands/head_keeper.hpp>
 #include <loomlink/terminal/state.hpp>
 #include <memory>
+#include <set>
 
 namespace weave::loomlink {
 
@@ -23,27 +24,54 @@ bool is_good(const PublicKey& key, Purpose purpose, std::string_view bytes,
     return verify(key, purpose, bytes, {signature.key, signature.value});
 }
 
-/// How many signatures of statements were judged by keys of which kind.
+/// How many signatures of statements were judged by keys of which kind, and by whom evidence is.
 struct JudgedSignatures {
     std::size_t listed = 0;      ///< the trust document lists the key, for this very person
     std::size_t log_alone = 0;   ///< only the log tells whose key it is
+    std::set<std::string> unnamed;  ///< machines that signed evidence and that the trust document does not name
 };
 
 using Judged = std::shared_ptr<JudgedSignatures>;
 
-/// Statements by the keys that the log itself hands out, each for its holder alone; where there is a trust
-/// document, it must not name another holder.
-SignatureCheck by_told_keys(std::map<std::string, ToldPublicKey> keys, std::optional<TrustDocument> trust,
-                            const Judged& judged) {
-    return [keys = std::move(keys), trust = std::move(trust), judged](std::string_view bytes,
-                                                                      const RecordSignature& signature) {
-        const auto told = keys.find(signature.key);
+/// The keys that the log itself hands out, each for its holder alone, and the trust document where there is one.
+struct KnownKeys {
+    ToldPublicKeys told;
+    std::optional<TrustDocument> trust;
+
+    [[nodiscard]] const TrustedKey* listed(const std::string& id) const { return trust ? trust->find(id) : nullptr; }
+    /// This holder's key of this id; nullptr where the log, or the trust document, knows it for no key or another's.
+    [[nodiscard]] const ToldPublicKey* find(const std::string& id, const std::string& holder) const {
+        const auto found = told.find(id);
+        if (found == told.end() || found->second.holder != holder) return nullptr;
+        const TrustedKey* named = listed(id);
+        return named == nullptr || named->person == holder ? &found->second : nullptr;
+    }
+};
+
+SignatureCheck by_known_keys(const KnownKeys& keys, const Judged& judged) {
+    return [keys, judged](std::string_view bytes, const RecordSignature& signature) {
         const auto statement = parse_json(bytes);
-        if (told == keys.end() || !statement || statement->at("actor") != told->second.holder) return false;
-        const TrustedKey* listed = trust ? trust->find(signature.key) : nullptr;
-        if (listed != nullptr && listed->person != told->second.holder) return false;
-        ++(listed != nullptr ? judged->listed : judged->log_alone);
-        return is_good(told->second.key, Purpose::statement, bytes, signature);
+        const ToldPublicKey* key = statement ? keys.find(signature.key, statement->at("actor").get<std::string>()) : nullptr;
+        if (key == nullptr) return false;
+        ++(keys.listed(signature.key) != nullptr ? judged->listed : judged->log_alone);
+        return is_good(key->key, Purpose::statement, bytes, signature);
+    };
+}
+
+/// Evidence, whose signature stands in the record beside what it is over. A machine that the trust document does
+/// not name is no fault: it may have been enrolled since, or revoked; but it is told.
+std::function<bool(const Statement&)> by_known_machines(const KnownKeys& keys, const Judged& judged) {
+    return [keys, judged](const Statement& said) {
+        const auto text = [&](const char* member) {
+            return said.data.contains(member) && said.data.at(member).is_string() ? said.data.at(member).get<std::string>() : "";
+        };
+        const RecordSignature signature{text("key"), text("signature")};
+        const ToldPublicKey* key = keys.find(signature.key, said.actor);
+        if (key == nullptr || !said.data.contains("statement")) return false;
+        const TrustedKey* listed = keys.listed(signature.key);
+        if (listed != nullptr && !listed->has(Role::evidence)) return false;
+        if (keys.trust && listed == nullptr) judged->unnamed.insert(said.actor);
+        return is_good(key->key, Purpose::evidence, canonical_json(said.data.at("statement")), signature);
     };
 }
 
@@ -83,7 +111,9 @@ Result<BundleTrust> wished_trust(const VerifyWords& words, std::string_view bund
         }
     }
     if (document) trust.log = by_log_keys(*document);
-    trust.statements = by_told_keys(told_keys(bundle), document, judged);
+    const KnownKeys keys{told_keys(bundle), std::move(document)};
+    trust.statements = by_known_keys(keys, judged);
+    trust.evidence = by_known_machines(keys, judged);
     return trust;
 }
 
@@ -98,6 +128,7 @@ Json report_json(const BundleReport& report, const JudgedSignatures& judged, boo
             {"head", std::move(head)},           {"retained", retained},
             {"signatures_by_listed_keys", judged.listed},
             {"signatures_by_keys_of_the_log", judged.log_alone},
+            {"machines_not_in_trust", judged.unnamed},
             {"findings", findings_json(report.findings)},
             {"unlisted", report.unlisted}};
 }
@@ -113,6 +144,9 @@ std::string report_words(const BundleReport& report, const JudgedSignatures& jud
     if (judged.log_alone > 0)
         words += "; for " + std::to_string(judged.log_alone) + " of them the log alone tells whose key it is";
     words += ".\n";
+    for (const std::string& machine : judged.unnamed)
+        words += "Evidence is signed by " + on_one_line(machine) +
+                 ", whose key the trust document does not name: enrolled since, revoked, or never published.\n";
     return words;
 }
 
@@ -153,7 +187,8 @@ void add_audit_verify(CLI::App& audit, CommandOutcome& outcome) {
     add_text(command, "--key", words->key, "the public key of the log, as key list --json tells it")
         ->type_name("HEX");
     add_text(command, "--trust", words->trust_file,
-             "a trust document, as trust show -o wrote it: it must name the same holders of keys as the log")
+             "a trust document, as trust show -o wrote it: each key in it must have the holder that the log tells; machines "
+             "that signed evidence and are not in it are told")
         ->type_name("FILE");
     add_text(command, "--state", words->state_file,
              "what a loom's terminal trusts and has seen (pull --state)")

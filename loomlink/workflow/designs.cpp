@@ -10,7 +10,7 @@ namespace weave::loomlink {
 
 namespace {
 
-constexpr std::size_t most_message = 4000, most_parents = 16;
+constexpr std::size_t most_parents = 16;
 
 Result<Json> newest_json(const Reader& reader, const Design& design) {
     WEAVE_TRY(const auto revisions, reader.revisions(design.id));
@@ -115,7 +115,7 @@ Status check_head(const Reader& reader, Id design, const SaveWish& wish, const H
 
 Status check_wish(const SaveWish& wish) {
     WEAVE_CHECK_OK(check_name(wish.branch, "branch", false));
-    WEAVE_CHECK_OK(check_text(wish.message, "message", 0, most_message));
+    WEAVE_CHECK_OK(check_text(wish.message, "message"));
     if (wish.also.size() > most_parents) return bad_input("names more than 16 revisions", "also");
     return {};
 }

@@ -12,7 +12,7 @@ namespace weave::loomlink {
 
 namespace {
 
-constexpr std::size_t most_profile = std::size_t{1} << 20, most_fault = 4000;
+constexpr std::size_t most_profile = std::size_t{1} << 20;
 
 Result<LoomProfile> read_bounded(const std::string& text) {
     if (text.size() > most_profile) return bad_input("has more than 1 MiB", "profile");
@@ -299,7 +299,7 @@ Result<Json> LoomDesk::report_fault(const Caller& caller, const Ask& ask, const 
     if (end) deed.data["end"] = *end;
     const auto check = [&](const Reader& reader, const Caller& now) -> Status {
         WEAVE_CHECK_OK(find_own_loom(reader, now, loom));
-        WEAVE_CHECK_OK(check_text(text, "text", 1, most_fault));
+        WEAVE_CHECK_OK(check_text(text, "text"));
         WEAVE_TRY(const FoundRelease found, find_release(reader, now, loom, release));
         return check_place(reader, found.release, pick, end);
     };

@@ -16,7 +16,7 @@ constexpr std::size_t most_name = 64;
 /// From and to: what is drawn as nothing, or as a blank that is no space. Bytes of UTF-8 sort as the
 /// characters do.
 using Span = std::pair<std::string_view, std::string_view>;
-constexpr std::array<Span, 13> unseen{{{"\u00ad", "\u00ad"},
+constexpr std::array<Span, 15> unseen{{{"\u00ad", "\u00ad"},
                                        {"\u034f", "\u034f"},
                                        {"\u115f", "\u1160"},
                                        {"\u17b4", "\u17b5"},
@@ -28,7 +28,9 @@ constexpr std::array<Span, 13> unseen{{{"\u00ad", "\u00ad"},
                                        {"\ufe00", "\ufe0f"},
                                        {"\ufeff", "\ufeff"},
                                        {"\uffa0", "\uffa0"},
-                                       {"\ufff9", "\ufffb"}}};
+                                       {"\ufff9", "\ufffb"},
+                                       {"\U0001bca0", "\U0001bca3"},
+                                       {"\U0001d173", "\U0001d17a"}}};
 constexpr Span unseen_plane{"\U000e0000", "\U000e0fff"};  // tags and variants
 
 bool lies_in(std::string_view character, const Span& span) {
@@ -41,21 +43,28 @@ bool is_unseen(std::string_view character) {
                        [&](const Span& span) { return lies_in(character, span); });
 }
 
-bool has_unseen(std::string_view text) {
+/// Blanks that look like the usual one and are another: no-break, of other widths, of other scripts.
+constexpr std::string_view odd_blanks[]{"\u00a0", "\u1680", "\u2000", "\u2001", "\u2002", "\u2003", "\u2004", "\u2005",
+                                        "\u2006", "\u2007", "\u2008", "\u2009", "\u200a", "\u202f", "\u205f", "\u3000"};
+
+bool is_odd_blank(std::string_view character) {
+    return std::find(std::begin(odd_blanks), std::end(odd_blanks), character) != std::end(odd_blanks);
+}
+
+bool is_seen(std::string_view character) {
+    const bool blank = character == " " || character == "\t" || character == "\n" || is_odd_blank(character);
+    return !blank && !is_unseen(character);
+}
+
+/// Whether a character of `text`, which is UTF-8, is such a one.
+template <class Is>
+bool has(std::string_view text, Is is) {
     while (!text.empty()) {
         const std::size_t length = utf8_length(text);
-        if (is_unseen(text.substr(0, length))) return true;
+        if (is(text.substr(0, length))) return true;
         text.remove_prefix(length);
     }
     return false;
-}
-
-/// A blank that looks like the usual one and is another: no-break, of other widths, of other scripts.
-bool has_odd_blank(std::string_view text) {
-    constexpr std::string_view blanks[]{"\u00a0", "\u1680", "\u2000", "\u2001", "\u2002", "\u2003", "\u2004", "\u2005",
-                                        "\u2006", "\u2007", "\u2008", "\u2009", "\u200a", "\u202f", "\u205f", "\u3000"};
-    return std::any_of(std::begin(blanks), std::end(blanks),
-                       [&](std::string_view blank) { return text.find(blank) != std::string_view::npos; });
 }
 
 bool is_plain(char c) {
@@ -79,12 +88,14 @@ bool is_device(std::string_view name) {
 
 }  // namespace
 
-Status check_text(const std::string& text, const std::string& member, std::size_t least, std::size_t most) {
-    WEAVE_CHECK_OK(check_size(text, member, least, most));
+Status check_text(const std::string& text, const std::string& member) {
+    WEAVE_CHECK_OK(check_size(text, member, 0, most_text));
     std::string line = text;
     std::erase_if(line, [](char c) { return c == '\n' || c == '\t'; });
-    if (on_one_line(line) == line) return {};
-    return bad_input("has control characters, or marks that turn the direction of writing", member);
+    if (on_one_line(line) != line)
+        return bad_input("has control characters, or marks that turn the direction of writing", member);
+    if (!has(text, is_seen)) return bad_input("says nothing: there is no character in it that one can see", member);
+    return {};
 }
 
 Status check_line(const std::string& text, const std::string& member, std::size_t least, std::size_t most) {
@@ -92,9 +103,9 @@ Status check_line(const std::string& text, const std::string& member, std::size_
     if (on_one_line(text) != text)
         return bad_input("has line breaks, control characters, or marks that turn the direction of writing",
                          member);
-    if (has_unseen(text)) return bad_input("has characters that nobody sees", member);
+    if (has(text, is_unseen)) return bad_input("has characters that nobody sees", member);
     if (text.find_first_not_of(' ') == std::string::npos && least > 0) return bad_input("is missing", member);
-    if (text.starts_with(' ') || text.ends_with(' ') || text.find("  ") != std::string::npos || has_odd_blank(text))
+    if (text.starts_with(' ') || text.ends_with(' ') || text.find("  ") != std::string::npos || has(text, is_odd_blank))
         return bad_input("has blanks in front, behind, twice, or that are none of a keyboard's", member);
     return {};
 }

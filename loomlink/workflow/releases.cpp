@@ -15,8 +15,6 @@ namespace weave::loomlink {
 
 namespace {
 
-constexpr std::size_t most_reason = 4000;
-
 /// Refused unless the caller's key counts for releases: a terminal would not take them.
 Status check_releaser(const Reader& reader, const Caller& caller) {
     WEAVE_TRY(const auto trust, newest_trust(reader));
@@ -201,7 +199,7 @@ Result<Json> ReleaseDesk::release(const Caller& caller, const Ask& ask, const Re
         WEAVE_TRY(const ReleaseParts parts, m_desk->store().read([&](const Reader& reader) {
             return parts_of(reader, caller, *m_shelf, wish);
         }));
-        WEAVE_CHECK_OK(check_text(wish.reason, "reason", 1, most_reason));
+        WEAVE_CHECK_OK(check_text(wish.reason, "reason"));
         WEAVE_TRY(const FeederMap feeders, feeder_map(parts.cloth->design, parts.profile.profile, wish.feeders));
         const std::string stem = release_stem(wish.design, wish.revision);
         const Validation validation = validate(*parts.cloth, wish.loom, parts.profile, feeders, stem);
@@ -260,7 +258,7 @@ Result<Json> ReleaseDesk::sign(const Caller& caller, const Ask& ask, const std::
     deed.is_signed = true;
     const auto check = [&](const Reader& reader, const Caller& now) -> Status {
         WEAVE_CHECK_OK(need_role(now, PersonRole::approver));
-        WEAVE_CHECK_OK(check_text(reason, "reason", 1, most_reason));
+        WEAVE_CHECK_OK(check_text(reason, "reason"));
         WEAVE_TRY(const FoundRelease found, find_release(reader, now, loom, number));
         return check_signable(reader, now, found.release);
     };
@@ -302,7 +300,7 @@ Result<Json> ReleaseDesk::withdraw(const Caller& caller, const Ask& ask, const s
         caller, ask, deed,
         [&](const Reader& reader, const Caller& now) -> Status {
             if (!now.is(PersonRole::approver)) WEAVE_CHECK_OK(need_role(now, PersonRole::engineer));
-            WEAVE_CHECK_OK(check_text(reason, "reason", 1, most_reason));
+            WEAVE_CHECK_OK(check_text(reason, "reason"));
             WEAVE_TRY(const FoundRelease found, find_release(reader, now, loom, number));
             if (found.release.state == ReleaseStage::released ||
                 found.release.state == ReleaseStage::prepared)

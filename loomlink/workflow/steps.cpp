@@ -11,8 +11,6 @@ namespace weave::loomlink {
 
 namespace {
 
-constexpr std::size_t most_reason = 4000;
-
 /// What a statement binds of a revision.
 Json bound(const FoundRevision& found) {
     return {{"revision", found.revision.number}, {"sha256", hash_hex(found.revision.hash)}};
@@ -36,7 +34,7 @@ Desk::Check check_action(const StepWish& wish, Action action) {
 }
 
 Status check_reason(const StepWish& wish) {
-    return check_text(wish.reason, "reason", 1, most_reason);
+    return check_text(wish.reason, "reason");
 }
 
 Status check_undecided(const Reader& reader, const Caller& caller, Id revision) {
@@ -138,7 +136,7 @@ Result<Json> Steps::comment(const Caller& caller, const Ask& ask, const StepWish
     if (end) deed.data["end"] = *end;
     return m_desk->attempt(caller, ask, deed, [&]() -> Result<Json> {
         WEAVE_TRY(const FoundRevision here, found(caller, Action::comment, wish));
-        WEAVE_CHECK_OK(check_text(wish.reason, "text", 1, most_reason));
+        WEAVE_CHECK_OK(check_text(wish.reason, "text"));
         WEAVE_CHECK_OK(check_on_card(here.revision, pick, end));
         deed.data.update(bound(here));
         return m_desk->commit(

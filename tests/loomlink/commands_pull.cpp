@@ -122,6 +122,38 @@ TEST_CASE("a loom pulls what was released, finds what was altered, and gives up 
     CHECK(mill.run(mill.pull_words({"--release", "1"})).code == 4);
 }
 
+TEST_CASE("a terminal that trusts one mill says so where --trust names another and changes nothing", "[commands]") {
+    const CommandMill trial, real;
+    trial.set_up();
+    real.set_up();
+    const std::string first = trial.trust_fingerprint(), other = real.trust_fingerprint();
+    REQUIRE(trial.run(trial.pull_words({"--trust", first})).code == 0);
+    const std::string state = read_file(trial.at("state")).value();
+    real.put_private("state", state);  // one file for both, as for two mills with a loom of one name
+    const Ended mixed = real.run(real.pull_words({"--trust", other}));
+    CHECK(mixed.code == 4);
+    for (const std::string& told : {first, other, real.at("state").string(), std::string("--state")})
+        CHECK_THAT(mixed.err, Catch::Contains(told));
+    CHECK(read_file(real.at("state")).value() == state);
+    CHECK_FALSE(fs::exists(real.at("loom")));
+    CHECK(real.run(real.pull_words({"--trust", std::string(64, 'a')})).code == 4);
+    CHECK(trial.run(trial.pull_words({"--trust", other})).code == 4);
+    CHECK(read_file(trial.at("state")).value() == state);
+    fs::rename(real.at("state"), real.at("state of the trial"));
+    CHECK(real.run(real.pull_words({"--trust", other})).code == 0);
+
+    // Older and newer documents of the same chain are the same mill.
+    trial.invite("anna", {"approver"});
+    trial.done("mary", {"trust", "publish"}, true);
+    const std::string second = trial.trust_fingerprint();
+    REQUIRE(second != first);
+    for (const std::string& fingerprint : {second, first, second}) {
+        const Ended again = trial.run(trial.pull_words({"--trust", fingerprint}));
+        INFO(again.err);
+        CHECK(again.code == 0);
+    }
+}
+
 TEST_CASE("what could not be had hides no recall and keeps nothing else from coming", "[commands]") {
     CommandMill mill;
     mill.set_up();

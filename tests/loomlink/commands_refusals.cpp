@@ -54,6 +54,12 @@ TEST_CASE("a call that makes no sense ends with 2 and says what is missing", "[c
         {{"policy", "--coverage", "2"}, "'2' is no share from 0 to 1"},
         {{"policy", "--coverage", "half"}, "'half' is no share from 0 to 1"},
         {{"policy", "--fidelity", "fine"}, "'fine' is none of draft, standard, reference"},
+        {{"submit", "cloth", "1", "--reason", ""}, "--reason: says nothing"},
+        {{"approve", "cloth", "1", "--reason", "  "}, "--reason: says nothing"},
+        {{"withdraw", "seven", "1", "-r", "\u200b"}, "--reason: says nothing"},
+        {{"release", "cloth", "1", "--loom", "x", "--reason", "\u3000"}, "--reason: says nothing"},
+        {{"save", "a.weave", "cloth", "--message", "   "}, "--message: says nothing"},
+        {{"comment", "cloth", "1", "\t"}, "TEXT: says nothing"},
     };
     for (const Call& call : calls) {
         const Ended ended = Running(call.words, folder.path).wait();

@@ -217,6 +217,22 @@ TEST_CASE("what a simulation found is signed by the machine that was enrolled, a
     CHECK(mill.done("emil", {"evidence", "list", "cloth", "1"}).at("evidence").back().at("signer") ==
           "gpu-1");
 
+    // The trust document is older than the machine: the audit tells it, until it is published again.
+    const auto audit = [&](const std::vector<std::string>& more) {
+        mill.done("mary", {"trust", "show", "-o", mill.at("trust.json")});
+        mill.done("emil", {"audit", "bundle", "-o", mill.at("log.json")});
+        std::vector<std::string> words{"audit", "verify", mill.at("log.json"), "--trust", mill.at("trust.json")};
+        words.insert(words.end(), more.begin(), more.end());
+        const Ended ended = mill.run(words);
+        INFO(ended.out << ended.err);
+        CHECK(ended.code == 0);  // nothing was changed
+        return ended;
+    };
+    CHECK(audit({"--json"}).json().at("machines_not_in_trust") == Json::array({"gpu-1"}));
+    CHECK_THAT(audit({}).out, Catch::Contains("whose key the trust document does not name"));
+    mill.done("mary", {"trust", "publish"}, true);
+    CHECK(audit({"--json"}).json().at("machines_not_in_trust").empty());
+
     Json other = found;
     other["design_sha256"] = std::string(64, '0');
     REQUIRE(write_file(mill.at("other.json"), other.dump()));
