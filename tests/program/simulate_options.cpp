@@ -112,7 +112,7 @@ TEST_CASE("a cloth that this machine cannot hold is refused before it is laid ou
     const Workshop shop;
     shop.must({"samples", "shoe-adult", "-o", "shoe.weave"});
     const std::string line =
-        shop.refused({"simulate", "shoe.weave", "--fidelity", "reference", "-o", "shoe.yarns"}, 4, {"shoe.weave: this takes about ", "GiB are free", "simulate a part of it, up to ", "have a server do it"});
+        shop.refused({"simulate", "shoe.weave", "--fidelity", "reference", "-o", "shoe.yarns"}, 4, {"shoe.weave: this takes about ", "GiB are free", "simulate a part of the cloth, up to ", "have a server do it"});
     CHECK(line.find("planning") == std::string::npos);
 }
 

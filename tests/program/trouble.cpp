@@ -94,7 +94,7 @@ TEST_CASE("bad input ends with 3 and one line that names the file and the place 
         {{"check", "t.weave", "--loom", "none.json"}, {"none.json"}},
         {{"check", "t.weave", "--loom", "odd.json"}, {"odd.json", "colour"}},
         {{"check", "t.weave", "--loom", "cut.json"}, {"cut.json", "line 2"}},
-        {{"check", "t.weave", "--loom", "t.weave"}, {"t.weave", "format"}},
+        {{"check", "t.weave", "--loom", "t.weave"}, {"t.weave", "is a design, no profile of a loom"}},
         {{"export", "cut.weave", "--loom", loom("tc2"), "-o", "new"}, {"cut.weave", "line"}},
         {{"export", "t.weave", "--loom", "odd.json", "-o", "new"}, {"odd.json", "colour"}},
     };

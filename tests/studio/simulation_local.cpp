@@ -257,7 +257,7 @@ TEST_CASE("a cloth with no room at all is refused before it is laid out, with wh
     run.start(shoe, request_at(sim::Fidelity::draft));
     REQUIRE(QTest::qWaitFor([&] { return told.error.has_value(); }, patience_ms));
     CHECK_FALSE(told.plan);
-    CHECK_THAT(told.error->message, Catch::Contains("simulate a part of it, up to ") && !Catch::Contains("draft"));
+    CHECK_THAT(told.error->message, Catch::Contains("simulate a part of the cloth, up to ") && !Catch::Contains("draft"));
     CHECK_THAT(told.error->message, Catch::Contains("2.0 GiB are free"));
     const sim::MemoryNeed standard{1'000'000, sim::Fidelity::standard, 4, 48, 6, 6};
     CHECK_THAT(sim::check_room(standard, {sim::expected_bytes(600'000), {}}).error().message, Catch::Contains(", or all of it as draft, or have a server do it"));

@@ -33,9 +33,9 @@ bool does_as_draft(const MemoryNeed& need, const MemoryRoom& room) {
 
 std::string part_within(const MemoryNeed& need, const MemoryRoom& room) {
     const std::size_t lines = lines_within(need, room);
-    if (lines == 0) return "simulate a part of it";
+    if (lines == 0) return "simulate a part of the cloth";
     const auto yarns = [&](double in_a_line) { return std::to_string(static_cast<std::size_t>(static_cast<double>(lines) * in_a_line)); };
-    return "simulate a part of it, up to " + yarns(need.picks_in_a_row) + " picks and " + yarns(need.ends_in_a_column) + " ends";
+    return "simulate a part of the cloth, up to " + yarns(need.picks_in_a_row) + " picks and " + yarns(need.ends_in_a_column) + " ends";
 }
 
 std::string help_for(const MemoryNeed& need, const MemoryRoom& room) {
