@@ -65,7 +65,7 @@ two_looms() {
 shade falls just so that one binding point is missing. Such a loop catches on everything."
     say "   pick $pick floats from end $first to $last"
     pictures
-    draw ginkgo.weave "weft:$pick" flaw-slice "The cloth cut along pick $pick: the gold weft runs free from end $first to $last. Click to see all of it." "wide strip" --from-end $((first - 4))
+    draw ginkgo.weave "weft:$pick" flaw-slice "The cloth cut along pick $pick: the gold weft runs free from end $first to $last" wide --from-end $((first - 4)) --to-end $((last + 8))
     draw ginkgo.weave floats floats "How far each yarn floats, on both faces" wide
     pictures_end
 }
@@ -132,7 +132,7 @@ into the design as well."
     pictures two
     figure difference.png "One crossing of the card has changed, in the ring" big
     draw mended.weave face mended-face "The face of the mended cloth" big
-    draw mended.weave "weft:$pick" mended-slice "The cloth cut along pick $pick again: end $end holds it. Click to see all of it." "wide strip" --from-end $((first - 4))
+    draw mended.weave "weft:$pick" mended-slice "The cloth cut along pick $pick again: end $end holds it" wide --from-end $((first - 4)) --to-end $((last + 8))
     pictures_end
     say "   end $end now holds pick $pick, and both looms are content"
 }
