@@ -8,6 +8,7 @@
 #include <weave/design/outline.hpp>
 #include <weave/design/pins.hpp>
 #include <weave/sim/execute.hpp>
+#include <weave/sim/resolution.hpp>
 
 #include <charconv>
 #include <cmath>
@@ -89,7 +90,7 @@ CLI::Validator residual_goal() {
     return {[](std::string& word) -> std::string {
                 const std::optional<double> goal = positive(word);
                 if (!goal) return not_positive(word);
-                return *goal >= least_residual && *goal <= 1 ? "" : "'" + word + "' is not from 1e-15 to 1";
+                return *goal >= sim::least_residual && *goal <= sim::most_residual ? "" : "'" + word + "' is not from 1e-15 to 1";
             },
             ""};
 }

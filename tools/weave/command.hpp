@@ -42,10 +42,8 @@ CLI::Validator whole_number();
 /// A number above 0 in decimal digits, such as 0.5 or 1e-6.
 CLI::Validator positive_number();
 
-/// A residual to relax to, from `least_residual` to 1, the limits of the protocol.
+/// A residual to relax to (sim/resolution.hpp has its limits).
 CLI::Validator residual_goal();
-/// Far below the rounding of forces, some 1e-12, and so never reached: who asks for it asks for a run without an end.
-inline constexpr double least_residual = 1e-15;
 
 /// The name of what is to be written, which must not be empty.
 CLI::Validator output_name();

@@ -11,4 +11,8 @@ struct Resolution {
 };
 Resolution resolution_of(Fidelity fidelity);
 
+/// A goal that may be asked for instead. The least is far below the rounding of forces, some 1e-12: who asks for it asks for a run
+/// without an end.
+inline constexpr double least_residual = 1e-15, most_residual = 1;
+
 }  // namespace weave::sim

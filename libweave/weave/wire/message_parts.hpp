@@ -1,5 +1,6 @@
 #pragma once
 
+#include <weave/sim/resolution.hpp>
 #include <weave/wire/message.hpp>
 #include <weave/wire/message_form.hpp>
 
@@ -183,7 +184,7 @@ template <class Form, Either<Simulation> M>
 void describe(Form& form, M& simulation) {
     form.part("plan", simulation.plan);
     form.word("solver", simulation.solver, solver_names);
-    maybe_number(form, "residual", simulation.residual, {1e-15, 1});
+    maybe_number(form, "residual", simulation.residual, {sim::least_residual, sim::most_residual});
     maybe_count(form, "most_steps", simulation.most_steps);
     maybe_number(form, "most_seconds", simulation.most_seconds, {0, most_seconds_told});
     form.maybe("start_from", simulation.start_from,
