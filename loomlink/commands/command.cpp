@@ -4,8 +4,6 @@
 
 #include <weave/core/text.hpp>
 
-#include <algorithm>
-
 namespace weave::loomlink {
 
 namespace {
@@ -57,16 +55,6 @@ CLI::Option* add_words(CLI::App* command, const std::string& name, std::string& 
 
 void add_reason(CLI::App* command, std::string& reason) {
     add_said(command, "-r,--reason", reason, "why; it stands in the log")->type_name("WHY");
-}
-
-CLI::Validator one_of(const std::vector<std::string>& choices) {
-    const auto check = [choices](std::string& word) {
-        if (std::find(choices.begin(), choices.end(), word) != choices.end()) return std::string();
-        std::string all;
-        for (const std::string& choice : choices) all += (all.empty() ? "" : ", ") + choice;
-        return "'" + on_one_line(word) + "' is none of " + all;
-    };
-    return {check, ""};
 }
 
 }  // namespace weave::loomlink

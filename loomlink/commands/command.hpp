@@ -34,9 +34,6 @@ CLI::Option* add_words(CLI::App* command, const std::string& name, std::string& 
 /// `-r,--reason`, which every signed step takes.
 void add_reason(CLI::App* command, std::string& reason);
 
-/// Holds a word to a few; a refusal tells them, as the option's help has to.
-CLI::Validator one_of(const std::vector<std::string>& choices);
-
 /// The commands, one group a file.
 void add_init_command(CLI::App& app, CommandOutcome& outcome);
 void add_serve_command(CLI::App& app, CommandOutcome& outcome);

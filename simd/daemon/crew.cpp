@@ -166,15 +166,15 @@ void Crew::lost(Id id, std::string how) {
     if (member.task != nullptr) member.task->ended(member.end);
 }
 
-bool Crew::admit(Id id, std::size_t points, Json also) {
+bool Crew::admit(Id id, std::uint64_t bytes, Json also) {
     const auto found = m_members.find(id);
-    if (found == m_members.end() || !m_room.take(id, expected_bytes(points))) return false;
+    if (found == m_members.end() || !m_room.take(id, bytes)) return false;
     found->second.is_admitted = true;
     // Estimates err. What takes far more than its own must not take that of others.
     // A device's driver takes memory of the process too, and fails without it; then the processor goes on.
     constexpr std::uint64_t twice = 2, spare = 256U << 20U, for_driver = 1024U << 20U;
     also["do"] = "admitted";
-    also["bytes"] = twice * expected_bytes(points) + spare + (m_rules.backend == "cpu" ? 0 : for_driver);
+    also["bytes"] = twice * bytes + spare + (m_rules.backend == "cpu" ? 0 : for_driver);
     post(id, also);
     return true;
 }

@@ -43,8 +43,8 @@ class Crew {
 
     /// Has a worker started for this task as soon as its turn to plan comes. The task must outlive it, or dismiss it.
     Id hire(Task& task, const std::string& person, bool is_job);
-    /// Grants the planned points their memory; false where there is too little. `also` is told with it: number and folder.
-    bool admit(Id id, std::size_t points, Json also);
+    /// Grants what is planned its memory; false where there is too little. `also` is told with it: number and folder.
+    bool admit(Id id, std::uint64_t bytes, Json also);
     void post(Id id, const Json& message);
     /// Asks a worker to put away what it has and end: with a report of where the cloth lies, or without.
     void ask_to_end(Id id, bool with_report);

@@ -121,17 +121,18 @@ WorkOrder Job::order() {
 
 void Job::planned(const Json& plan) {
     m_points = plan.at("points").get<std::size_t>() * (m_has_flips ? plan.at("repeats").get<std::size_t>() : 1);
-    const std::uint64_t bytes = expected(), whole = m_around.crew.room().whole();
-    if (bytes > whole) {
+    m_bytes = plan.at(m_has_flips ? "unfolded_bytes" : "bytes");
+    const std::uint64_t whole = m_around.crew.room().whole();
+    if (m_bytes > whole) {
         const Error error{ErrorCode::refused,
-                          "the cloth needs " + memory_text(bytes) + ", and " + memory_text(whole) +
+                          "the cloth needs " + memory_text(m_bytes) + ", and " + memory_text(whole) +
                               " is all that there is: simulate a part of it, or fewer points",
                           "simulation"};
         return end(wire::JobPhase::failed, error, Json::object(), {});
     }
     std::error_code code;
     std::filesystem::create_directories(m_around.folder, code);
-    if (code || !m_around.crew.admit(*m_worker, m_points, {{"number", number()}, {"folder", m_around.folder.string()}})) {
+    if (code || !m_around.crew.admit(*m_worker, m_bytes, {{"number", number()}, {"folder", m_around.folder.string()}})) {
         m_around.crew.dismiss(*m_worker);  // its place in the queue is what it was
         m_worker.reset();
         if (m_is_cancelled) return end(wire::JobPhase::cancelled, system_fault("there was no room to put away its yarns"), Json::object(), {});

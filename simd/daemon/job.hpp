@@ -44,7 +44,7 @@ class Job final : public Task {
     [[nodiscard]] bool is_at_work() const { return m_worker || m_is_in_slurm; }
     [[nodiscard]] bool waits() const { return !is_over() && !is_at_work() && !m_is_put_away; }
     /// Memory that it will take, where that is known already.
-    [[nodiscard]] std::uint64_t expected() const { return m_points > 0 ? expected_bytes(m_points) : 0; }
+    [[nodiscard]] std::uint64_t expected() const { return m_bytes; }
     /// Since it came, or since the daemon was started.
     [[nodiscard]] Clock::duration waited() const { return Clock::now() - m_came; }
     [[nodiscard]] wire::JobState state() const;
@@ -84,6 +84,7 @@ class Job final : public Task {
     wire::JobPhase m_phase = wire::JobPhase::waiting;
     std::optional<Crew::Id> m_worker;
     std::size_t m_points = 0, m_faults = 0;
+    std::uint64_t m_bytes = 0;
     std::uint64_t m_step = 0, m_furthest = 0;
     double m_residual = 0;
     std::optional<std::uint64_t> m_lost;  ///< crossings out of order, once they were looked up

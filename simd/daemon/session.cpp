@@ -48,22 +48,23 @@ void Session::refuse_creation(Error error, std::optional<double> wait_s) {
 void Session::planned(const Json& plan) {
     // After a fault changes that asked for more are still to be repeated.
     m_points = std::max(m_points, plan.at("points").get<std::size_t>());
+    m_bytes = std::max(m_bytes, plan.at("bytes").get<std::uint64_t>());
+    m_unfolded_bytes = plan.at("unfolded_bytes");
     m_repeats = plan.at("repeats");
     m_title = plan.at("title");
     Room& room = m_around.crew.room();
-    const std::uint64_t bytes = expected_bytes(m_points);
     if (!is_accepted()) {
-        if (bytes > room.left()) {
-            const bool ever = bytes <= room.whole();
+        if (m_bytes > room.left()) {
+            const bool ever = m_bytes <= room.whole();
             return refuse_creation({ErrorCode::refused,
-                                    "the cloth needs " + memory_text(bytes) + ", and " + memory_text(ever ? room.left() : room.whole()) +
+                                    "the cloth needs " + memory_text(m_bytes) + ", and " + memory_text(ever ? room.left() : room.whole()) +
                                         (ever ? " are free now" : " is all that there is: simulate a part of it, or fewer points"),
                                     "simulation"},
                                    ever ? m_around.expected_wait_s() : std::nullopt);
         }
         if (const Status accepted = become_accepted(); !accepted) return refuse_creation(accepted.error(), {});
     }
-    if (!m_around.crew.admit(*m_worker, m_points, {{"number", m_number}, {"folder", m_around.folder.string()}})) {
+    if (!m_around.crew.admit(*m_worker, m_bytes, {{"number", m_number}, {"folder", m_around.folder.string()}})) {
         m_around.crew.dismiss(*m_worker);  // there will be room again: tick() tries
         m_worker.reset();
         return;
@@ -235,6 +236,7 @@ void Session::heard_event(const Json& message) {
         m_layout = message.at("layout");
         m_layout_sha256 = message.at("layout_sha256");
         m_points = message.at("points");
+        m_bytes = message.at("bytes");
         return emit(std::move(*read), EventKind::layout);
     }
     if (message.contains("phase")) {

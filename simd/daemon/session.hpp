@@ -164,6 +164,7 @@ class Session final : public Task {
     StepRate m_rate;
     std::optional<std::uint64_t> m_lost;
     std::size_t m_points = 0, m_repeats = 1;
+    std::uint64_t m_bytes = 0, m_unfolded_bytes = 0;  ///< that it is expected to take now, and once all repeats are simulated
     net::Bytes m_newest;
     std::uint64_t m_newest_number = 0;
     bool m_newest_is_last = false, m_state_changed = false;

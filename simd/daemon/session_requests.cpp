@@ -186,10 +186,10 @@ std::optional<Error> Session::why_no_change(const wire::Change& change) const {
         return Error{ErrorCode::refused, "its clients have left " + std::to_string(left) + " events unacknowledged", "session " + std::to_string(m_number)};
     if (!unfolds_for(change) || !m_worker) return {};
     Room& room = m_around.crew.room();
-    const std::uint64_t bytes = expected_bytes(m_points * m_repeats), own = room.promised(*m_worker);
-    if (bytes <= room.left() + own) return {};
+    const std::uint64_t own = room.promised(*m_worker);
+    if (m_unfolded_bytes <= room.left() + own) return {};
     return Error{ErrorCode::refused,
-                 "for this the whole cloth is simulated, which needs " + memory_text(bytes) + ", and " + memory_text(room.left() + own) + " are free",
+                 "for this the whole cloth is simulated, which needs " + memory_text(m_unfolded_bytes) + ", and " + memory_text(room.left() + own) + " are free",
                  "change"};
 }
 
@@ -201,7 +201,7 @@ void Session::change(const ClientPtr& client, const wire::MakeChange& make) {
     m_changes.push_back({made->number, make.request, make.change, {}, false});
     client->tell(net::make_bytes(text));
     if (m_worker && unfolds_for(make.change)) {
-        m_around.crew.admit(*m_worker, m_points * m_repeats, {{"number", m_number}, {"folder", m_around.folder.string()}});
+        m_around.crew.admit(*m_worker, m_unfolded_bytes, {{"number", m_number}, {"folder", m_around.folder.string()}});
         m_repeats = 1;
     }
     post({{"do", "change"}, {"change", to_json(m_changes.back())}});
@@ -288,7 +288,7 @@ void Session::tick(Clock::time_point now, std::chrono::seconds expire) {
     if (m_has_ended && !m_viewers.empty() && now - m_ended_at > to_take_the_end_in) say_goodbye();
     if (m_has_ended && m_viewers.empty() && is_written() && now - std::max(m_seen, m_ended_at) > kept_after_end(expire)) m_is_over = true;
     if (!is_accepted() || m_has_ended) return;
-    if (!m_worker && !m_is_put_away && m_around.crew.room().left() >= expected_bytes(m_points)) take_up();
+    if (!m_worker && !m_is_put_away && m_around.crew.room().left() >= m_bytes) take_up();
     if (m_viewers.empty() && now - m_seen > expire) end(wire::Why::expired, m_step, {}, Json::object());
 }
 

@@ -142,7 +142,7 @@ void Attempt::admit(const Json& plan) {
     constexpr std::uint64_t own = std::uint64_t{64} << 20;  // of this process
     const std::size_t repeats = m_order.flips.empty() ? 1 : plan.at("repeats").get<std::size_t>();
     m_news.points = plan.at("points").get<std::size_t>() * repeats;
-    const std::uint64_t bytes = sim::expected_bytes(m_news.points);
+    const std::uint64_t bytes = plan.at(m_order.flips.empty() ? "bytes" : "unfolded_bytes");
     if (m_node.memory_bytes > 0 && bytes + own > m_node.memory_bytes) {
         m_failure = Error{ErrorCode::refused,
                           "the cloth needs " + sim::memory_text(bytes + own) + ", and a job gets " + sim::memory_text(m_node.memory_bytes) +

@@ -105,10 +105,13 @@ Status Work::begin_anew(const Design& design) {
 /// Tells what was planned, and waits until the daemon has room for it.
 Status Work::wait_for_admission() {
     const sim::Plan& plan = m_run->now().plan();
+    const std::size_t repeats = plan.repeats[0] * plan.repeats[1];
     tell({{"say", "planned"},
           {"title", m_run->now().design().title},
           {"points", sim::points_of(plan)},
-          {"repeats", plan.repeats[0] * plan.repeats[1]},
+          {"repeats", repeats},
+          {"bytes", sim::expected_bytes(plan)},
+          {"unfolded_bytes", repeats == 1 ? sim::expected_bytes(plan) : sim::expected_bytes(repeats * sim::points_of(plan))},
           {"step", m_run->steps()},
           {"changes", m_changes_made}});
     while (!m_inbox.admitted()) {
@@ -335,7 +338,7 @@ void Work::tell_layout() {
     if (sha256 == m_layout_sha256) return;
     m_layout_sha256 = std::move(sha256);
     layout.layout = ++m_layout;
-    tell_event(layout, {{"layout", m_layout}, {"layout_sha256", m_layout_sha256}, {"points", sim::points_of(m_run->now().plan())}});
+    tell_event(layout, {{"layout", m_layout}, {"layout_sha256", m_layout_sha256}, {"points", sim::points_of(m_run->now().plan())}, {"bytes", sim::expected_bytes(m_run->now().plan())}});
 }
 
 void Work::tell_phase(wire::Phase phase) {

@@ -46,6 +46,7 @@ Status LocalWork::check_room_for(std::size_t times) const {
     if (!m_means.memory_bytes) return {};
     sim::MemoryNeed need = sim::need_of(m_run->now().plan());
     need.points *= times;
+    if (times > 1) need.copied_bytes = 0;  // then nothing is copied back
     return sim::check_room(need, {*m_means.memory_bytes, {}});
 }
 

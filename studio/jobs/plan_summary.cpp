@@ -10,7 +10,7 @@ PlanSummary summary_of(const sim::Plan& plan, const std::string& title) {
     summary.points = sim::points_of(plan);
     summary.yarns = plan.scene.yarns.size();
     summary.repeats = plan.repeats[0] * plan.repeats[1];
-    summary.expected_bytes = sim::expected_bytes(summary.points);
+    summary.expected_bytes = sim::expected_bytes(plan);
     summary.lines = plan.lines;
     return summary;
 }

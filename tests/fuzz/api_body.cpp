@@ -37,8 +37,9 @@ void try_body(std::string_view text, const Fields& fields) {
         return;
     }
     must_fit(*read, fields);
-    const auto again = read_body(canonical_json(*read), fields);
-    must(again && *again == *read, "what was read reads the same again");
+    const std::string written = canonical_json(*read);
+    const auto again = read_body(written, fields);
+    must(again && canonical_json(*again) == written, "what was read reads the same again");
 }
 
 void try_query(std::string_view text, const Fields& fields) {

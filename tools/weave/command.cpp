@@ -168,9 +168,9 @@ void add_reading_options(CLI::App* command, const std::shared_ptr<BitmapReading>
             ->add_option_function<std::string>(
                 name,
                 [reading, member, usual](const std::string& word) { (*reading).*member = word == usual; },
-                help)
-            ->check(CLI::IsMember({usual, other}))
-            ->default_str(usual);
+                std::string(help) + ": " + usual + " (if nothing is said) or " + other)
+            ->check(one_of({usual, other}))
+            ->type_name("WORD");
     };
     either(reading_options[0], "where the picture has pick 1", "bottom", "top",
            &BitmapReading::pick_1_at_bottom);

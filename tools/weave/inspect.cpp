@@ -199,9 +199,9 @@ void add_compare(CLI::App& app, CommandOutcome& outcome) {
     command
         ->add_option(
             "--match", *match,
-            "which measured yarn is which: in the order of the files, or the nearest; without it by pick and "
+            "which measured yarn is which: in the order of the files (order), or the nearest (nearness); without it by pick and "
             "end where both files name them, else in order where there are as many, else the nearest")
-        ->check(CLI::IsMember({"order", "nearness"}))
+        ->check(one_of({"order", "nearness"}))
         ->type_name("HOW");
     on_run(command, outcome, [=, &outcome] { return run_comparison(outcome, *file, *measured, *match); });
 }

@@ -158,7 +158,7 @@ void add_slices(CLI::App& app, CommandOutcome& outcome) {
     const auto wish = std::make_shared<SlicesWish>();
     command->add_option("FILE", wish->file, "the text, see below")->required();
     command->add_option("--dots", wish->dots, "what the slices cut through: weft (slices along the warp, one a column; if nothing is said) or warp (along the weft, one a row)")
-        ->check(CLI::IsMember({"weft", "warp"}))
+        ->check(one_of({"weft", "warp"}))
         ->type_name("SYSTEM");
     command->add_option("--yarns", wish->yarns, "a .weave file whose yarns, feeders and scene it gets; the usual ones if nothing is said")->type_name("FILE");
     command->add_option("--title", wish->title, "its title; the name of its file if nothing is said")->type_name("TEXT");
@@ -202,7 +202,10 @@ void add_attach(CLI::App& app, CommandOutcome& outcome) {
     const auto out = std::make_shared<std::string>();
     command->add_option("A", *first, "the .weave file that keeps its yarns")->required();
     command->add_option("B", *second, "the .weave file to join to it")->required();
-    command->add_option("--face", *face, "the face of A")->required()->check(CLI::IsMember(face_names()));
+    command->add_option("--face", *face, "the face of A: +x, -x, +y, -y, +z or -z")
+        ->required()
+        ->check(one_of(face_names()))
+        ->type_name("FACE");
     command->add_option("-o,--out", *out, "the .weave file to write")
         ->check(output_name())
         ->type_name("FILE")

@@ -204,10 +204,11 @@ Status foresee_memory(const SimulateTask& task, const Block& block, const std::o
 
 Status explain(CommandOutcome& outcome, const sim::Plan& plan) {
     const std::size_t points = sim::points_of(plan);
-    const std::uint64_t bytes = sim::expected_bytes(points);
+    const std::uint64_t bytes = sim::expected_bytes(plan), copies = sim::copied_bytes(plan);
     outcome.answer({{"plan", sim::lines_json(plan)}, {"yarns", plan.scene.yarns.size()}, {"points", points}, {"expected_bytes", bytes}},
                    in_words(plan.lines) + "points: " + std::to_string(points) + " (" + counted(plan.scene.yarns.size(), "yarn") + ", about " + sim::memory_text(bytes) +
-                       " of memory while they relax)\n");
+                       " of memory" +
+                       (copies > 0 ? ", " + sim::memory_text(copies) + " of it for all repeats and their file)\n" : " while they relax)\n"));
     return {};
 }
 

@@ -2,6 +2,7 @@
 
 #include <weave/core/exit_code.hpp>
 #include <weave/core/log.hpp>
+#include <weave/core/text.hpp>
 
 #include <algorithm>
 #include <csignal>
@@ -104,6 +105,16 @@ CLI::App* add_command(CLI::App& app, CommandOutcome& outcome, const std::string&
     command->add_flag("--json", outcome.json, "answer with one JSON object on standard output");
     if (!example.empty()) command->footer("Example: " + example + "\n" + command->get_footer());
     return command;
+}
+
+CLI::Validator one_of(const std::vector<std::string>& choices) {
+    const auto check = [choices](std::string& word) {
+        if (std::find(choices.begin(), choices.end(), word) != choices.end()) return std::string();
+        std::string all;
+        for (const std::string& choice : choices) all += (all.empty() ? "" : ", ") + choice;
+        return "'" + on_one_line(word) + "' is none of " + all;
+    };
+    return {check, ""};
 }
 
 void on_run(CLI::App* command, CommandOutcome& outcome, std::function<Status()> run) {

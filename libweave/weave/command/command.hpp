@@ -6,6 +6,7 @@
 
 #include <functional>
 #include <string>
+#include <vector>
 
 namespace weave {
 
@@ -16,6 +17,9 @@ void prepare_program(CLI::App& app, const std::string& version);
 /// Adds a command with --json; its help shows the example, if any, a whole line as a person types it.
 CLI::App* add_command(CLI::App& app, CommandOutcome& outcome, const std::string& name,
                       const std::string& help, const std::string& example = {});
+
+/// Holds a word to a few; a refusal tells them, as the option's help has to.
+CLI::Validator one_of(const std::vector<std::string>& choices);
 
 /// Lets `run` be the command's work: its error, if any, is told and becomes the exit code.
 void on_run(CLI::App* command, CommandOutcome& outcome, std::function<Status()> run);

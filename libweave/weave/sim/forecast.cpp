@@ -21,6 +21,18 @@ std::uint64_t expected_bytes(std::size_t points) {
     return of_a_process + of_a_point * points;
 }
 
+std::uint64_t copied_bytes(const Plan& plan) {
+    const std::uint64_t repeats = std::uint64_t{plan.repeats[0]} * plan.repeats[1];
+    if (repeats == 1) return 0;
+    // Places, planned places, strain and contact force of a point, and the same in the file; a crossing's words in both.
+    constexpr std::uint64_t of_copied_point = 2 * (2 * 3 + 2) * sizeof(double), of_copied_crossing = sizeof(Crossing) + 7 * sizeof(std::uint32_t);
+    return repeats * (of_copied_point * points_of(plan) + of_copied_crossing * plan.curves.crossings.size());
+}
+
+std::uint64_t expected_bytes(const Plan& plan) {
+    return expected_bytes(points_of(plan)) + copied_bytes(plan);
+}
+
 std::size_t points_within(std::uint64_t bytes) {
     return bytes <= of_a_process ? 0 : (bytes - of_a_process) / of_a_point;
 }

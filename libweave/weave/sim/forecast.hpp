@@ -16,6 +16,11 @@ std::size_t points_of(const Plan& plan);
 /// 30 MiB in all; but 56,249 and 333,711 points of parts of the shoe, whose many layers begin close together, 11 to
 /// 13.6 kB.
 std::uint64_t expected_bytes(std::size_t points);
+/// Memory in which a smallest repeat becomes the whole cloth again (copied_back()), and that cloth a file, bytes; 0 where all of it is
+/// simulated. It comes once the repeat is at rest.
+std::uint64_t copied_bytes(const Plan& plan);
+/// Memory that a plan is expected to take from its first step to its file, bytes.
+std::uint64_t expected_bytes(const Plan& plan);
 /// The most points that are expected to take so many bytes; 0 where none does.
 std::size_t points_within(std::uint64_t bytes);
 

@@ -1,5 +1,6 @@
 #include <weave/sim/memory_room.hpp>
 
+#include <weave/core/text.hpp>
 #include <weave/sim/forecast.hpp>
 #include <weave/sim/resolution.hpp>
 
@@ -28,7 +29,14 @@ std::size_t lines_within(const MemoryNeed& need, const MemoryRoom& room) {
 
 bool does_as_draft(const MemoryNeed& need, const MemoryRoom& room) {
     const double share = resolution_of(Fidelity::draft).points_per_key / need.points_per_key;
-    return share < 1 && expected_bytes(static_cast<std::size_t>(share * static_cast<double>(need.points))) <= room.bytes;
+    const auto of_draft = [&](std::uint64_t amount) { return static_cast<std::uint64_t>(share * static_cast<double>(amount)); };
+    return share < 1 && expected_bytes(of_draft(need.points)) + of_draft(need.copied_bytes) <= room.bytes;
+}
+
+/// What a cloth of many repeats may be simulated as instead: the repeat as it was before it was tiled.
+std::string repeat_within(const MemoryNeed& need, const MemoryRoom& room) {
+    if (need.copied_bytes == 0 || expected_bytes(need.points) > room.bytes) return {};
+    return "simulate a design of one of its repeats, " + counted(need.picks_and_ends[0], "pick") + " and " + counted(need.picks_and_ends[1], "end") + ", or ";
 }
 
 std::string part_within(const MemoryNeed& need, const MemoryRoom& room) {
@@ -39,7 +47,7 @@ std::string part_within(const MemoryNeed& need, const MemoryRoom& room) {
 }
 
 std::string help_for(const MemoryNeed& need, const MemoryRoom& room) {
-    std::string help = part_within(need, room);
+    std::string help = repeat_within(need, room) + part_within(need, room);
     if (does_as_draft(need, room)) help += ", or all of it as draft";
     if (room.server.empty()) help += ", or have a server do it that has so much";
     return help;
@@ -67,6 +75,8 @@ MemoryNeed need_of(const Plan& plan) {
                              (lines(region.first_row, region.last_row) * lines(region.first_column, region.last_column));
     need.picks_in_a_row = in_each(plan.cloth_picks, plan.cloth_rows);
     need.ends_in_a_column = in_each(plan.cloth_ends, plan.cloth_columns);
+    need.copied_bytes = copied_bytes(plan);
+    need.picks_and_ends = {plan.cloth_picks / plan.repeats[0], plan.cloth_ends / plan.repeats[1]};
     return need;
 }
 
@@ -100,7 +110,7 @@ std::optional<MemoryRoom> room_here() {
 }
 
 Status check_room(const MemoryNeed& need, const MemoryRoom& room) {
-    const std::uint64_t needed = expected_bytes(need.points);
+    const std::uint64_t needed = expected_bytes(need.points) + need.copied_bytes;
     if (needed <= room.bytes) return {};
     const std::string there = room.server.empty() ? " are free" : " is all that there is on " + room.server;
     return Error{ErrorCode::refused,

@@ -2,6 +2,7 @@
 
 #include <weave/sim/plan.hpp>
 
+#include <array>
 #include <cstddef>
 #include <cstdint>
 #include <optional>
@@ -16,6 +17,8 @@ struct MemoryNeed {
     double points_per_key = 0;     ///< see SimScene
     double points_in_a_stack = 0;  ///< where they are densest, rather too many than too few
     double picks_in_a_row = 0, ends_in_a_column = 0;  ///< on average
+    std::uint64_t copied_bytes = 0;                    ///< see forecast.hpp
+    std::array<std::size_t, 2> picks_and_ends{};       ///< of one repeat, where that alone is simulated
 };
 
 MemoryNeed need_of(const Plan& plan);

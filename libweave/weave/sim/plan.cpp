@@ -1,7 +1,9 @@
 #include <weave/sim/plan.hpp>
 
+#include <weave/sim/forecast.hpp>
 #include <weave/sim/plan_in_stretches.hpp>
 #include <weave/sim/resolution.hpp>
+#include <weave/sim/yarns_file.hpp>
 
 #include <weave/core/text.hpp>
 #include <weave/core/units.hpp>
@@ -462,8 +464,22 @@ Json lines_json(const Plan& plan) {
     return lines;
 }
 
+namespace {
+
+/// All repeats together come into one file in the end.
+Status check_file_of(const Plan& plan) {
+    const std::size_t repeats = plan.repeats[0] * plan.repeats[1], points = repeats * points_of(plan);
+    if (repeats == 1 || points <= most_file_points) return {};
+    return Error{ErrorCode::refused, "its " + std::to_string(repeats) + " repeats have " + std::to_string(points) + " control points, and a .yarns file has at most " +
+                   std::to_string(most_file_points) + "; simulate a design of one of its repeats, or a part of the cloth", {}};
+}
+
+}  // namespace
+
 Result<Plan> make_plan(const Design& design, const Block& block, const SimulationRequest& request) {
-    return Planner(design, block, request, std::numeric_limits<std::size_t>::max()).whole();
+    WEAVE_TRY(Plan plan, Planner(design, block, request, std::numeric_limits<std::size_t>::max()).whole());
+    WEAVE_CHECK_OK(check_file_of(plan));
+    return plan;
 }
 
 Result<PlanInStretches> PlanInStretches::make(const Design& design, const Block& block, const SimulationRequest& request, std::size_t points_a_stretch) {

@@ -146,12 +146,14 @@ class RelaxedRepeat {
 /// Appends copies of a list to itself until it is `times` as long.
 void repeat(std::vector<double>& list, std::size_t times) {
     const std::size_t once = list.size();
+    list.reserve(once * times);
     for (std::size_t i = 0; i < once * (times - 1); ++i) list.push_back(list[i]);
 }
 
 /// The same for places, each copy a `shift` further.
 void repeat(std::vector<Vec3>& places, std::size_t times, const Vec3& shift) {
     const std::size_t once = places.size();
+    places.reserve(once * times);
     for (std::size_t i = 0; i < once * (times - 1); ++i) places.push_back(places[i] + shift);
 }
 
@@ -174,10 +176,9 @@ void move(SimulatedYarn& yarn, const Vec3& by) {
     }
 }
 
-/// The yarns of one system over the whole cloth: `across` times side by side, each through `along` repeats.
-std::vector<SimulatedYarn> copies_of(const Yarns& repeat, System system, std::size_t across, std::size_t along,
-                                     std::size_t numbers, const Vec3& step, const Design& design) {
-    std::vector<SimulatedYarn> copies;
+/// Appends the yarns of one system over the whole cloth: `across` times side by side, each through `along` repeats.
+void append_copies(std::vector<SimulatedYarn>& copies, const Yarns& repeat, System system, std::size_t across, std::size_t along,
+                   std::size_t numbers, const Vec3& step, const Design& design) {
     for (std::size_t k = 0; k < across; ++k) {
         for (SimulatedYarn copy : repeat.yarns) {
             if (copy.system != system) continue;
@@ -191,7 +192,6 @@ std::vector<SimulatedYarn> copies_of(const Yarns& repeat, System system, std::si
             copies.push_back(std::move(copy));
         }
     }
-    return copies;
 }
 
 }  // namespace
@@ -205,16 +205,14 @@ Yarns copied_back(Yarns yarns, const Plan& plan, const Design& design) {
     if (times[0] * times[1] == 1) return yarns;
     // Not counted from the crossings: the last pick of a repeat may have no weft, its last end may be loose.
     const std::size_t picks = plan.cloth_picks / times[0], ends = plan.cloth_ends / times[1];
-    const std::vector<SimulatedYarn> wefts = copies_of(yarns, System::weft, times[0], times[1], picks,
-                                                       Vec3(yarns.size_mm[0], 0, 0), design),
-                                     warps = copies_of(yarns, System::warp, times[1], times[0], ends,
-                                                       Vec3(0, yarns.size_mm[1], 0), design);
     Yarns whole = yarns;
     whole.region = {0, plan.cloth_rows - 1, 0, plan.cloth_columns - 1};
-    whole.yarns = wefts;
-    whole.yarns.insert(whole.yarns.end(), warps.begin(), warps.end());
+    whole.yarns.clear();
+    append_copies(whole.yarns, yarns, System::weft, times[0], times[1], picks, Vec3(yarns.size_mm[0], 0, 0), design);
+    const std::size_t wefts = whole.yarns.size(), weft_yarns = wefts / times[0], warp_yarns = yarns.yarns.size() - weft_yarns;
+    append_copies(whole.yarns, yarns, System::warp, times[1], times[0], ends, Vec3(0, yarns.size_mm[1], 0), design);
     whole.crossings.clear();
-    const std::size_t weft_yarns = wefts.size() / times[0], warp_yarns = warps.size() / times[1];
+    whole.crossings.reserve(times[0] * times[1] * yarns.crossings.size());
     for (std::size_t x = 0; x < times[0]; ++x) {
         for (std::size_t y = 0; y < times[1]; ++y) {
             for (Crossing crossing : yarns.crossings) {
@@ -223,7 +221,7 @@ Yarns copied_back(Yarns yarns, const Plan& plan, const Design& design) {
                 crossing.weft_key += y * weft.keys.size();
                 crossing.warp_key += x * warp.keys.size();
                 crossing.weft += x * weft_yarns;
-                crossing.warp = wefts.size() + y * warp_yarns + (crossing.warp - weft_yarns);
+                crossing.warp = wefts + y * warp_yarns + (crossing.warp - weft_yarns);
                 crossing.pick += x * picks;
                 crossing.end += y * ends;
                 whole.crossings.push_back(crossing);
