@@ -67,6 +67,28 @@ TEST_CASE("a design that cannot be simulated is a failed job that says why") {
     CHECK_FALSE(wire::answer_of<wire::Accepted>(follower.ask(wire::Submit{wire::new_request_id(), "no json", at(sim::Fidelity::draft), {}}, 10s)));
 }
 
+TEST_CASE("a cloth of many repeats has the room of all of them, and is refused where that is not there") {
+    Design design = find_sample("plain")->make();
+    constexpr std::size_t times = 250;  // some 500 MiB, where a repeat alone would be bounded by 340 MiB
+    design.blocks["many"] = std::make_shared<const Node>(Node{TileOperation{design.root, times, times, 1}, {}});
+    design.root = "many";
+    const std::string document = write_document(design);
+    {
+        const Box box;
+        wire::Follower follower = box.follower();
+        const wire::JobEnded ended = end_of(follower, submit(follower, document, at(sim::Fidelity::standard)));
+        if (ended.error) FAIL(ended.error->text());
+        CHECK(ended.phase == wire::JobPhase::done);
+    }
+    const Box small(Json{{"memory_mib", 200}});
+    wire::Follower follower = small.follower();
+    const wire::JobEnded ended = end_of(follower, submit(follower, document, at(sim::Fidelity::standard)));
+    CHECK(ended.phase == wire::JobPhase::failed);
+    REQUIRE(ended.error);
+    CHECK(ended.error->code == ErrorCode::refused);
+    CHECK_THAT(ended.error->message, Catch::Contains("200 MiB is all that there is"));
+}
+
 TEST_CASE("jobs that wait are cancelled at once, one that runs keeps its yarns as they lay") {
     const Box box(Json{{"jobs_at_once", 1}});
     wire::Follower follower = box.follower();

@@ -264,6 +264,19 @@ TEST_CASE("a cloth with no room at all is refused before it is laid out, with wh
     CHECK_THAT(sim::check_room(standard, {sim::expected_bytes(400'000), "box"}).error().message, !Catch::Contains("draft") && !Catch::Contains("server do it"));
 }
 
+TEST_CASE("a cloth of many repeats is refused where there is room for one alone, which is told") {
+    sim::MemoryNeed need{3500, sim::Fidelity::standard, 4, 8, 1, 1};
+    need.copied_bytes = std::uint64_t{5} << 30;
+    need.picks_and_ends = {35, 25};
+    const Status refused = sim::check_room(need, {std::uint64_t{4} << 30, {}});
+    REQUIRE_FALSE(refused);
+    CHECK_THAT(refused.error().message, Catch::Contains("simulate a design of one of its repeats, 35 picks and 25 ends, or a part of the cloth"));
+    CHECK(sim::check_room(need, {std::uint64_t{6} << 30, {}}));
+    const Status neither = sim::check_room(need, {std::uint64_t{8} << 20, {}});
+    REQUIRE_FALSE(neither);
+    CHECK_THAT(neither.error().message, !Catch::Contains("repeats"));
+}
+
 TEST_CASE("the part that is said to have room has, wherever it is taken, and one of twice its sides has none") {
     const Design shoe = sample("shoe-adult");
     const Evaluation evaluation = evaluate(shoe).value();

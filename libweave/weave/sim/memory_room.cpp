@@ -36,18 +36,18 @@ bool does_as_draft(const MemoryNeed& need, const MemoryRoom& room) {
 /// What a cloth of many repeats may be simulated as instead: the repeat as it was before it was tiled.
 std::string repeat_within(const MemoryNeed& need, const MemoryRoom& room) {
     if (need.copied_bytes == 0 || expected_bytes(need.points) > room.bytes) return {};
-    return "simulate a design of one of its repeats, " + counted(need.picks_and_ends[0], "pick") + " and " + counted(need.picks_and_ends[1], "end") + ", or ";
+    return "a design of one of its repeats, " + counted(need.picks_and_ends[0], "pick") + " and " + counted(need.picks_and_ends[1], "end") + ", or ";
 }
 
 std::string part_within(const MemoryNeed& need, const MemoryRoom& room) {
     const std::size_t lines = lines_within(need, room);
-    if (lines == 0) return "simulate a part of the cloth";
+    if (lines == 0) return "a part of the cloth";
     const auto yarns = [&](double in_a_line) { return std::to_string(static_cast<std::size_t>(static_cast<double>(lines) * in_a_line)); };
-    return "simulate a part of the cloth, up to " + yarns(need.picks_in_a_row) + " picks and " + yarns(need.ends_in_a_column) + " ends";
+    return "a part of the cloth, up to " + yarns(need.picks_in_a_row) + " picks and " + yarns(need.ends_in_a_column) + " ends";
 }
 
 std::string help_for(const MemoryNeed& need, const MemoryRoom& room) {
-    std::string help = repeat_within(need, room) + part_within(need, room);
+    std::string help = "simulate " + repeat_within(need, room) + part_within(need, room);
     if (does_as_draft(need, room)) help += ", or all of it as draft";
     if (room.server.empty()) help += ", or have a server do it that has so much";
     return help;
