@@ -109,6 +109,7 @@ TEST_CASE("tiling refuses nothing-times and more crossings than a card may have"
         REQUIRE_FALSE(tile(block, times, times, times));
     }
     REQUIRE_THAT(tile(block, 40000, 40000, 1).error().message, Catch::Contains("limit"));
+    REQUIRE_THAT(tile(block, 100'000, 1, 1000).error().message, Catch::Contains("where each layer counts: x times z"));
 }
 
 TEST_CASE("a block that claims a great height cannot be piled up into endless memory") {

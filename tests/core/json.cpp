@@ -122,6 +122,13 @@ TEST_CASE("what is not strict JSON is refused, with its place") {
     }
 }
 
+TEST_CASE("what breaks off or has a wrong word is told by place and reason, without the parser's grammar") {
+    CHECK(refusal("{\"a\": [1,\n2") == "is not JSON: line 2, column 2: it ends too early");
+    CHECK(refusal("") == "is not JSON: line 1, column 1: it ends too early");
+    CHECK(refusal("{\"a\": yes}") == "is not JSON: line 1, column 7: invalid literal");
+    CHECK(refusal("[1, }") == "is not JSON: line 1, column 5: unexpected '}'");
+}
+
 TEST_CASE("depth and members are bounded, whatever a file holds") {
     const auto nested = [](std::size_t depth) { return std::string(depth, '[') + std::string(depth, ']'); };
     REQUIRE(parse_json(nested(64)));

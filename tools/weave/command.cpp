@@ -72,8 +72,10 @@ Result<Yarns> load_cloth(const std::string& file) {
 std::string settle_whole(std::string& word, std::int64_t low, std::int64_t high) {
     const std::optional<std::int64_t> number = parse_whole(word);
     if (!is_whole(word)) return "'" + word + "' is not a whole number";
-    if (!number || *number < low || *number > high)
-        return "Value " + word + " not in range " + std::to_string(low) + " to " + std::to_string(high);
+    if (!number || *number < low || *number > high) {
+        const bool has_end = high < std::numeric_limits<std::int64_t>::max();
+        return "'" + word + "' is not from " + std::to_string(low) + (has_end ? " to " + std::to_string(high) : " on");
+    }
     word = std::to_string(*number);
     return "";
 }

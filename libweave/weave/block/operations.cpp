@@ -223,7 +223,7 @@ Result<Block> with_line_renumbered(const Block& block, System system, std::size_
 Status check_tile(const Extent& of, std::size_t x, std::size_t y, std::size_t z) {
     if (x == 0 || y == 0 || z == 0) return bad_input("a block is tiled at least once in each direction");
     if (x > most_yarns || y > most_yarns || z > most_yarns / std::max(x, y))
-        return bad_input("a block is tiled at most " + std::to_string(most_yarns) + " times in a direction");
+        return bad_input("a block is tiled at most " + std::to_string(most_yarns) + " times, where each layer counts: x times z, and y times z");
     WEAVE_CHECK_OK(check_card_size(of.picks * x * z, of.ends * y * z));
     return check_slots(of.stacks, of.height * z);
 }

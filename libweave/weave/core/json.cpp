@@ -14,11 +14,16 @@ constexpr std::size_t deepest_level = 64;
 constexpr std::size_t most_members =
     4096;  // who reads ordered objects searches linearly: a bound keeps hostile files cheap
 
-/// nlohmann's message without its own error number, so that it starts with the place: "line 3, column 7:
-/// ...".
+/// nlohmann's message from the place on, without what its grammar looked for and had read: "line 3, column 7: invalid literal".
 std::string parser_message(std::string message) {
     const auto place = message.find(" at line ");
-    if (place != std::string::npos) return message.substr(place + 4);
+    if (place != std::string::npos) {
+        message.erase(0, place + 4);
+        const auto grammar = message.find("syntax error while parsing "), reason = message.find(" - ", grammar);
+        if (reason == std::string::npos) return message;
+        const std::string why = message.substr(reason + 3, message.find("; ", reason) - reason - 3);
+        return message.substr(0, grammar) + (why == "unexpected end of input" ? "it ends too early" : why);
+    }
     const auto bracket = message.find("] ");
     return bracket == std::string::npos ? message : message.substr(bracket + 2);
 }

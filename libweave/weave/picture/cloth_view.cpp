@@ -12,6 +12,7 @@
 #include <cmath>
 #include <iterator>
 #include <new>
+#include <set>
 
 namespace weave {
 
@@ -41,8 +42,13 @@ std::string size_words(const Vec3& size) {
     return short_number(size.x()) + " × " + short_number(size.y()) + " × " + short_number(size.z()) + " mm";
 }
 
+/// How many picks, or ends, cross something: a weft that turns at the edges is one yarn and many picks. Of yarns that say nothing of
+/// crossings each counts.
 std::size_t count_of(const Yarns& yarns, System system) {
-    return static_cast<std::size_t>(std::ranges::count(yarns.yarns, system, &SimulatedYarn::system));
+    if (yarns.crossings.empty()) return static_cast<std::size_t>(std::ranges::count(yarns.yarns, system, &SimulatedYarn::system));
+    std::set<std::size_t> numbers;
+    for (const Crossing& crossing : yarns.crossings) numbers.insert(system == System::weft ? crossing.pick : crossing.end);
+    return numbers.size();
 }
 
 /// The text, cut with an ellipsis where it is wider than that.
@@ -96,8 +102,8 @@ PageText words_of(const Yarns& yarns, const ClothView& view, const TubeScene& sc
     PageText text;
     text.title = fitting(yarns.title.empty() ? "Relaxed cloth" : yarns.title, width, Page::title_size, true);
     std::vector<std::string> lines = in_lines({state_words(yarns.report) + ", seen " + side_words(view),
-                                               counted(count_of(yarns, System::weft), "weft") + " × " +
-                                                   counted(count_of(yarns, System::warp), "warp"),
+                                               counted(count_of(yarns, System::weft), "pick") + " × " +
+                                                   counted(count_of(yarns, System::warp), "end"),
                                                std::string("coloured by ") + words_of(view.colour).subtitle},
                                               "  ·  ", width);
     text.subtitle = lines.front();
