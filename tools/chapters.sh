@@ -173,7 +173,7 @@ release() {
     pictures two
     figure released-card.png "The card as it was released, one pixel a crossing: pick 1 at the bottom, end 1 at the left, black lifts" "true"
     pictures_end
-    text "The files: <a href=\"$for_tc2/\">for the TC2</a> a TIFF and the table of picks, and for the EP loom its controller’s file, the table and a picture, \
+    text "The files: <a href=\"$for_tc2/\">for the TC2</a> a TIFF, a WIF and the table of picks, and for the EP loom its controller’s file, a WIF, the table and a picture, \
 <a href=\"kept-by-otto/\">kept here</a> in a copy. Layout-compatible with observed files, not certified by the maker."
 }
 

@@ -26,8 +26,8 @@ Status check_config(const ServeConfig& config) {
     if (config.site.empty() || on_one_line(config.site) != config.site)
         return bad_input("must be a name on one line", "site");
     for (const auto& [member, place] : {std::pair("store", config.store), std::pair("standby", config.standby)})
-        if (!place.empty() && (!is_database(place) || on_one_line(place) != place))
-            return bad_input("must be a connection string of PostgreSQL, such as postgresql://db.mill.example/mill", member);
+        if (const Status known = place.empty() ? Status() : check_connection_string(place); !known)
+            return std::move(Error(known.error())).in(member);
     if (config.address.empty()) return bad_input("must be an address to listen on", "address");
     return check_service(config);
 }

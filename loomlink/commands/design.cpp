@@ -6,6 +6,7 @@
 #include <weave/wire/mill_designs.hpp>
 
 #include <cctype>
+#include <fstream>
 
 #include <loomlink/commands/client_command.hpp>
 #include <loomlink/commands/names.hpp>
@@ -35,6 +36,20 @@ Status show_design(wire::MillClient& client, const std::string& design, CommandO
     return {};
 }
 
+/// `2026-11-26T09:30:00.000Z by Abel Miller: it is so`
+std::string said(const Json& step, const std::string& words) {
+    std::string place;
+    for (const char* member : {"pick", "end"})
+        if (const std::string number = told(step, member); !number.empty()) place += std::string(", ") + member + " " + number;
+    return told(step, "at") + " by " + told(step, "by") + place + ": " + told(step, words);
+}
+
+std::string said(const Json& evidence) {
+    const std::string stale = told(evidence, "stale");
+    return told(evidence, "at") + " by " + told(evidence, "signer") + ": " + told(evidence, "kind") + " of " + told(evidence, "covers") +
+           ": " + told(evidence, "result") + (stale.empty() ? "" : "; stale: " + stale);
+}
+
 std::string revision_words(const Json& revision) {
     std::vector<std::vector<std::string>> facts{
         {"design", told(revision, "design") + ", revision " + told(revision, "number")},
@@ -46,13 +61,17 @@ std::string revision_words(const Json& revision) {
         {"SHA-256", told(revision, "sha256")},
         {"you may", told(revision, "may")}};
     std::erase_if(facts, [](const std::vector<std::string>& fact) { return fact.back().empty(); });
-    std::string words = in_columns(facts);
     for (const Json& text : entries(revision, "missing"))
-        words += "missing  " + (text.is_string() ? on_one_line(text.get<std::string>()) : text.dump()) + "\n";
-    words += in_columns(revision, "decisions", {"what", "by", "at", "reason"});
-    words += in_columns(revision, "waivers", {"rule", "loom", "by", "reason"});
-    words += in_columns(revision, "comments", {"at", "by", "pick", "end", "text"});
-    return words + in_columns(revision, "evidence", {"kind", "covers", "result", "signer", "at", "stale"});
+        facts.push_back({"missing", text.is_string() ? on_one_line(text.get<std::string>()) : text.dump()});
+    if (const Json submission = revision.value("submission", Json()); submission.is_object())
+        facts.push_back({"submitted", said(submission, "reason")});
+    for (const Json& decision : entries(revision, "decisions")) facts.push_back({told(decision, "what"), said(decision, "reason")});
+    for (const Json& waiver : entries(revision, "waivers"))
+        facts.push_back({"waived", told(waiver, "rule") + " for " + told(waiver, "loom") + " by " + told(waiver, "by") + ": " +
+                                       told(waiver, "reason")});
+    for (const Json& comment : entries(revision, "comments")) facts.push_back({"comment", said(comment, "text")});
+    for (const Json& evidence : entries(revision, "evidence")) facts.push_back({"evidence", said(evidence)});
+    return in_columns(facts);
 }
 
 Status show_revision(wire::MillClient& client, const RevisionPlace& place, CommandOutcome& outcome) {
@@ -67,8 +86,20 @@ struct SaveWords {
     std::vector<std::int64_t> also;
 };
 
+/// What is no design is told for what it is, also where it is larger than any design.
+Result<std::string> read_design_file(const std::string& file) {
+    auto text = read_file(file, wire::most_design_bytes);
+    if (text) return text;
+    std::string beginning(64, '\0');
+    std::ifstream stream(file, std::ios::binary);
+    stream.read(beginning.data(), static_cast<std::streamsize>(beginning.size()));
+    beginning.resize(static_cast<std::size_t>(stream.gcount()));
+    if (Status fits = check_beginning(beginning); !fits) return std::move(fits).error().in(file);
+    return text;
+}
+
 Status save(wire::MillClient& client, const SaveWords& words, CommandOutcome& outcome) {
-    WEAVE_TRY(std::string document, read_file(words.file, wire::most_design_bytes));
+    WEAVE_TRY(std::string document, read_design_file(words.file));
     std::optional<std::int64_t> expected = words.expected;
     if (!expected) {
         WEAVE_TRY(const wire::MillHistory history, wire::history_of(client, words.design));

@@ -77,6 +77,22 @@ Error not_as_written(const std::string& what, const AuditFinding& finding) {
     return {ErrorCode::refused, "is not as it was written: " + finding.text() + " (verify tells all)", what};
 }
 
+/// Whether the copy is what the site can go on with.
+Status check_copy(const SiteFolder& site, const std::string& from, const std::string& to, const LogFacts& told) {
+    WEAVE_TRY(const auto after, verify_site_in(site, to, {}));
+    if (!after.empty()) return not_as_written(to, after.front());
+    WEAVE_TRY(const LogFacts kept, log_facts(to));
+    if (!(kept == told)) return system_fault("has another log than " + from + "; the site was left where it is", to);
+    return refuse_written_to(from, told);
+}
+
+/// A move that was refused leaves nothing in the way of the next one.
+Error without_copy(Error why, const std::string& to) {
+    if (const Status removed = remove_copy(to); !removed)
+        why.message += " (and the copy stays in " + to + ": " + removed.error().text() + ")";
+    return why;
+}
+
 Status move_store(const SiteFolder& site, const std::string& wish, CommandOutcome& outcome) {
     if (!site.holds_site()) return bad_input("holds no store of loomlink", site.path.string());
     WEAVE_TRY(const FolderLock lock, FolderLock::take(site.path, "loomlink"));
@@ -91,11 +107,7 @@ Status move_store(const SiteFolder& site, const std::string& wish, CommandOutcom
     if (!before.empty()) return not_as_written(site.path.string(), before.front());
     WEAVE_TRY(const LogFacts told, log_facts(from));
     WEAVE_CHECK_OK(copy_store(from, to));
-    WEAVE_TRY(const auto after, verify_site_in(site, to, {}));
-    if (!after.empty()) return not_as_written(to, after.front());
-    WEAVE_TRY(const LogFacts kept, log_facts(to));
-    if (!(kept == told)) return system_fault("has another log than " + from + "; the site was left where it is", to);
-    WEAVE_CHECK_OK(refuse_written_to(from, told));
+    if (Status good = check_copy(site, from, to, told); !good) return without_copy(std::move(good).error(), to);
     WEAVE_CHECK_OK(switch_over(site, from, to));
     outcome.answer({{"from", from}, {"to", to}, {"records", told.size}, {"root", told.root}},
                    on_one_line(site.path.string()) + ": the store is in " + to + " now, every row as it was: " +

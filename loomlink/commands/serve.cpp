@@ -45,6 +45,7 @@ Status serve(ServeOptions& options, CommandOutcome& outcome) {
     };
     WEAVE_CHECK_OK(options.words.complete<ServeConfig>(options.config, parse_config, check));
     WEAVE_CHECK_OK(check_service_folder(options.folder));
+    if (options.words.is_check()) WEAVE_CHECK_OK(check_site({options.folder}, options.config));
     if (options.words.only_checks(outcome)) return {};
     log_to_stderr();
     WEAVE_TRY(const auto site, RunningSite::start({options.folder}, options.config));

@@ -50,15 +50,6 @@ Status copy_private(const fs::path& from, const fs::path& to) {
     return made;
 }
 
-Status copy_keys(const SiteFolder& from, const SiteFolder& to) {
-    for (const auto& [source, target] :
-         {std::pair(from.log_key(), to.log_key()), std::pair(from.stamp_key(), to.stamp_key()),
-          std::pair(from.access_key(), to.access_key()), std::pair(from.tls().key, to.tls().key),
-          std::pair(from.tls().certificate, to.tls().certificate)})
-        WEAVE_CHECK_OK(copy_private(source, target));
-    return {};
-}
-
 /// A folder that is being made; it goes unless it was put into place.
 class NewFolder {
   public:
@@ -153,6 +144,12 @@ Result<std::vector<AuditFinding>> verify_site_in(const SiteFolder& site, const s
     return findings;
 }
 
+Status copy_keys(const SiteFolder& from, const SiteFolder& to) {
+    const auto targets = to.key_files();
+    for (std::size_t k = 0; const fs::path& source : from.key_files()) WEAVE_CHECK_OK(copy_private(source, targets[k++]));
+    return {};
+}
+
 Status back_up_site(const SiteFolder& site, const fs::path& to) {
     WEAVE_CHECK_OK(check_store_is_there(site));
     const fs::path target = without_slash(to);
@@ -168,22 +165,6 @@ Status back_up_site(const SiteFolder& site, const fs::path& to) {
     WEAVE_CHECK_OK(copy_keys(site, copy));
     if (held.one_waits()) return system_fault("was asked to end; nothing was made", target.string());
     return made.put(target);
-}
-
-Status restore_site(const SiteFolder& backup, const SiteFolder& to) {
-    WEAVE_TRY(const auto findings, verify_site(backup, {}));
-    if (!findings.empty())
-        return Error{ErrorCode::refused,
-                     "is not as it was written: " + findings.front().text() + " (verify tells all)",
-                     backup.path.string()};
-    std::error_code code;
-    if (!fs::exists(to.path, code) && ::mkdir(to.path.c_str(), 0700) != 0)
-        return file_fault(to.path, "make the folder");
-    WEAVE_CHECK_OK(check_site_folder(to));
-    WEAVE_TRY(const FolderLock lock, FolderLock::take(to.path, "loomlink"));
-    WEAVE_TRY(const std::string target, to.store());
-    WEAVE_CHECK_OK(restore_store(backup.own_store(), target));
-    return copy_keys(backup, to);
 }
 
 }  // namespace weave::loomlink

@@ -20,8 +20,7 @@ Result<std::vector<AuditFinding>> verify_site_in(const SiteFolder& site, const s
 /// wherever it is, the server's keys and its certificate. Refused where `to` exists.
 Status back_up_site(const SiteFolder& site, const std::filesystem::path& to);
 
-/// Puts a backup into place, after verifying it; the folder may be missing, empty, or hold the site that is
-/// to be replaced. Keys that are there stay. Refused: a backup with findings, a folder that is being served.
-Status restore_site(const SiteFolder& backup, const SiteFolder& to);
+/// Copies the server's keys and its certificate. One that is missing is left out, one that is there stays.
+Status copy_keys(const SiteFolder& from, const SiteFolder& to);
 
 }  // namespace weave::loomlink

@@ -3,6 +3,7 @@
 #include <weave/core/file.hpp>
 #include <weave/keys/private_file.hpp>
 #include <weave/keys/server_key.hpp>
+#include <weave/net/server.hpp>
 
 #include <cerrno>
 #include <cstring>
@@ -81,10 +82,25 @@ Status check_tables(const std::string& store) {
                  store};
 }
 
-Result<OpenSite> open_old_site(FolderLock lock, const SiteFolder& folder, const ServeConfig& config) {
+/// Where the store of a site is. Refused: elsewhere than the configuration says.
+Result<std::string> place_of_store(const SiteFolder& folder, const ServeConfig& config) {
     WEAVE_TRY(const std::string place, folder.store());
-    if (!config.store.empty() && config.store != place)
-        return Error{ErrorCode::refused, "the store of this site is " + place + "; `loomlink migrate-store` moves it", "store"};
+    if (config.store.empty() || config.store == place) return place;
+    return Error{ErrorCode::refused, "the store of this site is " + place + "; `loomlink migrate-store` moves it", "store"};
+}
+
+Status check_keys(const SiteFolder& folder, const ServeConfig& config) {
+    WEAVE_CHECK_OK(load_server_key(folder.log_key(), ServerKeyRole::log));
+    WEAVE_CHECK_OK(load_server_key(folder.stamp_key(), ServerKeyRole::stamp));
+    std::error_code trouble;
+    if (fs::exists(fs::symlink_status(folder.access_key(), trouble)))
+        WEAVE_CHECK_OK(load_server_key(folder.access_key(), ServerKeyRole::access));
+    const bool is_own = !config.plain && config.certificate.empty() && fs::exists(folder.tls().certificate, trouble);
+    return is_own ? net::check_tls(folder.tls()) : Status();
+}
+
+Result<OpenSite> open_old_site(FolderLock lock, const SiteFolder& folder, const ServeConfig& config) {
+    WEAVE_TRY(const std::string place, place_of_store(folder, config));
     WEAVE_TRY(KeyPair log, load_server_key(folder.log_key(), ServerKeyRole::log));
     WEAVE_TRY(KeyPair stamp, load_server_key(folder.stamp_key(), ServerKeyRole::stamp));
     WEAVE_TRY(KeyPair access, access_key_of(folder));
@@ -120,6 +136,15 @@ Status check_site_folder(const SiteFolder& folder) {
     WEAVE_TRY(const bool empty, holds_nothing(folder.path));
     if (empty) return {};
     return Error{ErrorCode::refused, "holds no store of loomlink, and is not empty", folder.path.string()};
+}
+
+Status check_site(const SiteFolder& folder, const ServeConfig& config) {
+    std::error_code trouble;
+    if (fs::exists(folder.path, trouble)) WEAVE_CHECK_OK(check_site_folder(folder));
+    if (!folder.holds_site()) return config.store.empty() ? Status() : check_store(config.store, true);
+    WEAVE_TRY(const std::string place, place_of_store(folder, config));
+    WEAVE_CHECK_OK(check_keys(folder, config));
+    return check_store(place, false);
 }
 
 Result<OpenSite> open_site(const SiteFolder& folder, const ServeConfig& config) {

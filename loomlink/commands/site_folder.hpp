@@ -3,6 +3,7 @@
 #include <weave/command/serving.hpp>
 #include <weave/net/certificate.hpp>
 
+#include <array>
 #include <filesystem>
 #include <loomlink/commands/config.hpp>
 #include <loomlink/store/store.hpp>
@@ -29,10 +30,18 @@ struct SiteFolder {
     [[nodiscard]] std::filesystem::path stamp_key() const { return path / "stamp.key"; }
     [[nodiscard]] std::filesystem::path access_key() const { return path / "access.key"; }
     [[nodiscard]] net::TlsFiles tls() const { return {path / "tls.pem", path / "tls.key"}; }
+    /// All of them: the server's keys, and its certificate.
+    [[nodiscard]] std::array<std::filesystem::path, 5> key_files() const {
+        return {log_key(), stamp_key(), access_key(), tls().key, tls().certificate};
+    }
 };
 
 /// Refused: a folder with anything in it but a site.
 Status check_site_folder(const SiteFolder& folder);
+
+/// Whether open_site() would open or make a site in a folder, as far as can be seen without doing it: the folder, its keys and
+/// certificate, and its store or the database for a new one. Changes nothing.
+Status check_site(const SiteFolder& folder, const ServeConfig& config);
 
 /// A site that is open, for this process alone.
 struct OpenSite {

@@ -6,6 +6,7 @@
 #include <loomlink/commands/finding_words.hpp>
 #include <loomlink/commands/head_keeper.hpp>
 #include <loomlink/commands/site_copy.hpp>
+#include <loomlink/commands/site_restore.hpp>
 #include <memory>
 
 namespace weave::loomlink {
@@ -43,6 +44,38 @@ void add_verify(CLI::App& app, CommandOutcome& outcome) {
     on_run(command, outcome, [folder, retained, &outcome] { return verify(*folder, *retained, outcome); });
 }
 
+struct RestoreWords {
+    std::string from, to;
+    bool may_replace = false;
+};
+
+Status restore(const RestoreWords& words, CommandOutcome& outcome) {
+    WEAVE_TRY(const auto replaced, restore_site({words.from}, {words.to}, words.may_replace));
+    Json answer{{"folder", words.to}};
+    std::string told = on_one_line(words.to) + ": the site as it was. ";
+    if (replaced) {
+        answer["replaced"] = replaced->string();
+        told += "What was there is kept as " + on_one_line(replaced->string()) + ". ";
+    }
+    outcome.answer(answer, told + "Looms refuse a log that is shorter than they have seen: see loomlink/commands/README.md\n");
+    return {};
+}
+
+void add_restore(CLI::App& app, CommandOutcome& outcome) {
+    CLI::App* const command = add_command(
+        app, outcome, "restore",
+        "Put a backup into place, after verifying it; the site must not be served. What was the store there stays beside it as "
+        "loomlink.db.replaced. Refused where its log has records that the backup has not, or is another site's, unless --replace",
+        "loomlink restore /backup/mill-monday /srv/mill");
+    const auto words = std::make_shared<RestoreWords>();
+    add_text(command, "FROM", words->from, "the folder that backup made")->required();
+    add_text(command, "FOLDER", words->to, "the folder of the site: missing, empty, or the site to put back")->required();
+    command->add_flag("--replace", words->may_replace,
+                      "also where work since the backup is lost with it, or another site; of another site the keys are set aside too "
+                      "(log.key.replaced …)");
+    on_run(command, outcome, [words, &outcome] { return restore(*words, outcome); });
+}
+
 }  // namespace
 
 void add_upkeep_commands(CLI::App& app, CommandOutcome& outcome) {
@@ -61,20 +94,7 @@ void add_upkeep_commands(CLI::App& app, CommandOutcome& outcome) {
         outcome.answer({{"folder", *to}}, on_one_line(*to) + ": the site as it is now\n");
         return {};
     });
-    CLI::App* const restore = add_command(
-        app, outcome, "restore", "Put a backup into place, after verifying it; the site must not be served",
-        "loomlink restore /backup/mill-monday /srv/mill");
-    add_text(restore, "FROM", *from, "the folder that backup made")->required();
-    add_text(restore, "FOLDER", *to, "the folder of the site: missing, empty, or the site to replace")
-        ->required();
-    on_run(restore, outcome, [from, to, &outcome]() -> Status {
-        WEAVE_CHECK_OK(restore_site({*from}, {*to}));
-        outcome.answer({{"folder", *to}},
-                       on_one_line(*to) +
-                           ": the site as it was. Looms refuse a log that is shorter than they have "
-                           "seen: see loomlink/commands/README.md\n");
-        return {};
-    });
+    add_restore(app, outcome);
 }
 
 }  // namespace weave::loomlink

@@ -1,8 +1,11 @@
 #include <loomlink/service/gate.hpp>
 
+#include <weave/core/log.hpp>
+#include <weave/core/text.hpp>
 #include <weave/keys/secret_bytes.hpp>
 
 #include <loomlink/service/deeds.hpp>
+#include <loomlink/store/reach.hpp>
 #include <loomlink/workflow/denial.hpp>
 #include <utility>
 #include <variant>
@@ -168,7 +171,24 @@ class Gate::Keeper {
     net::Throttle m_strangers;
 };
 
+namespace {
+
+/// What a person is to do about it; the cause is for the log.
+net::Response lost_answer(Lost when, const Error& error) {
+    log(LogLevel::warning, "a request failed: " + on_one_line(error.text()));
+    if (when == Lost::before)
+        return net::error_answer(system_fault("the store is out of reach: nothing was recorded; repeat it once the store is back (the "
+                                              "server's log says what is wrong)"),
+                                 503);
+    return net::error_answer(system_fault("the store went while this was being recorded: it may be recorded, or not; look before you "
+                                          "repeat it (the server's log says what is wrong)"),
+                             504);
+}
+
+}  // namespace
+
 net::Response trouble_answer(const Error& error) {
+    if (const auto lost = lost_of(error)) return lost_answer(*lost, error);
     const auto denial = denial_of(error);
     if (!denial) return net::error_answer(error);
     switch (*denial) {

@@ -42,7 +42,8 @@ Json answers_of(const ApiRoute& route) {
         answers["422"] = error_answer("The weave does not allow it");
         answers["429"] = error_answer("Too often");
     }
-    answers["503"] = error_answer("Busy");
+    answers["503"] = error_answer("Busy, or the store is out of reach; nothing was recorded");
+    if (route.method != "GET") answers["504"] = error_answer("The store went while it recorded: it may be recorded, or not");
     return answers;
 }
 

@@ -54,7 +54,7 @@ std::vector<ApiRoute> document_table() {
          "application/json",
          2 * most_design_bytes},
         {"revision", "GET", "/designs/{design}/revisions/{n}", access::readers(),
-         "A revision: its state, hashes, sizes, decisions, waivers, comments, evidence, and what is missing",
+         "A revision: its state, hashes, sizes, submission, decisions, waivers, comments, evidence, and what is missing",
          "The members that API.md names"},
         {"revision.document",
          "GET",

@@ -12,9 +12,14 @@
 
 namespace weave::loomlink {
 
-namespace {
-
 namespace fs = std::filesystem;
+
+void remove_database(const fs::path& path) {
+    std::error_code ignored;
+    for (const char* suffix : {"", "-wal", "-shm", "-journal"}) fs::remove(path.string() + suffix, ignored);
+}
+
+namespace {
 
 constexpr int pages_a_step = 1024;
 constexpr int pause_ms = 50;
@@ -23,11 +28,6 @@ constexpr int most_pauses = 200;  // ten seconds of a store that is busy all the
 fs::path beside(const fs::path& to) {
     fs::path temporary = to;
     return temporary += ".part-" + std::to_string(::getpid());
-}
-
-void remove_database(const fs::path& path) {
-    std::error_code ignored;
-    for (const char* suffix : {"", "-wal", "-shm", "-journal"}) fs::remove(path.string() + suffix, ignored);
 }
 
 /// Removes a half-made copy unless it was put into place.
@@ -80,21 +80,41 @@ Status make_copy(const std::string& from, const std::string& to) {
     return copy_pages(*source, *target);
 }
 
-/// Closes the way to a store for all others for as long as the connection lives; refused while anybody has it
-/// open.
-Result<std::unique_ptr<sql::SqliteConnection>> shut(const fs::path& path) {
-    WEAVE_TRY(auto connection, sql::SqliteConnection::open_file(path.string(), sql::Access::write));
-    sqlite3_busy_timeout(connection->handle(), 0);
+struct Closed {
+    void operator()(sqlite3* file) const { sqlite3_close(file); }
+};
+using File = std::unique_ptr<sqlite3, Closed>;
+
+/// Closes the way to a store for all others for as long as the answer lives; refused while anybody has it open. What is so damaged
+/// that nobody can open it needs no closing.
+Result<File> shut(const fs::path& path) {
+    sqlite3* opened = nullptr;
+    int code = sqlite3_open_v2(path.c_str(), &opened, SQLITE_OPEN_NOMUTEX | SQLITE_OPEN_READWRITE, nullptr);
+    File file(opened);
     // Only the last connection may leave WAL, and the other journal takes no second one beside an exclusive
     // lock.
-    if (!connection->script("PRAGMA journal_mode = DELETE") || !connection->script("BEGIN EXCLUSIVE"))
+    for (const char* script : {"PRAGMA journal_mode = DELETE", "BEGIN EXCLUSIVE"})
+        if (code == SQLITE_OK) code = sqlite3_exec(opened, script, nullptr, nullptr, nullptr);
+    if (code == SQLITE_BUSY || code == SQLITE_LOCKED)
         return Error{ErrorCode::refused, "is in use; stop the program that has it open", path.string()};
-    return connection;
+    return file;
 }
 
-/// Replaces the file of a store that no program has open.
-Status put_into_place(const fs::path& backup, const fs::path& to) {
-    std::unique_ptr<sql::SqliteConnection> held;
+/// A second name for the file of a store, and its WAL, which a damaged one may still have, under that name alone.
+Status keep_as(const fs::path& file, const fs::path& aside) {
+    std::error_code code, ignored;
+    fs::create_hard_link(file, aside, code);
+    if (code) return system_fault("cannot be kept as " + aside.string() + ": " + code.message(), file.string());
+    const fs::path wal = file.string() + "-wal";
+    if (fs::exists(wal, ignored)) fs::rename(wal, aside.string() + "-wal", code);
+    if (code) return system_fault("cannot be set aside: " + code.message(), wal.string());
+    fs::remove(file.string() + "-shm", ignored);
+    return {};
+}
+
+/// Replaces the file of a store that no program has open, and keeps what was there.
+Status put_into_place(const fs::path& backup, const fs::path& to, const fs::path& aside) {
+    File held;
     std::error_code code;
     const Temporary temporary{beside(to)};
     WEAVE_CHECK_OK(make_empty(temporary.path));
@@ -102,10 +122,21 @@ Status put_into_place(const fs::path& backup, const fs::path& to) {
     WEAVE_CHECK_OK(flush(temporary.path, O_RDWR));
     if (fs::exists(to, code)) {
         WEAVE_TRY(held, shut(to));
+        WEAVE_CHECK_OK(keep_as(to, aside));
     }
     fs::rename(temporary.path, to, code);
     if (code) return system_fault("cannot be put into place: " + code.message(), to.string());
     return flush(folder_of(to), O_RDONLY | O_DIRECTORY);
+}
+
+/// A database keeps one store: the one that was there becomes a file. It goes again where nothing was replaced for certain.
+Status replace_in_database(const fs::path& backup, const std::string& database, const fs::path& aside) {
+    WEAVE_CHECK_OK(refuse_in_use(database));
+    WEAVE_TRY(const bool is_there, holds_store(database));
+    if (is_there) WEAVE_CHECK_OK(copy_store(database, aside.string()));
+    Status replaced = replace_store(backup, database);
+    if (is_there && !replaced && replaced.error().code != ErrorCode::system) remove_database(aside);
+    return replaced;
 }
 
 }  // namespace
@@ -126,12 +157,19 @@ Status copy_database(const std::string& from, const fs::path& to) {
     return make_database(to, [&](const std::string& temporary) { return make_copy(from, temporary); });
 }
 
-Status restore_store(const fs::path& backup, const std::string& to) {
+Result<bool> holds_store(const std::string& place) {
+    std::error_code code;
+    if (!is_database(place)) return fs::exists(place, code);
+    WEAVE_TRY(const auto connection, sql::Connection::open(place, sql::Access::read));
+    WEAVE_TRY(const bool is_empty, connection->is_empty());
+    return !is_empty;
+}
+
+Status restore_store(const fs::path& backup, const std::string& to, const fs::path& aside) {
     WEAVE_TRY(const auto findings, verify_store(backup));
     if (!findings.empty())
         return Error{ErrorCode::refused, "is not whole: " + findings.front().text(), backup.string()};
-    if (is_database(to)) return replace_store(backup, to);
-    return put_into_place(backup, to);
+    return is_database(to) ? replace_in_database(backup, to, aside) : put_into_place(backup, to, aside);
 }
 
 }  // namespace weave::loomlink

@@ -16,4 +16,7 @@ Status make_database(const std::filesystem::path& to, const std::function<Status
 /// exists.
 Status copy_database(const std::string& from, const std::filesystem::path& to);
 
+/// Removes the file of a database that nobody has open, with what SQLite keeps beside it.
+void remove_database(const std::filesystem::path& path);
+
 }  // namespace weave::loomlink

@@ -4,6 +4,7 @@
 
 #include <algorithm>
 #include <exception>
+#include <loomlink/store/reach.hpp>
 #include <loomlink/store/server.hpp>
 #include <utility>
 
@@ -76,8 +77,11 @@ void CommitQueue::work() {
 }
 
 void CommitQueue::commit_all(const std::deque<Job*>& jobs) {
+    m_is_committing = false;
     Status status = m_connection ? Status() : reopen();
     if (status) status = run_all(jobs);
+    const bool is_lost = !status && status.error().code == ErrorCode::system && !(m_connection && m_connection->is_usable());
+    if (is_lost) status = lost_store(m_is_committing ? Lost::in_commit : Lost::before, status.error());
     {
         const std::lock_guard lock(m_mutex);
         m_last_write = status ? first_fault(jobs) : status;
@@ -86,7 +90,7 @@ void CommitQueue::commit_all(const std::deque<Job*>& jobs) {
     // Nothing of the batch was stored, so nobody of it may believe so. Whose change was refused anyway keeps
     // the reason.
     for (Job* job : jobs)
-        if (job->outcome) job->outcome = status;
+        if (job->outcome || (is_lost && job->outcome.error().code == ErrorCode::system)) job->outcome = status;
     if (m_connection) m_connection->rollback();
     log(LogLevel::warning, "the store could not write: " + status.error().text());
     m_connection.reset();  // what a failed disk left in its cache is not to be trusted
@@ -96,6 +100,7 @@ Status CommitQueue::run_all(const std::deque<Job*>& jobs) {
     WEAVE_CHECK_OK(begin());
     for (Job* job : jobs) WEAVE_CHECK_OK(run_one(*job));
     WEAVE_TRY(const auto last, LogMark::newest(*m_connection));
+    m_is_committing = true;
     WEAVE_CHECK_OK(m_connection->commit());
     m_mark.set(last);
     return {};

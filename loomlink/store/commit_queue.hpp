@@ -26,7 +26,7 @@ class CommitQueue {
     CommitQueue(const CommitQueue&) = delete;
     CommitQueue& operator=(const CommitQueue&) = delete;
 
-    /// Answers once the change is on the disk, or is not stored at all.
+    /// Answers once the change is on the disk, or is not stored at all; where the server went, as lost_store() says.
     Status commit(const std::function<Status(Writer&)>& change);
 
     /// How the disk took the last commit.
@@ -55,6 +55,7 @@ class CommitQueue {
     std::condition_variable m_done;  ///< those who wait for an answer
     std::deque<Job*> m_waiting;
     bool m_ending = false;
+    bool m_is_committing = false;  ///< of the writer alone: all is asked for, but for the commit
     Status m_last_write;
     std::thread m_thread;
 };

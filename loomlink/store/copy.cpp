@@ -186,6 +186,19 @@ Status copy_store(const std::string& from, const std::string& to) {
     return make_database(to, [&](const std::string& file) { return copy_into(*source, file, false); });
 }
 
+Status remove_copy(const std::string& place) {
+    if (!is_database(place)) {
+        remove_database(place);
+        return {};
+    }
+    WEAVE_TRY(const auto target, sql::Connection::open(place, sql::Access::write));
+    WEAVE_CHECK_OK(target->begin_write());
+    Status status = make_room(*target, true);
+    if (status) status = target->commit();
+    target->rollback();
+    return status;
+}
+
 Status replace_store(const std::string& from, const std::string& database) {
     WEAVE_CHECK_OK(refuse_in_use(database));
     WEAVE_TRY(const auto source, open_source(from));

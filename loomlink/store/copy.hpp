@@ -11,7 +11,10 @@ namespace weave::loomlink {
 /// Refused: a file that exists, a database that is not empty, and what the target cannot keep.
 Status copy_store(const std::string& from, const std::string& to);
 
-/// The same in place of the store that a database holds. Refused: one that is in use, and another program's.
+/// Takes away what copy_store() has just made, so that it can be made again.
+Status remove_copy(const std::string& place);
+
+/// copy_store() in place of the store that a database holds. Refused: one that is in use, and another program's.
 Status replace_store(const std::string& from, const std::string& database);
 
 }  // namespace weave::loomlink

@@ -1,5 +1,6 @@
 #include <loomlink/store/server.hpp>
 
+#include <weave/core/text.hpp>
 #include <weave/sql/postgres.hpp>
 
 #include <thread>
@@ -11,6 +12,8 @@ namespace {
 using namespace std::chrono;
 
 constexpr milliseconds patience_with_standby{50}, pause{1};
+/// The server lists a session for a moment longer than its program lived.
+constexpr milliseconds patience_with_ending{5000}, glance{50};
 
 Status refuse_two_primaries(const std::string& place) {
     WEAVE_TRY(const auto servers, sql::servers_of(place));
@@ -31,6 +34,13 @@ bool is_database(const std::string& place) {
     return sql::engine_of(place) == sql::Engine::postgres;
 }
 
+Status check_connection_string(const std::string& place) {
+    if (!is_database(place) || on_one_line(place) != place)
+        return bad_input("must be a connection string of PostgreSQL, such as postgresql://db.mill.example/mill");
+    const auto servers = sql::servers_of(place);
+    return servers ? Status() : Status(servers.error());
+}
+
 Status check_clock(sql::Connection& connection, milliseconds now) {
     WEAVE_TRY(const std::int64_t theirs,
               connection.number("SELECT CAST(extract(epoch FROM clock_timestamp()) * 1000 AS bigint)"));
@@ -46,11 +56,13 @@ Status check_clock(sql::Connection& connection, milliseconds now) {
 Status refuse_in_use(const std::string& place) {
     if (!is_database(place)) return {};
     WEAVE_TRY(const auto connection, sql::Connection::open(place, sql::Access::read));
-    WEAVE_TRY(const std::int64_t others,
-              connection->number("SELECT count(*) FROM pg_stat_activity WHERE datname = current_database() AND application_name = "
-                                 "'weave' AND pid <> pg_backend_pid()"));
-    if (others == 0) return {};
-    return Error{ErrorCode::refused, "is in use; stop every program that has it open", place};
+    for (const auto end = steady_clock::now() + patience_with_ending; true; std::this_thread::sleep_for(glance)) {
+        WEAVE_TRY(const std::int64_t others,
+                  connection->number("SELECT count(*) FROM pg_stat_activity WHERE datname = current_database() AND application_name = "
+                                     "'weave' AND pid <> pg_backend_pid()"));
+        if (others == 0) return {};
+        if (steady_clock::now() > end) return Error{ErrorCode::refused, "is in use; stop every program that has it open", place};
+    }
 }
 
 Result<std::unique_ptr<sql::Connection>> open_writer(const std::string& place, const LogMark& mark) {

@@ -15,7 +15,11 @@ namespace weave::loomlink {
 /// Whether a place is a connection string of PostgreSQL, not the path of a file.
 bool is_database(const std::string& place);
 
-/// Refused: a store that programs of loomlink have open, on whatever machine. A file's program is known by the lock of its
+/// Whether it is a connection string that can be used: of PostgreSQL, and without a password in it.
+Status check_connection_string(const std::string& place);
+
+/// Refused: a store that programs of loomlink have open, on whatever machine, and still have after some seconds: what has just ended
+/// is in nobody's way. A file's program is known by the lock of its
 /// folder instead.
 Status refuse_in_use(const std::string& place);
 

@@ -8,6 +8,7 @@
 #include <loomlink/store/commit_queue.hpp>
 #include <loomlink/store/copy.hpp>
 #include <loomlink/store/migrations.hpp>
+#include <loomlink/store/reach.hpp>
 #include <loomlink/store/readers.hpp>
 #include <loomlink/store/server.hpp>
 
@@ -43,9 +44,11 @@ class Store::Core {
     Status view(const std::function<Status(const Reader&)>& ask) {
         if (m_standby)
             if (const auto lease = take_standby()) return call(ask, Reader(lease->connection()));
-        WEAVE_TRY(const auto lease, m_readers.take(m_mark));
-        WEAVE_CHECK_OK(lease.connection().begin_read());
-        return call(ask, Reader(lease.connection()));
+        const auto lease = m_readers.take(m_mark);
+        if (!lease) return lease.error().code == ErrorCode::system ? lost_store(Lost::before, lease.error()) : lease.error();
+        Status asked = lease->connection().begin_read();
+        if (asked) asked = call(ask, Reader(lease->connection()));
+        return asked || lease->connection().is_usable() ? asked : lost_store(Lost::before, asked.error());
     }
 
   private:
@@ -116,6 +119,15 @@ Result<Store> Store::open(const std::string& place, const std::string& standby) 
     WEAVE_CHECK_OK(Reader(*connection).site());
     WEAVE_TRY(const auto newest, LogMark::newest(*connection));
     return Store(std::make_unique<Core>(place, std::move(connection), standby, newest));
+}
+
+Status check_store(const std::string& place, bool is_new) {
+    WEAVE_TRY(const auto connection, open_writer(place, {}));
+    if (Status known = sql::can_migrate(*connection, migrations(connection->engine()), store_owner); !known)
+        return std::move(known).error().in(place);
+    if (!is_new) return {};
+    WEAVE_TRY(const bool is_empty, connection->is_empty());
+    return is_empty ? Status() : Error{ErrorCode::refused, "the database is not empty", place};
 }
 
 Status Store::commit(const std::function<Status(Writer&)>& change) {

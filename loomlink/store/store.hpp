@@ -33,8 +33,8 @@ class Store {
     Store& operator=(Store&&) noexcept;
 
     /// Runs `change` in the one writer thread and answers once it is on the disk: all of it, or nothing where
-    /// `change` or the disk fails. Changes that wait together share one commit. `change` must not call the
-    /// store itself.
+    /// `change` or the disk fails, and where the server is away (lost_of()). Changes that wait together share one commit. `change`
+    /// must not call the store itself.
     Status commit(const std::function<Status(Writer&)>& change);
     /// The same with an answer: `change` gives a Status or a Result.
     template <class Change>
@@ -76,15 +76,21 @@ class Store {
     std::unique_ptr<Core> m_core;
 };
 
+/// Whether Store::open() would take a place, or Store::create() one on a server where it `is_new`. Changes nothing.
+Status check_store(const std::string& place, bool is_new);
+
 /// Asks a store on one unchanging view; changes nothing, also while it is in use.
 Status look_into(const std::string& place, const std::function<Status(const Reader&)>& ask);
 
 /// Copies a store, in use or not, into a new file of SQLite. Refused where it exists.
 Status back_up_store(const std::string& place, const std::filesystem::path& to);
 
-/// Puts a backup into place, whole or not at all, after verifying it. Refused: a backup with findings, and a
-/// target that a program has open.
-Status restore_store(const std::filesystem::path& backup, const std::string& to);
+/// Whether there is a file, or anything in a database.
+Result<bool> holds_store(const std::string& place);
+
+/// Puts a backup into place, whole or not at all, after verifying it. The store that was there stays as the file `aside`,
+/// which must not exist. Refused: a backup with findings, and a target that a program has open.
+Status restore_store(const std::filesystem::path& backup, const std::string& to, const std::filesystem::path& aside);
 
 /// What verify_store() trusts beforehand. What is missing is not checked.
 struct StoreTrust {

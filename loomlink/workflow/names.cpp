@@ -75,7 +75,7 @@ bool is_plain(char c) {
 Status check_size(const std::string& text, const std::string& member, std::size_t least, std::size_t most) {
     if (!is_utf8(text)) return bad_input("is not UTF-8", member);
     if (text.size() < least) return bad_input("is missing", member);
-    if (text.size() > most) return bad_input("has more than " + std::to_string(most) + " bytes", member);
+    if (text.size() > most) return bad_input("is longer than " + std::to_string(most) + " bytes", member);
     return {};
 }
 

@@ -30,6 +30,20 @@ Result<Json> decisions_json(const Reader& reader, const Revision& revision) {
     return list;
 }
 
+/// Who submitted it, when and why; null of a draft.
+Result<Json> submission_json(const Reader& reader, const Revision& revision) {
+    WEAVE_TRY(const auto steps, reader.revision_steps(revision.id));
+    for (const auto& step : steps) {
+        if (step.state != RevisionState::submitted) continue;
+        WEAVE_TRY(const EventRecord record, reader.record(step.event));
+        WEAVE_TRY(const auto person, reader.person(record.statement.actor));
+        return Json{{"by", person ? person->full_name : record.statement.actor},
+                    {"at", record.statement.at},
+                    {"reason", record.statement.reason.value_or("")}};
+    }
+    return Json(nullptr);
+}
+
 Result<Json> waivers_json(const Reader& reader, const Revision& revision) {
     WEAVE_TRY(const auto waivers, waivers_with_looms(reader, revision.id));
     Json list = Json::array();
@@ -167,6 +181,7 @@ Result<Json> revision_json(const Reader& reader, const Caller& caller, const Fou
     WEAVE_TRY(json["missing"], missing_for_release(reader, found.design, found.revision));
     WEAVE_TRY(json["waivers"], waivers_json(reader, found.revision));
     WEAVE_TRY(json["evidence"], evidence_json(reader, found.design, found.revision));
+    WEAVE_TRY(json["submission"], submission_json(reader, found.revision));
     WEAVE_TRY(json["decisions"], decisions_json(reader, found.revision));
     WEAVE_TRY(json["comments"], comments_json(reader, found.revision));
     json["feeders"] = feeders_json(design);

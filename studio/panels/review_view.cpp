@@ -187,6 +187,8 @@ std::vector<Entry> entries_of(const wire::MillReview& review) {
     std::vector<Entry> list{
         {review.revision.at, entry_html("", ReviewView::tr("Saved"), review.revision.author,
                                         review.revision.at, safe(review.revision.message))}};
+    if (const auto& step = review.submission)
+        list.push_back({step->at, entry_html("#0060a0", ReviewView::tr("Submitted"), step->by, step->at, safe(step->reason))});
     for (const wire::MillDecision& one : review.decisions) {
         const bool approved = one.what == "approved";
         list.push_back({one.at, entry_html(approved ? "#00795a" : "#b34f00",

@@ -3,6 +3,9 @@
 #include "commands_case.hpp"
 #include "server_case.hpp"
 
+#include <atomic>
+#include <thread>
+
 namespace weave::loomlink::testing {
 
 namespace fs = std::filesystem;
@@ -88,6 +91,58 @@ TEST_CASE("a move that cannot be leaves the site where it is", "[commands][serve
     CHECK(server.number("SELECT count(*) FROM pg_tables WHERE schemaname = 'public'", unused) == 0);
     CHECK(fs::exists(mill.site_folder / "loomlink.db"));
     CHECK_FALSE(fs::exists(mill.site_folder / "store.url"));
+}
+
+TEST_CASE("a store whose last program has just ended is moved, and a move that is refused late leaves nothing behind", "[commands][server]") {
+    if (there_is_no_server()) return;
+    CommandMill mill;
+    mill.set_up();
+    mill.stop();
+    const auto migrate = [&](const std::string& to) { return mill.run({"migrate-store", mill.site_folder, to}); };
+    PostgresServer& server = PostgresServer::shared();
+    const std::string name = server.make_database(), database = server.place(name);
+    const auto connect = [&] { return sql::Connection::open(database, sql::Access::read).value(); };
+    {
+        // Somebody writes on past the program's lock, which is seen when all has been copied.
+        Store other = got(Store::open(SiteFolder{mill.site_folder}.own_store()));
+        std::atomic<bool> is_over = false;
+        std::thread writer([&] {
+            const Statement viewed{"mill", "log.viewed", "2026-11-26T09:30:00.000Z", "emil", {}, {}, "r1"};
+            while (!is_over) static_cast<void>(other.write([&](Writer& store) { return store.append(viewed); }));
+        });
+        const Ended late = migrate(database);
+        is_over = true;
+        writer.join();
+        CHECK_THAT(late.err, Catch::Contains("was written to meanwhile") || Catch::Contains("has another log than"));
+        CHECK(server.number("SELECT count(*) FROM pg_tables WHERE schemaname = 'public'", name) == 0);
+    }
+    const Ended moved = migrate(database);
+    INFO(moved.err);
+    REQUIRE(moved.code == 0);
+
+    std::thread late_comer([&] {
+        const auto is_copied = [&] {
+            for (const auto& entry : fs::directory_iterator(mill.site_folder))
+                if (entry.path().filename().string().starts_with("loomlink.db.part-")) return true;
+            return false;
+        };
+        while (!is_copied()) std::this_thread::yield();
+        const auto session = connect();
+        std::this_thread::sleep_for(std::chrono::seconds(8));
+    });
+    const Ended refused = migrate("file");
+    late_comer.join();
+    CHECK_THAT(refused.err, Catch::Contains("is in use"));
+    CHECK_FALSE(fs::exists(mill.site_folder / "loomlink.db"));
+
+    std::thread ending([session = connect()]() mutable {
+        std::this_thread::sleep_for(std::chrono::seconds(1));
+        session.reset();
+    });
+    const Ended back = migrate("file");
+    ending.join();
+    INFO(back.err);
+    CHECK(back.code == 0);
 }
 
 TEST_CASE("a new site is made in a database where the configuration names one", "[commands][server]") {

@@ -149,6 +149,12 @@ TEST_CASE("what is saved and is no design is told for what it is", "[commands]")
     refused("card.png", "is no design, which would begin with {");
     refused("cloth.yarns", "holds relaxed yarns, no design");
     refused("half.weave", "is not JSON");
+    REQUIRE(write_file(mill.at("large.yarns"), "weave-yarns 1\n" + std::string(std::size_t{33} << 20, '.')));
+    refused("large.yarns", "holds relaxed yarns, no design");
+    REQUIRE(write_file(mill.at("large.weave"), "{" + std::string(std::size_t{33} << 20, ' ')));
+    refused("large.weave", "is larger than the limit");
+    const Ended long_winded = mill.as("dora", {"save", mill.at("half.weave"), "cloth", "--message", std::string(4001, 'a')});
+    CHECK_THAT(long_winded.err, Catch::Contains("--message: is longer than 4000 bytes"));
     const Ended picture = mill.as("mary", {"loom", "add", "nine", mill.at("card.png")});
     CHECK(picture.code == 3);
     CHECK_THAT(picture.err, Catch::Contains("card.png: is no profile of a loom"));

@@ -33,6 +33,13 @@ TEST_CASE("a design goes from a first file to the loom and back by commands alon
     const Json revision = mill.done("emil", {"design", "show", "cloth", "1"});
     CHECK(revision.at("state") == "released");
     CHECK(revision.at("comments").size() == 1);
+    CHECK(revision.at("submission").at("by") == "The dora");
+    CHECK(revision.at("submission").at("reason") == "It is so");
+    CHECK(mill.done("emil", {"design", "show", "cloth", "2"}).at("submission").is_null());
+    const std::string words = mill.run({"design", "show", "cloth", "1", "--session", mill.at("emil")}).out;
+    CHECK_THAT(words, Catch::Contains("\nsubmitted  20") && Catch::Contains(" by The dora: It is so\n") && Catch::Contains("\napproved   20") &&
+                          Catch::Contains(" by The abel: It is so\n") && Catch::Contains("\ncomment    20") &&
+                          Catch::Contains(" by The dora, pick 2: Is this wanted?\n") && Catch::Contains("\nstate      released\n"));
     mill.done("emil", {"export", "cloth", "1", "-o", mill.at("back.weave")});
     CHECK(read_file(mill.at("back.weave")).value() == read_file(mill.at("twill-2-2.weave")).value());
     mill.done("emil", {"export", "cloth", "1", "-o", mill.at("bundle")});

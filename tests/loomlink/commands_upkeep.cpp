@@ -161,7 +161,7 @@ TEST_CASE("heads kept in a second place find out who rewrites the log, and a los
     REQUIRE(write_file(mill.heads, kept));
 
     const auto second_place = std::exchange(mill.heads, "");
-    REQUIRE(mill.run({"restore", mill.at("backup"), mill.site_folder}).code == 0);
+    REQUIRE(mill.run({"restore", mill.at("backup"), mill.site_folder, "--replace"}).code == 0);
     mill.start();  // another history, signed by the same key
     for (const char* sample : {"satin-5", "rib", "basket"}) mill.save(sample);
     mill.stop();
@@ -232,7 +232,7 @@ TEST_CASE("looms refuse a site that was put back to an older time, until it has 
     mill.done("mary", {"policy", "--approvals", "2"});
     REQUIRE(mill.run(mill.pull_words({"--trust", mill.trust_fingerprint()})).code == 0);
     mill.stop();
-    REQUIRE(mill.run({"restore", mill.at("backup"), mill.site_folder}).code == 0);
+    REQUIRE(mill.run({"restore", mill.at("backup"), mill.site_folder, "--replace"}).code == 0);
     mill.start();
     const Ended replayed = mill.run(mill.pull_words());
     CHECK(replayed.code == 4);

@@ -67,7 +67,7 @@ TEST_CASE("what cannot be understood is logged with what was attempted and where
         return flow.steps().submit(dora, mill.ask("dora"), {"shoe", 1, long_reason}, {"EP 1"});
     });
     CHECK(said.data == sorted(Json{{"what", "revision.submitted"}, {"revision", 1}, {"looms", {"EP 1"}}}));
-    CHECK(*said.reason == "reason: has more than 4000 bytes");
+    CHECK(*said.reason == "reason: is longer than 4000 bytes");
 
     got(flow.steps().submit(dora, mill.ask("dora"), {"shoe", 1, "ready"}, {}));
     said = mill.record_of([&] {

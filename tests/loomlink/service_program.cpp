@@ -3,6 +3,7 @@
 
 #include <weave/core/file.hpp>
 
+#include <support/postgres_server.hpp>
 #include <support/temporary_folder.hpp>
 
 using namespace weave;
@@ -129,4 +130,45 @@ TEST_CASE("a configuration is checked without serving, and says whether it could
     CHECK_FALSE(std::filesystem::exists(folder.path / "other"));
     serving.end(SIGTERM);
     CHECK(serving.exit_code() == 0);
+}
+
+TEST_CASE("a check of a configuration refuses what serving would refuse of the folder, its keys and its store") {
+    const TemporaryFolder folder;
+    const std::string told = folder.path / "told.txt", site = folder.path / "site", letters = folder.path / "letters";
+    const auto refused = [&](const std::string& of, std::vector<std::string> more, int code, const std::string& words) {
+        more.insert(more.begin(), {"serve", of, "--port", "0", "--json"});
+        for (const bool only_checks : {true, false}) {
+            INFO(words << (only_checks ? ", checked" : ", served"));
+            if (only_checks) more.emplace_back("--check-config");
+            Program program(more, told);
+            const std::string answer = program.line();
+            CHECK(program.exit_code() == code);
+            CHECK_THAT(answer, Catch::Contains(words));
+            if (only_checks) more.pop_back();
+        }
+    };
+    REQUIRE(std::filesystem::create_directory(letters));
+    REQUIRE(write_file(letters + "/letter.txt", "dear"));
+    refused(letters, {}, 4, "is not empty");
+    if (weave::testing::PostgresServer::is_installed()) {
+        refused(site, {"--store", "postgresql://a:b@h/d"}, 3, "must hold no password");
+        refused(site, {"--standby", "postgresql://a:b@h/d"}, 3, "must hold no password");
+        refused(site, {"--store", "postgresql://localhost:1/d"}, 5, "no connection to the server");
+        auto& server = weave::testing::PostgresServer::shared();
+        const std::string full = server.make_database();
+        server.run("CREATE TABLE theirs (x bigint)", full);
+        refused(site, {"--store", server.place(full)}, 4, "another program's database");
+        CHECK_FALSE(std::filesystem::exists(site));
+    }
+    REQUIRE(Program({"init", site, "--host", "localhost", "--json"}, told).exit_code() == 0);
+    CHECK(Program({"serve", site, "--port", "0", "--check-config"}, told).exit_code() == 0);
+    const auto without = [&](const std::string& name, const std::string& bytes, int code, const std::string& words) {
+        const std::string kept = read_file(site + "/" + name).value();
+        REQUIRE(write_file(site + "/" + name, bytes));
+        refused(site, {}, code, words);
+        REQUIRE(write_file(site + "/" + name, kept));
+    };
+    without("log.key", "no key", 3, "log.key");
+    without("tls.pem", "no certificate", 3, "tls.pem");
+    without("loomlink.db", std::string(5000, '.'), 5, "is damaged, or is no store");
 }

@@ -60,32 +60,36 @@ TEST_CASE("a backup of a store in use is a store as of one moment") {
 TEST_CASE("a restore is whole or not at all, and never under a running store") {
     const Folder folder;
     const std::string path = folder.store("s.db");
-    const auto copy = folder / "copy.db";
-    const auto size = [&] {
-        return Store::open(path).value().read([](const Reader& reader) { return reader.log_size(); }).value();
+    const auto copy = folder / "copy.db", aside = folder / "aside.db";
+    const auto size = [&](const std::string& place) {
+        return Store::open(place).value().read([](const Reader& reader) { return reader.log_size(); }).value();
     };
     {
         Store store = Store::create(path, "mill").value();
         REQUIRE(store.write([](Writer& writer) { return note(writer); }));
         REQUIRE(back_up_store(path, copy));
         REQUIRE(store.write([](Writer& writer) { return note(writer); }));
-        REQUIRE_THAT(text_of(restore_store(copy, path)), Catch::Contains("in use"));
+        REQUIRE_THAT(text_of(restore_store(copy, path, aside)), Catch::Contains("in use"));
         REQUIRE(store.write([](Writer& writer) { return note(writer); }));
     }
-    REQUIRE(size() == 3);
-    REQUIRE(text_of(restore_store(copy, path)).empty());
-    REQUIRE(size() == 1);
-    REQUIRE(text_of(restore_store(copy, folder / "new.db")).empty());
+    REQUIRE(size(path) == 3);
+    REQUIRE(text_of(restore_store(copy, path, aside)).empty());
+    REQUIRE(size(path) == 1);
+    REQUIRE(size(aside) == 3);  // what was there is kept
+    REQUIRE(all_text(verify_store(aside).value()).empty());
+    REQUIRE(text_of(restore_store(copy, folder / "new.db", folder / "none.db")).empty());
+
+    REQUIRE_FALSE(std::filesystem::exists(folder / "none.db"));
 
     tamper_with(copy, "DROP TRIGGER event_no_update; UPDATE event SET actor = 'mallory'");
-    REQUIRE_THAT(text_of(restore_store(copy, path)), Catch::Contains("is not whole"));
-    REQUIRE(size() == 1);
+    REQUIRE_THAT(text_of(restore_store(copy, path, aside)), Catch::Contains("is not whole"));
+    REQUIRE(size(path) == 1);
     std::ofstream(folder / "text.db")
         << "no database, but long enough to be read as one, a hundred bytes and more: "
         << std::string(200, '.');
-    REQUIRE_FALSE(restore_store(folder / "text.db", path));
-    REQUIRE_FALSE(restore_store(folder / "missing.db", path));
-    REQUIRE(size() == 1);
+    REQUIRE_FALSE(restore_store(folder / "text.db", path, aside));
+    REQUIRE_FALSE(restore_store(folder / "missing.db", path, aside));
+    REQUIRE(size(path) == 1);
     for (const auto& entry : std::filesystem::directory_iterator(copy.parent_path()))
         REQUIRE(entry.path().string().find(".part-") == std::string::npos);
 }

@@ -54,6 +54,7 @@ TEST_CASE(
     window.submit("The first pocket");
     window.wait_for("told", "submitted, waits for approval");
     window.wait_for("state", "Revision 1 is submitted");
+    CHECK(window.talk().contains("Submitted"));
     CHECK(window.find<QPlainTextEdit>("note").toPlainText().isEmpty());
     CHECK(window.find<QLineEdit>("signing_password").text().isEmpty());
     window.wait_for("changes", "is what revision 1 holds");

@@ -113,6 +113,20 @@ TEST_CASE("a change is asked for again under its own id when the connection brea
     CHECK(id.size() >= 8);
 }
 
+TEST_CASE("where an earlier try may have been recorded nobody is told that nothing was", "[mill]") {
+    const std::string away = http("503 Service Unavailable", R"({"error":{"kind":"system","message":"nothing was recorded"}})");
+    for (const std::string& first : {std::string(), http("504 Gateway Timeout", "{}")}) {
+        ScriptedServer server({first, away, away});
+        const auto answer = client_of(server).post("/designs", {{"name", "x"}});
+        REQUIRE_FALSE(answer);
+        CHECK(answer.error().code == ErrorCode::system);
+        CHECK_THAT(answer.error().text(), Catch::Contains("may have been recorded") && Catch::Contains("look before you repeat it"));
+        CHECK(server.bodies.size() == 3);
+    }
+    ScriptedServer server({away, away, away});
+    CHECK(client_of(server).post("/designs", {{"name", "x"}}).error().message == "nothing was recorded");
+}
+
 TEST_CASE("what a server answers is believed for what it is, and nothing more", "[mill]") {
     struct Case {
         std::string answer;
@@ -221,7 +235,7 @@ TEST_CASE("the history of a design says where a branch stands and where a new on
 TEST_CASE("a review is read for what it says; what is not there is empty", "[mill]") {
     const std::string body =
         R"({"design":"shoe","number":3,"state":"submitted","author":"dora","author_name":"Dora Dill","picks":8,"ends":4,
-        "missing":["1 approval"],"may":["comment",7],"decisions":[{"what":"approved","by":"Abel","at":"t","reason":"Fine"}],
+        "missing":["1 approval"],"may":["comment",7],"submission":{"by":"Dora","at":"s","reason":"Ready"},"decisions":[{"what":"approved","by":"Abel","at":"t","reason":"Fine"}],
         "comments":[{"by":"Abel","at":"t","text":"Here","pick":3}],"evidence":[{"kind":"simulation","covers":"all","result":"draft","signer":"box","at":"t","stale":null}]})";
     ScriptedServer server({http("200 OK", body)});
     wire::MillClient client = client_of(server);
@@ -234,6 +248,7 @@ TEST_CASE("a review is read for what it says; what is not there is empty", "[mil
     CHECK_FALSE(review->comments.at(0).end);
     CHECK(review->evidence.at(0).stale.empty());
     CHECK(review->decisions.at(0).reason == "Fine");
+    CHECK(review->submission == wire::MillDecision{"submitted", "Dora", "s", "Ready"});
 }
 
 TEST_CASE("an answer without what it must have is no answer", "[mill]") {

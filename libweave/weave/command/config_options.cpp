@@ -10,7 +10,7 @@ namespace weave {
 ConfigOptions::ConfigOptions(CLI::App* command, const std::string& more) : m_command(command) {
     command->add_option("--config", m_file, "a file of JSON with what else stands here, and more (" + more + ")")->type_name("FILE");
     command->add_flag("--check-config", m_check_only,
-                      "say whether it could be served so: what is configured, its files, and that address and port are free; and end");
+                      "say whether it could be served so, as far as that can be seen without serving; and end");
 }
 
 void ConfigOptions::add_service(ServiceConfig& config) {

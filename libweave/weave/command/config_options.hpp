@@ -40,6 +40,7 @@ class ConfigOptions {
     /// Adds the options for what every service is told.
     void add_service(ServiceConfig& config);
 
+    [[nodiscard]] bool is_check() const { return m_check_only; }
     /// Whether nothing is to be served; if so, answers that the configuration is valid.
     [[nodiscard]] bool only_checks(CommandOutcome& outcome) const;
 

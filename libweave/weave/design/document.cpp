@@ -40,14 +40,6 @@ Status check_version(const Json& document) {
     return {};
 }
 
-/// Why a text that is no JSON is no design: another kind of file is named, since where it is no JSON would help nobody.
-Error no_design(std::string_view text, Error trouble) {
-    if (text.starts_with("weave-yarns ")) return bad_input("holds relaxed yarns, no design");
-    const std::size_t first = text.find_first_not_of(" \t\r\n");
-    if (first == std::string_view::npos || text[first] == '{' || text[first] == '[') return trouble;
-    return bad_input("is no design, which would begin with {; cards, WIF and files of loom controllers have to be imported first");
-}
-
 }  // namespace
 
 std::string write_document(const Design& design) {
@@ -57,9 +49,19 @@ std::string write_document(const Design& design) {
     return document.dump(1, ' ', false, Json::error_handler_t::replace) + "\n";
 }
 
+Status check_beginning(std::string_view text) {
+    if (text.starts_with("weave-yarns ")) return bad_input("holds relaxed yarns, no design");
+    const std::size_t first = text.find_first_not_of(" \t\r\n");
+    if (first == std::string_view::npos || text[first] == '{' || text[first] == '[') return {};
+    return bad_input("is no design, which would begin with {; cards, WIF and files of loom controllers have to be imported first");
+}
+
 Result<Design> read_document(std::string_view text) {
     auto parsed = parse_json(text);
-    if (!parsed) return no_design(text, std::move(parsed).error());
+    if (!parsed) {
+        WEAVE_CHECK_OK(check_beginning(text));  // where another kind of file is no JSON would help nobody
+        return std::move(parsed).error();
+    }
     const Json document = *std::move(parsed);
     WEAVE_CHECK_OK(check_version(document));
     JsonReader reader(document, "");

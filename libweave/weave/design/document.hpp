@@ -15,6 +15,9 @@ inline constexpr int document_version = 1;
 /// made gives an equal design, and writing it again the same bytes.
 std::string write_document(const Design& design);
 
+/// Refused: what begins as a file of another kind does, which is told for what it is.
+Status check_beginning(std::string_view text);
+
 /// Reads a `.weave` document and checks it (see check()). Errors name the place, such as
 /// `blocks.toe.stacks[3][4]`; a file of another kind is told for what it is.
 Result<Design> read_document(std::string_view text);

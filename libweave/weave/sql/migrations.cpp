@@ -37,14 +37,19 @@ Status step_up(Connection& connection, const Migration& step, const Owner& owner
 
 }  // namespace
 
-Status migrate(Connection& connection, std::span<const Migration> steps, const Owner& owner) {
+Status can_migrate(Connection& connection, std::span<const Migration> steps, const Owner& owner) {
     WEAVE_TRY(const Stamp stamp, connection.stamp());
     WEAVE_CHECK_OK(refuse_foreign(connection, stamp, owner));
-    if (stamp.version > steps.back().version)
-        return Error{ErrorCode::refused,
-                     "is a store of version " + std::to_string(stamp.version) + "; this program knows up to " +
-                         std::to_string(steps.back().version),
-                     {}};
+    if (stamp.version <= steps.back().version) return {};
+    return Error{ErrorCode::refused,
+                 "is a store of version " + std::to_string(stamp.version) + "; this program knows up to " +
+                     std::to_string(steps.back().version),
+                 {}};
+}
+
+Status migrate(Connection& connection, std::span<const Migration> steps, const Owner& owner) {
+    WEAVE_CHECK_OK(can_migrate(connection, steps, owner));
+    WEAVE_TRY(const Stamp stamp, connection.stamp());
     for (const Migration& step : steps)
         if (step.version > stamp.version) WEAVE_CHECK_OK(step_up(connection, step, owner));
     return {};

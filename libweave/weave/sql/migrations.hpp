@@ -19,9 +19,11 @@ struct Owner {
     std::string_view program;  ///< for messages
 };
 
+/// Whether migrate() would take a database. Refused: a version newer than the last one, and another program's database.
+Status can_migrate(Connection& connection, std::span<const Migration> steps, const Owner& owner);
+
 /// Brings a database to the last version, each step in a transaction of its own with its foreign keys
-/// checked. An empty database becomes the owner's. Refused: a version newer than the last one, and another
-/// program's database.
+/// checked. An empty database becomes the owner's. Refused as of can_migrate().
 Status migrate(Connection& connection, std::span<const Migration> steps, const Owner& owner);
 
 }  // namespace weave::sql

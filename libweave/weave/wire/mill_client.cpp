@@ -71,9 +71,14 @@ void wipe_secrets(Json& body) {
         if (body.contains(member) && body[member].is_string()) wipe(body[member].get_ref<std::string&>());
 }
 
-/// Whether it is worth asking again: nobody knows whether the request arrived, or it did not get a turn.
+/// Whether nobody knows what came of a change: the way was lost, or the server's store.
+bool may_be_done(const Result<net::Response>& response) {
+    return response ? response->status == 504 : response.error().code == ErrorCode::system;
+}
+
+/// Whether it is worth asking again: that, or the request did not get a turn.
 bool may_have_failed(const Result<net::Response>& response) {
-    return response ? response->status == 503 : response.error().code == ErrorCode::system;
+    return may_be_done(response) || (response && response->status == 503);
 }
 
 Error lacks(const std::string& member) {
@@ -137,10 +142,16 @@ Result<Json> MillClient::change(const std::string& method, const std::string& pa
     wipe_secrets(body);
     request.headers.set("Content-Type", "application/json");
     auto response = send(request);
+    bool is_unsure = may_be_done(response);
     auto pause = first_pause;
-    for (int tries = 1; tries < most_tries && may_have_failed(response); ++tries, pause *= 2)
+    for (int tries = 1; tries < most_tries && may_have_failed(response); ++tries, pause *= 2) {
         response = waits(pause) ? send(request) : Error{ErrorCode::refused, "the request was given up", place_of(path)};
+        is_unsure |= may_be_done(response);
+    }
     wipe(request.body);
+    if (is_unsure && response && response->status == 503)  // it speaks of the last try alone
+        return system_fault("an earlier try of this may have been recorded, and now the server cannot say: look before you repeat it",
+                            place_of(path));
     return json_of(response, path);
 }
 

@@ -155,6 +155,8 @@ Result<MillReview> review_of(MillClient& client, const std::string& design, std:
     review.document_sha256 = text(answer, "document_sha256");
     review.missing = texts(answer, "missing");
     review.may = texts(answer, "may");
+    if (const Json step = answer.value("submission", Json()); step.is_object())
+        review.submission = MillDecision{"submitted", text(step, "by"), text(step, "at"), text(step, "reason")};
     WEAVE_TRY(review.decisions, entries<MillDecision>(answer, "decisions", read_decision));
     WEAVE_TRY(review.comments, entries<MillComment>(answer, "comments", read_comment));
     WEAVE_TRY(review.evidence, entries<MillEvidence>(answer, "evidence", read_paper));

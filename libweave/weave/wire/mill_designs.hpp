@@ -70,7 +70,7 @@ struct MillHistory {
 Result<MillHistory> history_of(MillClient& client, const std::string& design);
 
 struct MillDecision {
-    std::string what, by, at, reason;  ///< what: `approved` or `changes requested`
+    std::string what, by, at, reason;  ///< what: `submitted`, `approved` or `changes requested`
     friend bool operator==(const MillDecision&, const MillDecision&) = default;
 };
 struct MillComment {
@@ -93,6 +93,7 @@ struct MillReview {
     std::string design_sha256, scene_sha256, document_sha256;
     std::vector<std::string> missing;  ///< for approval and release, in words
     std::vector<std::string> may;      ///< what this person may do with it now: `submit`, `comment`, …
+    std::optional<MillDecision> submission;  ///< none of a draft
     std::vector<MillDecision> decisions;
     std::vector<MillComment> comments;
     std::vector<MillEvidence> evidence;

@@ -112,9 +112,11 @@ function signed_evidence(text) {
     return { statement, signature, report };
 }
 
+/** Who submitted it and what was decided, each with its reason. */
 function decisions(content) {
-    return h('section', { class: 'card' }, h('h2', {}, 'Decisions'), content.decisions.length === 0 ? h('p', { class: 'soft' }, 'None yet.')
-        : h('ul', { class: 'plain' }, content.decisions.map(decision => h('li', {}, h('strong', {}, sentence(decision.what)), ` by ${decision.by}, `, when(decision.at), h('p', {}, decision.reason)))));
+    const steps = [...(content.submission ? [{ what: 'submitted', ...content.submission }] : []), ...content.decisions];
+    return h('section', { class: 'card' }, h('h2', {}, 'Decisions'), steps.length === 0 ? h('p', { class: 'soft' }, 'None yet.')
+        : h('ul', { class: 'plain' }, steps.map(step => h('li', {}, h('strong', {}, sentence(step.what)), ` by ${step.by}, `, when(step.at), h('p', {}, step.reason)))));
 }
 
 /** Comments; a new one can be about the place that is marked in the card. */
