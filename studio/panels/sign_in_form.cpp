@@ -90,9 +90,10 @@ void SignInForm::judge() {
 void SignInForm::go() {
     if (!m_go->isEnabled()) return;
     complain({});
-    const QString password = m_password->text();
+    const QString password = m_password->text(), origin = m_origin->text().trimmed();
     m_password->clear();
-    Q_EMIT sign_in_wanted(m_origin->text(), m_fingerprint->text(), m_name->text(), password);
+    if (!origin.contains("://") && !origin.startsWith("unix:")) m_origin->setText("https://" + origin);  // what a mill's address is without more words
+    Q_EMIT sign_in_wanted(m_origin->text(), TroubleLabel::as_typed(m_fingerprint->text()), m_name->text(), password);
 }
 
 }  // namespace weave::studio

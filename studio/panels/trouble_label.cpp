@@ -1,5 +1,7 @@
 #include <studio/panels/trouble_label.hpp>
 
+#include <QRegularExpression>
+
 namespace weave::studio {
 
 TroubleLabel::TroubleLabel(QWidget* parent) : QLabel(parent) {
@@ -11,8 +13,24 @@ TroubleLabel::TroubleLabel(QWidget* parent) : QLabel(parent) {
     setVisible(false);
 }
 
+namespace {
+
+constexpr QChar may_break(0x200b);
+
+/// A fingerprint is wider than a dock: it may go on in the next line.
+QString breakable(const QString& words) {
+    static const QRegularExpression part_of_a_long_word("(\\S{16})(?=\\S{8})");
+    return QString(words).replace(part_of_a_long_word, QString("\\1") + may_break);
+}
+
+}  // namespace
+
+QString TroubleLabel::as_typed(QString words) {
+    return words.remove(may_break);
+}
+
 void TroubleLabel::setText(const QString& words) {
-    QLabel::setText(words);
+    QLabel::setText(breakable(words));
     setAccessibleName(words);
     setVisible(!words.isEmpty());
 }
