@@ -19,12 +19,17 @@
 #include <studio/panels/simulation_panel.hpp>
 #include <studio/panels/yarns_panel.hpp>
 #include <studio/viewport/viewer_panel.hpp>
+#include <studio/window/block_actions.hpp>
 #include <studio/window/help_window.hpp>
 #include <studio/window/main_window.hpp>
 #include <studio/window/tutorial.hpp>
 #include <studio/window/viewer_desk.hpp>
 #include <studio/window/windows.hpp>
 
+#include <QCommandLinkButton>
+#include <QDialog>
+#include <QSpinBox>
+#include <QTreeWidgetItemIterator>
 #include <QtTest>
 
 #include <catch2/catch.hpp>
@@ -53,6 +58,17 @@ TEST_CASE("a window comes up with a start page: ways to begin, and samples with 
     REQUIRE(until([&] { return shown.window.document() != nullptr; }));
     CHECK(shown.document().design() == samples()[1].make());
     CHECK_FALSE(shown.document().is_modified());
+}
+
+TEST_CASE("in the smallest window every way to begin is to be read whole") {
+    Desk shown;
+    shown.window.resize(10, 10);
+    REQUIRE(until([&] { return shown.window.width() < 900; }));
+    for (const char* name : {"begin-tutorial", "begin-weave", "begin-drawing", "begin-open"}) {
+        INFO(name);
+        auto& way = shown.find<QCommandLinkButton>(name);
+        CHECK(until([&] { return way.height() >= way.heightForWidth(way.width()); }));
+    }
 }
 
 TEST_CASE("a picture in colours is no card, but may become a stencil with a weave for each colour") {
@@ -138,6 +154,100 @@ TEST_CASE("the window is there before unsaved work is read, which then comes wit
     CHECK(windows.all().size() == 1);
     CHECK(window.findChild<MessageBar*>("messages")->words().contains(".broken"));
     window.document()->discard();
+}
+
+TEST_CASE("Esc ends Attach wherever the click left the keys and another block ends it too") {
+    Desk shown("pocket");
+    auto& viewer = shown.find<ViewerPanel>();
+    QAction* attach = viewer.menu_actions()[1];
+    shown.find<DesignTree>().setFocus();
+    attach->trigger();
+    REQUIRE(viewer.viewport()->attach_mode());
+    QTest::keyClick(shown.window.focusWidget(), Qt::Key_Escape);
+    CHECK_FALSE(viewer.viewport()->attach_mode());
+    CHECK_FALSE(attach->isChecked());
+    attach->trigger();
+    REQUIRE(viewer.viewport()->attach_mode());
+    const std::string root = shown.document().design().root;
+    for (const auto& [name, node] : shown.document().design().blocks)
+        if (name != root) shown.document().focus().show_block(name);
+    CHECK_FALSE(viewer.viewport()->attach_mode());
+    attach->trigger();
+    shown.window.show_sample("plain");
+    CHECK_FALSE(viewer.viewport()->attach_mode());
+}
+
+TEST_CASE("every block of recovered work gets its picture") {
+    for (int time = 0; time < 20; ++time) {
+        const weave::testing::TemporaryFolder folder, copy;
+        {
+            Document left(find_sample("three-colour-stencil")->make(), {}, false, folder.path);
+            REQUIRE(left.perform({"title", {SetTitle{"unsaved", ""}}}));
+            left.keeper().flush();
+            std::filesystem::copy(folder.path, copy.path, std::filesystem::copy_options::recursive | std::filesystem::copy_options::overwrite_existing);
+            left.discard();
+        }
+        Windows windows;
+        windows.open({});
+        windows.recover(copy.path);
+        MainWindow& window = *windows.all().front();
+        REQUIRE(until([&] { return window.document() != nullptr; }));
+        for (const auto& [name, node] : window.document()->design().blocks) {
+            INFO(name);
+            CHECK(until([&] { return !window.document()->thumbnail_of(name).isNull(); }));
+        }
+        const auto& tree = *window.findChild<DesignTree*>();
+        for (QTreeWidgetItemIterator item(const_cast<DesignTree*>(&tree)); *item != nullptr; ++item) CHECK_FALSE((*item)->icon(0).isNull());
+        window.document()->discard();
+    }
+}
+
+TEST_CASE("files that cannot be opened are told in one window and the others have each their own") {
+    const weave::testing::TemporaryFolder folder;
+    const auto file = [&](const char* name, const std::string& bytes) {
+        REQUIRE(write_file(folder.path / name, bytes));
+        return QString::fromStdString((folder.path / name).string());
+    };
+    Windows windows;
+    windows.open({file("a.weave", "{"), file("b.weave", write_document(find_sample("plain")->make())), file("c.weave", "no design"), "/nowhere/d.weave"});
+    CHECK(windows.all().size() == 4);
+    REQUIRE(until([&] { return windows.all().size() == 2; }));
+    std::vector<QString> said;
+    for (const auto& window : windows.all()) {
+        REQUIRE(until([&] { return window->document() != nullptr || !window->findChild<MessageBar*>("messages")->words().isEmpty(); }));
+        if (window->document() == nullptr) said.push_back(window->findChild<MessageBar*>("messages")->words());
+    }
+    REQUIRE(said.size() == 1);
+    CHECK(said[0].count('\n') == 2);
+    for (const char* name : {"a.weave", "c.weave", "d.weave"}) CHECK(said[0].contains(name));
+    for (const auto& window : windows.all())
+        if (window->document() != nullptr) window->document()->discard();
+}
+
+TEST_CASE("why an edit is refused is said until one is made and names no block that there is not") {
+    Desk shown("twill-2-2");
+    const auto repeat = [&](int along, int across, int high) {
+        QTimer::singleShot(0, [=] {
+            auto* dialog = qobject_cast<QDialog*>(QApplication::activeModalWidget());
+            REQUIRE(dialog != nullptr);
+            dialog->findChild<QSpinBox*>("along")->setValue(along);
+            dialog->findChild<QSpinBox*>("across")->setValue(across);
+            dialog->findChild<QSpinBox*>("high")->setValue(high);
+            dialog->accept();
+        });
+        shown.document().findChild<BlockActions*>()->repeat(shown.document().shown_block());
+    };
+    const std::size_t blocks = shown.document().design().blocks.size();
+    repeat(100000, 100000, 1000);
+    CHECK_FALSE(shown.said().isEmpty());
+    CHECK_FALSE(shown.said().contains("blocks."));
+    CHECK(shown.document().design().blocks.size() == blocks);
+    repeat(2, 2, 1);
+    CHECK(shown.document().design().blocks.size() == blocks + 1);
+    CHECK(shown.said().isEmpty());
+    shown.window.warn("the disk is full");
+    repeat(2, 1, 1);
+    CHECK(shown.said() == "the disk is full");  // which no edit mends
 }
 
 TEST_CASE("what is drawn or typed after a release, or in another field, is undone by itself") {
