@@ -41,20 +41,22 @@ SignInForm::SignInForm(QWidget* parent)
     m_password->setObjectName("password");
     m_go->setObjectName("sign_in");
     m_words->setObjectName("sign_in_words");
-    auto* form = new QFormLayout(this);
-    form->setContentsMargins(0, 0, 0, 0);
+    auto* all = new QVBoxLayout(this);  // a form would press words of several lines together
+    all->setContentsMargins(0, 0, 0, 0);
+    auto* form = new QFormLayout;
     form->setRowWrapPolicy(QFormLayout::WrapLongRows);
     form->setFieldGrowthPolicy(QFormLayout::ExpandingFieldsGrow);
-    form->addRow(greeting);
     form->addRow(tr("&Mill"), m_origin);
     form->addRow(tr("&Fingerprint"), m_fingerprint);
     form->addRow(tr("&Name"), m_name);
     form->addRow(tr("&Password"), m_password);
-    form->addRow(m_words);
     auto* row = new QHBoxLayout;
     row->addStretch();
     row->addWidget(m_go);
-    form->addRow(row);
+    all->addWidget(greeting);
+    all->addLayout(form);
+    all->addWidget(m_words);
+    all->addLayout(row);
     for (QLineEdit* field : {m_origin, m_fingerprint, m_name, m_password}) {
         connect(field, &QLineEdit::textChanged, this, &SignInForm::judge);
         connect(field, &QLineEdit::returnPressed, this, &SignInForm::go);

@@ -28,12 +28,27 @@ TEST_CASE("submit: a wrong password and a wrong fingerprint are refused, the rig
     window.type("password", Mill::password);
     window.click("sign_in");
     window.wait_for("sign_in_words", "shows another certificate");
+    CHECK(window.place_of("person") == person_was);
+    CHECK(greeting.height() >= greeting.heightForWidth(greeting.width()));
     const QString told = TroubleLabel::as_typed(window.text("sign_in_words"));
     CHECK(told.contains(QString::fromStdString(mill.fingerprint())));
     CHECK(told.contains(QString(64, 'a')));
     CHECK_FALSE(window.panel.desk().access().signed_in);
     CHECK_FALSE(std::filesystem::exists(file));
 
+    CHECK(window.place_of("person") == person_was);
+
+    window.type("mill", "localhost:1");
+    window.type("password", Mill::password);
+    window.click("sign_in");
+    window.wait_for("sign_in_words", "localhost:1: cannot talk to the server");
+    CHECK(window.text("gone").isEmpty());  // it is said once, where it is asked for
+    CHECK(window.place_of("person") == person_was);
+
+    window.type("mill", mill.origin());
+    window.type("password", Mill::password);
+    window.click("sign_in");
+    window.wait_for("sign_in_words", "shows another certificate");
     const QString origin = QString::fromStdString(mill.origin());
     REQUIRE(origin.startsWith("https://"));
     window.type("mill", origin.mid(8).toStdString());  // as people say it
