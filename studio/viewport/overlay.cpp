@@ -154,7 +154,7 @@ void Overlay::padlock() {
 
 void Overlay::hint(const QString& text, double right) {
     if (text.isEmpty()) return;
-    const double wide = QFontMetricsF(m_painter.font()).horizontalAdvance(text) + 0.9 * em();
+    const double wide = QFontMetricsF(m_painter.font()).horizontalAdvance(text) + em();  // a little more than its plate has, which would break it else
     const double first = m_area.left() + 0.8 * em(), left = std::max(first, std::min(m_area.center().x() - wide / 2, right - wide));
     // Below what stands at the top left: at the bottom are the axes.
     m_left_top = plate({left, m_left_top}, text, m_accent, right - left).bottom() + 0.4 * em();

@@ -162,10 +162,7 @@ void ViewerPanel::add_rest() {
     m_attach = add_action(static_cast<int>(ViewIcon::attach), tr("Attach"),
                           tr("Choose the side of the block to which another is attached (Esc ends it)"));
     m_attach->setCheckable(true);
-    connect(m_attach, &QAction::triggered, this, [this](bool on) {
-        m_viewport->set_attach_mode(on);
-        if (on) m_viewport->setFocus();  // Esc is to end it, wherever the click left the keys
-    });
+    connect(m_attach, &QAction::triggered, m_viewport, &Viewport::set_attach_mode);
     connect(m_viewport, &Viewport::attach_mode_changed, m_attach, &QAction::setChecked);
     m_save = add_action(static_cast<int>(ViewIcon::picture), tr("Save picture"),
                         tr("Saves what is seen as a PNG, twice as fine"));

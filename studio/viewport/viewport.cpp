@@ -128,6 +128,7 @@ void Viewport::set_attach_mode(bool attach) {
     let_go();
     clear_hover();
     look_again();
+    if (attach) setFocus();  // Esc is to end it, wherever the click left the keys
     Q_EMIT attach_mode_changed(attach);
 }
 

@@ -160,6 +160,14 @@ TEST_CASE("Esc ends Attach wherever the click left the keys and another block en
     Desk shown("pocket");
     auto& viewer = shown.find<ViewerPanel>();
     QAction* attach = viewer.menu_actions()[1];
+    for (QAction* other : shown.window.findChildren<QAction*>()) {  // of the menu and the tool bar of the window
+        if (other == attach || !other->isCheckable() || !other->text().contains("ttach")) continue;
+        shown.find<DesignTree>().setFocus();
+        other->trigger();
+        REQUIRE(viewer.viewport()->attach_mode());
+        QTest::keyClick(shown.window.focusWidget(), Qt::Key_Escape);
+        CHECK_FALSE(viewer.viewport()->attach_mode());
+    }
     shown.find<DesignTree>().setFocus();
     attach->trigger();
     REQUIRE(viewer.viewport()->attach_mode());
