@@ -27,6 +27,12 @@ std::optional<WarpPlan> denser_warp(const Design& design, const BlockGrid& befor
     return warp;
 }
 
+/// A block that is not made is no place that anybody could look for.
+Error without_place(Error error, const std::string& block) {
+    if (error.where.starts_with(block)) error.where.clear();
+    return error;
+}
+
 }  // namespace
 
 Result<EditStep> compose_blocks(const Design& design, const std::string& grows, const std::string& wish,
@@ -39,14 +45,15 @@ Result<EditStep> compose_blocks(const Design& design, const std::string& grows, 
     Design made = design;
     made.blocks[name] = node;
     made.root = name;
-    WEAVE_TRY(const Outline after, outline(made));
+    auto after = outline(made);
+    if (!after) return without_place(std::move(after).error(), "blocks." + name);
     EditStep step{QCoreApplication::translate("commands", "Make %1").arg(QString::fromStdString(name)),
                   {PutBlock{name, node}}};
     if (design.root != grows) return step;
     step.edits.push_back(SetRoot{name});
     const auto before = outline(design);
     if (!before) return step;  // there was no cloth to be as wide as
-    if (auto warp = denser_warp(design, before->grid, after.grid)) step.edits.push_back(SetWarp{std::move(*warp)});
+    if (auto warp = denser_warp(design, before->grid, after->grid)) step.edits.push_back(SetWarp{std::move(*warp)});
     return step;
 }
 

@@ -69,6 +69,7 @@ Document::Document(Design design, const QString& path, bool is_saved, const std:
     if (!is_saved) m_saved_state.reset();
     m_keeper.begin(m_design, m_path, is_saved);
     m_focus.show_block(m_design.root);
+    hear_of_blocks();
     connect_parts();
     ask_for_cloth();
 }
@@ -78,6 +79,7 @@ Document::Document(Recovery recovery, const std::filesystem::path& recoveries)
     if (!recovery.base_was_saved) m_saved_state.reset();
     recovery.base = m_design;  // the keeper asks what the file held
     m_focus.show_block(m_design.root);
+    hear_of_blocks();  // before the first is made, as one is for each step that is undone: what was told once is not told again
     replay(recovery.entries);
     m_keeper.resume(recovery);
     end_stroke();  // nobody draws on what another program began
@@ -89,8 +91,11 @@ Document::~Document() {
     m_undo.blockSignals(true);  // it tells that it becomes empty, to a window that may be going as well
 }
 
-void Document::connect_parts() {
+void Document::hear_of_blocks() {
     connect(&m_maker, &ClothMaker::made, this, &Document::take);
+}
+
+void Document::connect_parts() {
     connect(&m_focus, &Focus::block_changed, this, &Document::ask_for_cloth);
     connect(&m_focus, &Focus::block_changed, this, [this] { m_keeper.record(BlockShown{m_focus.block()}); });
     connect(&m_keeper, &Keeper::saved, this, [this](const QString& path) {

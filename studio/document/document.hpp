@@ -86,6 +86,7 @@ class Document : public QObject {
 
   private:
     class StepCommand;
+    void hear_of_blocks();
     void connect_parts();
     void end_save(bool is_saved);
     [[nodiscard]] std::uint64_t state() const;

@@ -91,7 +91,7 @@ void SliceEditCanvas::name_tools() {
         one->setToolTip(tr("%1 (%2)").arg(tip, one->shortcut().toString(QKeySequence::NativeText)));
     };
     const QString dot = kind_of_dots(m_slice), path = kind_of_paths(m_slice);
-    name("select", tr("Select"), tr("Click on yarns to choose them; Shift+click chooses several"));
+    name("select", tr("Choose"), tr("Click on yarns to choose them; Shift+click chooses several"));
     name("draw", tr("Draw"), tr("Press on a %1 and drag it through the gaps between the dots").arg(path));
     name("add_path", tr("Add %1").arg(path),
          tr("Drag from left to right through the dots: a new %1").arg(path));

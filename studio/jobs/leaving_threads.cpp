@@ -3,6 +3,7 @@
 #include <chrono>
 #include <condition_variable>
 #include <cstddef>
+#include <malloc.h>
 #include <memory>
 #include <mutex>
 #include <thread>
@@ -41,6 +42,12 @@ class LastOnes {
 };
 
 }  // namespace
+
+void return_freed_memory() {
+#ifdef __GLIBC__
+    ::malloc_trim(0);
+#endif
+}
 
 void run_apart(std::function<void()> work) {
     static const LastOnes last_ones;

@@ -123,7 +123,7 @@ void MillDesk::end(MillTask task, const Status& status, const wire::MillSession&
             look_in();  // somebody else signed in beside the studio
         return;
     }
-    if (lost) take_reached(false);
+    if (lost && task != MillTask::sign_in) take_reached(false);  // whoever signs in is told at once, and nothing asks again
     if (signed_out && !lost && m_access.signed_in) {
         MillAccess access = m_access;
         access.signed_in = false;

@@ -25,7 +25,7 @@ class MillDesk : public QObject {
     ~MillDesk() override;
 
     [[nodiscard]] const MillAccess& access() const { return m_access; }
-    /// Whether the last call reached the mill.
+    /// Whether the last call reached the mill, not counting one that signs in.
     [[nodiscard]] bool is_reached() const { return m_reached; }
     /// Whether something is being handed in.
     [[nodiscard]] bool is_busy() const { return m_busy; }

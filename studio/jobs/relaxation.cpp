@@ -46,6 +46,7 @@ void Relaxation::start(const Design& design, const sim::RunRequest& request) {
         } catch (const std::exception& fault) {
             line->outbox.tell(system_fault(fault.what()));
         }
+        return_freed_memory();
     });
     enter(RunPhase::planning);
 }

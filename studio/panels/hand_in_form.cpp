@@ -118,7 +118,7 @@ void HandInForm::warn(const QString& words) {
 void HandInForm::set_busy(bool busy) {
     m_busy = busy;
     m_note->setReadOnly(busy);
-    m_password->setEnabled(!busy);
+    m_password->setReadOnly(busy);  // not disabled: the keys would go to what is next, and so would a password typed again
     m_way->setVisible(busy);
     m_progress->setVisible(busy);
     m_cancel->setVisible(busy);
@@ -142,6 +142,10 @@ void HandInForm::set_progress(qint64 sent, qint64 of) {
 void HandInForm::tell(const QString& words) {
     m_told->setText(words);
     m_told->setVisible(!words.isEmpty());
+}
+
+void HandInForm::ask_password() {
+    m_password->setFocus();
 }
 
 void HandInForm::clear_note() {

@@ -27,6 +27,8 @@ class HandInForm : public QWidget {
     void set_progress(qint64 sent, qint64 of);
     /// Words about what was done.
     void tell(const QString& words);
+    /// The submission was refused: the password that signs it is to be typed again.
+    void ask_password();
     /// The note has gone into a revision.
     void clear_note();
     [[nodiscard]] QString note() const;

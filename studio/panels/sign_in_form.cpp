@@ -41,20 +41,22 @@ SignInForm::SignInForm(QWidget* parent)
     m_password->setObjectName("password");
     m_go->setObjectName("sign_in");
     m_words->setObjectName("sign_in_words");
-    auto* form = new QFormLayout(this);
-    form->setContentsMargins(0, 0, 0, 0);
+    auto* all = new QVBoxLayout(this);  // a form would press words of several lines together
+    all->setContentsMargins(0, 0, 0, 0);
+    auto* form = new QFormLayout;
     form->setRowWrapPolicy(QFormLayout::WrapLongRows);
     form->setFieldGrowthPolicy(QFormLayout::ExpandingFieldsGrow);
-    form->addRow(greeting);
     form->addRow(tr("&Mill"), m_origin);
     form->addRow(tr("&Fingerprint"), m_fingerprint);
     form->addRow(tr("&Name"), m_name);
     form->addRow(tr("&Password"), m_password);
-    form->addRow(m_words);
     auto* row = new QHBoxLayout;
     row->addStretch();
     row->addWidget(m_go);
-    form->addRow(row);
+    all->addWidget(greeting);
+    all->addLayout(form);
+    all->addWidget(m_words);
+    all->addLayout(row);
     for (QLineEdit* field : {m_origin, m_fingerprint, m_name, m_password}) {
         connect(field, &QLineEdit::textChanged, this, &SignInForm::judge);
         connect(field, &QLineEdit::returnPressed, this, &SignInForm::go);
@@ -90,9 +92,10 @@ void SignInForm::judge() {
 void SignInForm::go() {
     if (!m_go->isEnabled()) return;
     complain({});
-    const QString password = m_password->text();
+    const QString password = m_password->text(), origin = m_origin->text().trimmed();
     m_password->clear();
-    Q_EMIT sign_in_wanted(m_origin->text(), m_fingerprint->text(), m_name->text(), password);
+    if (!origin.contains("://") && !origin.startsWith("unix:")) m_origin->setText("https://" + origin);  // what a mill's address is without more words
+    Q_EMIT sign_in_wanted(m_origin->text(), TroubleLabel::as_typed(m_fingerprint->text()), m_name->text(), password);
 }
 
 }  // namespace weave::studio

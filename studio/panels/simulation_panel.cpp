@@ -54,6 +54,13 @@ void SimulationPanel::clear_design() {
     set_out_of_date(false);
 }
 
+void SimulationPanel::let_go() {
+    m_driver->leave();
+    m_choices_differ = false;
+    m_message->clear();
+    set_out_of_date(false);
+}
+
 /// Nothing of an earlier run is shown as if it were of this one.
 void SimulationPanel::forget_run() {
     m_plot->clear();

@@ -42,6 +42,8 @@ class SimulationPanel : public QWidget {
     void set_design(const Design& design);
     /// No design is shown, or another one: the run ends, and nothing of it is told from here on.
     void clear_design();
+    /// The design has become another cloth: the run and its yarns go, and their memory with them.
+    void let_go();
     /// Rows and columns of stacks of its cloth, for the part that is simulated.
     void set_cloth(const BlockGrid& grid);
     /// Leads a crossing of the running simulation to its other side.

@@ -52,6 +52,7 @@ SubmitPanel::SubmitPanel(std::filesystem::path session_file, QWidget* parent)
     m_where->body()->addWidget(m_place);
     m_what->body()->addWidget(make_what());
     m_note->body()->addWidget(m_form);
+    m_note->body()->addWidget(m_trouble);  // below: what a person is about to click or type in stays where it is
     auto* becomes = new QLabel(tr("What becomes of it"));
     QFont bold = font();
     bold.setBold(true);
@@ -89,7 +90,6 @@ QWidget* SubmitPanel::make_troubles() {
     auto* column = new QVBoxLayout(all);
     column->setContentsMargins(0, 0, 0, 0);
     column->addLayout(with_button(m_gone, m_again));
-    column->addWidget(m_trouble);
     return all;
 }
 
@@ -317,6 +317,7 @@ void SubmitPanel::take_trouble(const MillTrouble& trouble) {
     }
     if (trouble.task == MillTask::hand_in) {
         m_trouble->setText(tr("The mill did not take it: %1").arg(trouble.words));
+        if (m_submits) m_form->ask_password();
         return m_desk.refresh();
     }
     if (trouble.task == MillTask::evidence)
@@ -432,13 +433,7 @@ void SubmitPanel::tell_what() {
         m_size->setText(tr("The open design: %1, %2")
                             .arg(tr("%Ln pick(s)", nullptr, static_cast<int>(m_cloth->picks())),
                                  tr("%Ln end(s)", nullptr, static_cast<int>(m_cloth->ends()))));
-    QString findings = tr("Findings: not looked for yet");
-    if (m_has_findings && m_errors + m_warnings == 0) findings = tr("Findings: no error, no warning");
-    if (m_has_findings && m_errors + m_warnings > 0)
-        findings = tr("Findings: %1, %2").arg(tr("%n error(s)", nullptr, static_cast<int>(m_errors)),
-                                            tr("%n warning(s)", nullptr, static_cast<int>(m_warnings)));
-    if (m_has_findings && !m_findings_text.isEmpty()) findings += "\n" + m_findings_text;
-    m_findings->setText(findings);
+    m_findings->setText(m_has_findings ? tr("Findings: %1").arg(m_findings_text) : tr("Findings: not looked for yet"));
     m_show_findings->setVisible(m_has_findings && m_errors + m_warnings > 0);
 }
 

@@ -45,7 +45,7 @@ class SubmitPanel : public QWidget {
     void suggest_name(const QString& name);
     /// The open design has another name: what the person chose at the mill stays.
     void suggest_anew(const QString& name);
-    /// What the rules of a loom have to say of it.
+    /// What the rules of a loom have to say of it; `text`: how many of which, in words.
     void set_findings(std::size_t errors, std::size_t warnings, const QString& text);
     /// They have nothing to say, as there is no cloth.
     void forget_findings();

@@ -1,6 +1,20 @@
 #include <studio/panels/trouble_label.hpp>
 
+#include <QRegularExpression>
+
 namespace weave::studio {
+
+namespace {
+
+constexpr QChar may_break(0x200b);
+
+/// A fingerprint is wider than a dock: it may go on in the next line.
+QString breakable(const QString& words) {
+    static const QRegularExpression part_of_a_fingerprint("([0-9a-f]{16})(?=[0-9a-f]{16})");
+    return QString(words).replace(part_of_a_fingerprint, QString("\\1") + may_break);
+}
+
+}  // namespace
 
 TroubleLabel::TroubleLabel(QWidget* parent) : QLabel(parent) {
     setWordWrap(true);
@@ -11,8 +25,12 @@ TroubleLabel::TroubleLabel(QWidget* parent) : QLabel(parent) {
     setVisible(false);
 }
 
+QString TroubleLabel::as_typed(QString words) {
+    return words.remove(may_break);
+}
+
 void TroubleLabel::setText(const QString& words) {
-    QLabel::setText(words);
+    QLabel::setText(breakable(words));
     setAccessibleName(words);
     setVisible(!words.isEmpty());
 }

@@ -179,10 +179,10 @@
 <context>
     <name>weave::studio::MainWindow</name>
     <message numerus="yes">
-        <source>The studio was ended before this design was saved. All of it is here again, with its last %n step(s); undo takes them back.</source>
+        <source>The studio was ended before this design was saved. The design is here again, with its last %n step(s); undo takes them back.</source>
         <translation>
-            <numerusform>The studio was ended before this design was saved. All of it is here again, with its last step; undo takes it back.</numerusform>
-            <numerusform>The studio was ended before this design was saved. All of it is here again, with its last %n steps; undo takes them back.</numerusform>
+            <numerusform>The studio was ended before this design was saved. The design is here again, with its last step; undo takes it back.</numerusform>
+            <numerusform>The studio was ended before this design was saved. The design is here again, with its last %n steps; undo takes them back.</numerusform>
         </translation>
     </message>
 </context>
@@ -234,20 +234,6 @@
         <translation>
             <numerusform>%Ln end</numerusform>
             <numerusform>%Ln ends</numerusform>
-        </translation>
-    </message>
-    <message numerus="yes">
-        <source>%n error(s)</source>
-        <translation>
-            <numerusform>%n error</numerusform>
-            <numerusform>%n errors</numerusform>
-        </translation>
-    </message>
-    <message numerus="yes">
-        <source>%n warning(s)</source>
-        <translation>
-            <numerusform>%n warning</numerusform>
-            <numerusform>%n warnings</numerusform>
         </translation>
     </message>
 </context>

@@ -56,16 +56,16 @@ double Overlay::em() const {
     return QFontMetricsF(m_painter.font()).height();
 }
 
-QRectF Overlay::plate(const QPointF& corner, const QString& text, const QColor& ink) {
+QRectF Overlay::plate(const QPointF& corner, const QString& text, const QColor& ink, double wide) {
     const QFontMetricsF metrics(m_painter.font());
     const double room = 0.45 * em();
-    const QRectF place(corner,
-                       QSizeF(metrics.horizontalAdvance(text) + 2 * room, metrics.height() + 0.5 * room));
+    const QSizeF words = metrics.boundingRect(QRectF(0, 0, wide - 2 * room, 1e6), Qt::TextWordWrap, text).size();
+    const QRectF place(corner, words + QSizeF(2 * room, 0.5 * room));
     m_painter.setPen(Qt::NoPen);
     m_painter.setBrush(m_ground);
     m_painter.drawRoundedRect(place, 0.3 * em(), 0.3 * em());
     m_painter.setPen(ink);
-    m_painter.drawText(place, Qt::AlignCenter, text);
+    m_painter.drawText(place.adjusted(room - 1, 0, 1 - room, 0), Qt::AlignCenter | Qt::TextWordWrap, text);
     return place;
 }
 
@@ -152,11 +152,12 @@ void Overlay::padlock() {
     m_left_top = place.bottom() + 0.4 * em();
 }
 
-void Overlay::hint(const QString& text) {
+void Overlay::hint(const QString& text, double right) {
     if (text.isEmpty()) return;
-    const double wide = QFontMetricsF(m_painter.font()).horizontalAdvance(text) + 0.9 * em();
+    const double wide = QFontMetricsF(m_painter.font()).horizontalAdvance(text) + em();  // a little more than its plate has, which would break it else
+    const double first = m_area.left() + 0.8 * em(), left = std::max(first, std::min(m_area.center().x() - wide / 2, right - wide));
     // Below what stands at the top left: at the bottom are the axes.
-    m_left_top = plate({std::max(m_area.left() + 0.8 * em(), m_area.center().x() - wide / 2), m_left_top}, text, m_accent).bottom() + 0.4 * em();
+    m_left_top = plate({left, m_left_top}, text, m_accent, right - left).bottom() + 0.4 * em();
 }
 
 void Overlay::axes(const Camera& camera) {

@@ -27,8 +27,8 @@ class Overlay {
     void caption(const QString& text);
     /// A padlock with a word, top left under the caption.
     void padlock();
-    /// What can be done now: bottom, in the middle.
-    void hint(const QString& text);
+    /// What can be done now: under what stands at the top left, in several lines where `right` leaves too little room.
+    void hint(const QString& text, double right);
     /// Where the ends and the picks run: arrows at the bottom left.
     void axes(const Camera& camera);
     /// The box's sides that can be seen as lines; one of them filled, with a label.
@@ -38,8 +38,8 @@ class Overlay {
 
   private:
     [[nodiscard]] double em() const;
-    /// Text on a pale plate, at its top left corner; the plate's place.
-    QRectF plate(const QPointF& corner, const QString& text, const QColor& ink);
+    /// Text on a pale plate, at its top left corner, in lines of `wide` at most; the plate's place.
+    QRectF plate(const QPointF& corner, const QString& text, const QColor& ink, double wide = 1e6);
     QPainter& m_painter;
     QRectF m_area;
     QColor m_ink, m_faint, m_ground, m_accent;

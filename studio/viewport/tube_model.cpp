@@ -71,7 +71,7 @@ Result<Lines> parameters_of(const Yarns& yarns) {
             knots <= (share == fine_shares[2] ? most_knots : cheap_knots))
             return lines;
     }
-    return invalid("the piece has too many yarns to show: choose a smaller region");
+    return invalid("there are more yarns than the 3D view can draw: save them, or simulate a part of the cloth and look at that");
 }
 
 Spline planned_spline(const SimulatedYarn& yarn) {

@@ -136,16 +136,12 @@ void ViewerPanel::show_model(std::shared_ptr<TubeModel> model) {
 }
 
 void ViewerPanel::say_empty() {
-    if (!m_failure.isEmpty()) {
-        m_viewport->set_empty_words(tr("This cloth cannot be shown: %1.").arg(m_failure));
-    } else if (m_mode == Mode::planned && !m_why_no_plan.isEmpty()) {
-        m_viewport->set_empty_words(m_why_no_plan);
-    } else if (m_mode == Mode::planned) {
-        m_viewport->set_empty_words(tr("As soon as the block has yarns, its plan is drawn here."));
-    } else {
-        m_viewport->set_empty_words(
-            tr("The cloth has not been relaxed. Run the simulation, or look at the plan."));
-    }
+    QString why = tr("The cloth has not been relaxed. Run the simulation, or look at the plan.");
+    if (m_mode == Mode::planned) why = m_why_no_plan.isEmpty() ? tr("As soon as the block has yarns, its plan is drawn here.") : m_why_no_plan;
+    if (!m_failure.isEmpty())
+        m_viewport->set_empty_words(tr("This cloth cannot be shown"), m_failure.left(1).toUpper() + m_failure.mid(1) + '.');
+    else
+        m_viewport->set_empty_words(tr("Nothing to show yet"), why);
 }
 
 /// Brings the tools in line with what the model can do.

@@ -48,6 +48,7 @@ Viewport::Viewport(QWidget* parent, bool is_software)
     setAccessibleName(tr("3D view"));
     setAccessibleDescription(
         tr("The yarns of the block or the relaxed cloth. F fits, 1 to 6 choose views, arrows turn."));
+    m_empty_title = tr("Nothing to show yet");
     m_empty_words = tr("As soon as a block has yarns, they are drawn here.");
     m_glide.setDuration(glide_ms);
     m_glide.setEasingCurve(QEasingCurve::InOutQuad);
@@ -127,6 +128,7 @@ void Viewport::set_attach_mode(bool attach) {
     let_go();
     clear_hover();
     look_again();
+    if (attach) setFocus();  // Esc is to end it, wherever the click left the keys
     Q_EMIT attach_mode_changed(attach);
 }
 
@@ -135,7 +137,8 @@ void Viewport::set_caption(const QString& text) {
     m_sheet.update();
 }
 
-void Viewport::set_empty_words(const QString& text) {
+void Viewport::set_empty_words(const QString& title, const QString& text) {
+    m_empty_title = title;
     m_empty_words = text;
     m_sheet.update();
 }
@@ -355,7 +358,7 @@ void Viewport::paint_over(QPainter& painter, const QRectF& area, bool for_screen
         return;
     }
     if (m_model == nullptr) {
-        overlay.message(tr("Nothing to show yet"), m_empty_words);
+        overlay.message(m_empty_title, m_empty_words);
         return;
     }
     if (m_attach && for_screen)
@@ -368,7 +371,7 @@ void Viewport::paint_over(QPainter& painter, const QRectF& area, bool for_screen
     overlay.legend(*m_model, for_screen ? m_cube.place().bottom() + rim : area.top() + rim);
     if (!for_screen) return;
     if (m_locked) overlay.padlock();
-    overlay.hint(hint());
+    overlay.hint(hint(), m_cube.place().left() - rim);
     m_cube.paint(painter, m_camera, palette(), m_cube_face);
 }
 

@@ -75,8 +75,8 @@ class Viewport : public QWidget {
     /// How much is shown, such as "rows 1 to 40 of 900".
     void set_caption(const QString& text);
     [[nodiscard]] const QString& caption() const { return m_caption; }
-    /// Why there is nothing to see, in one or two sentences; shown under "Nothing to show yet".
-    void set_empty_words(const QString& text);
+    /// What is said where there is nothing to see, in some words, and why, in one or two sentences.
+    void set_empty_words(const QString& title, const QString& text);
 
     [[nodiscard]] const Camera& camera() const { return m_camera; }
     /// Goes there at once, also where the view is locked, as a document does that is opened.
@@ -105,6 +105,7 @@ class Viewport : public QWidget {
     [[nodiscard]] std::optional<std::uint32_t> held_yarn() const { return m_held; }
     [[nodiscard]] std::optional<std::uint32_t> hovered_yarn() const { return m_hovered; }
     [[nodiscard]] const OrientationCube& cube() const { return m_cube; }
+    [[nodiscard]] QString empty_words() const { return m_empty_title + ": " + m_empty_words; }
     [[nodiscard]] QString hint() const;
     /// What drew the last picture and how; for the status bar and measurements.
     [[nodiscard]] const TubePainter& painter() const { return m_painter; }
@@ -163,7 +164,7 @@ class Viewport : public QWidget {
     Shown m_shown;
     TubePainter m_painter;
     std::unique_ptr<YarnCanvas> m_canvas;
-    QString m_trouble, m_caption, m_empty_words;
+    QString m_trouble, m_caption, m_empty_title, m_empty_words;
 
     Camera m_camera;
     ViewHistory m_history;

@@ -93,7 +93,10 @@ void DesignFiles::look_for_colours(const QString& path, const QString& reason) {
         this, [path] { return read_coloured_picture(path.toStdString()); },
         [this, path, reason](const Result<ColouredPicture>& picture) {
             Q_EMIT told({});
-            if (!picture) return failed(reason);
+            if (!picture) {
+                Q_EMIT failed(reason);
+                return not_opened(reason);
+            }
             Q_EMIT coloured(*picture, path);
         });
 }

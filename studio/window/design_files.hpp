@@ -39,6 +39,8 @@ class DesignFiles : public QObject {
     /// A file is no card, but a picture in colours.
     void coloured(const weave::studio::ColouredPicture& picture, const QString& path);
     void failed(const QString& reason);
+    /// After failed(): a file is nothing that can be opened.
+    void not_opened(const QString& reason);
     void told(const QString& words);
 
   private:

@@ -83,6 +83,7 @@ MainWindow::MainWindow(QWidget* parent)
     connect(m_files, &DesignFiles::opened, this, &MainWindow::opened);
     connect(m_files, &DesignFiles::coloured, this, &MainWindow::offer_stencil);
     connect(m_files, &DesignFiles::failed, this, &MainWindow::warn);
+    connect(m_files, &DesignFiles::not_opened, this, &MainWindow::not_opened);
     connect(m_files, &DesignFiles::told, this, &MainWindow::tell);
     connect(m_viewer, &ViewerPanel::picture_taken, m_files, &DesignFiles::save_picture);
     qApp->installEventFilter(this);
@@ -139,7 +140,7 @@ void MainWindow::make_workspace() {
         m_editors->setCurrentWidget(m_slice);
     });
     connect(m_slice, &SliceEditor::status, this, &MainWindow::tell);
-    connect(m_slice_desk, &SliceDesk::failed, this, &MainWindow::warn);
+    connect(m_slice_desk, &SliceDesk::failed, this, &MainWindow::tell_refusal);
     connect(m_slice_desk, &SliceDesk::flip_wanted, this, &MainWindow::flip_at_once);
     connect(m_viewer_desk, &ViewerDesk::attach_wanted, this, [this](Face face) {
         if (m_blocks == nullptr) return;
@@ -148,12 +149,12 @@ void MainWindow::make_workspace() {
     });
     connect(m_viewer_desk, &ViewerDesk::flip_wanted, this, &MainWindow::flip);
     connect(m_stencil, &StencilEditor::status, this, &MainWindow::tell);
-    connect(m_stencil_desk, &StencilDesk::failed, this, &MainWindow::warn);
+    connect(m_stencil_desk, &StencilDesk::failed, this, &MainWindow::tell_refusal);
     connect(m_stencil_desk, &StencilDesk::is_stencil, this, [this](bool is) {
         if (!is && m_editors->currentWidget() == m_stencil) m_editors->setCurrentWidget(m_card);
         m_editors->setTabVisible(m_editors->indexOf(m_stencil), is);
     });
-    connect(m_simulation_desk, &SimulationDesk::failed, this, &MainWindow::warn);
+    connect(m_simulation_desk, &SimulationDesk::failed, this, &MainWindow::tell_refusal);
     connect(m_simulation_desk, &SimulationDesk::outgrown, this, [this](const QString& words) { m_messages->tell(MessageBar::Kind::note, words, m_simulation->run_action()); });
     connect(m_simulation_desk, &SimulationDesk::told, this, &MainWindow::tell);
     connect(m_simulation_desk, &SimulationDesk::place_wanted, this, [this](const CardPlace& place) { show_yarns(place.pick, place.end); });
@@ -252,7 +253,7 @@ void MainWindow::flip_at_once(const CardPlace& place) {
     m_document->focus().go_to(place);
     const auto step = flip_crossing(*m_document, place);
     if (!step) return tell(QString::fromStdString(step.error().text()));
-    if (Status made = m_document->perform(*step); !made) warn(QString::fromStdString(made.error().text()));
+    if (Status made = m_document->perform(*step); !made) tell_refusal(QString::fromStdString(made.error().text()));
 }
 
 /// Offers two yarns that cross to change sides, or says why they cannot.
@@ -264,7 +265,7 @@ void MainWindow::flip(const CardPlace& place) {
     if (step) {
         menu.addAction(step->text, this, [&] {
             if (m_viewer->mode() == ViewerPanel::Mode::relaxed && m_simulation_desk->flip(place)) return;
-            if (Status made = m_document->perform(*step); !made) warn(QString::fromStdString(made.error().text()));
+            if (Status made = m_document->perform(*step); !made) tell_refusal(QString::fromStdString(made.error().text()));
         });
     } else {
         menu.addAction(QString::fromStdString(step.error().text()))->setEnabled(false);
@@ -335,7 +336,7 @@ void MainWindow::take(std::unique_ptr<Document> document) {
     close_document();
     m_document = std::move(document);
     m_blocks = new BlockActions(*m_document, this);
-    connect(m_blocks, &BlockActions::failed, this, &MainWindow::warn);
+    connect(m_blocks, &BlockActions::failed, this, &MainWindow::tell_refusal);
     connect(m_blocks, &BlockActions::told, this, &MainWindow::tell);
     connect(m_blocks, &BlockActions::stencil_begun, this, [this] { m_editors->setCurrentWidget(m_stencil); });
     connect(m_blocks, &BlockActions::drawing_begun, this, [this] { m_editors->setCurrentWidget(m_slice); });
@@ -350,6 +351,7 @@ void MainWindow::take(std::unique_ptr<Document> document) {
 void MainWindow::follow_document() {
     Document* document = m_document.get();
     connect(document, &Document::edited, this, &MainWindow::show_title);
+    connect(document, &Document::edited, this, &MainWindow::forget_refusal);
     connect(&document->undo_stack(), &QUndoStack::indexChanged, this, &MainWindow::show_undo);
     connect(document, &Document::path_changed, this, &MainWindow::show_title);
     connect(document, &Document::modified_changed, this, &MainWindow::show_title);
@@ -374,8 +376,9 @@ void MainWindow::show_design(Design design, const QString& path, bool is_saved) 
 void MainWindow::recover(std::unique_ptr<Document> left) {
     take(std::move(left));
     const int steps = m_document->undo_stack().index();
-    m_messages->tell(MessageBar::Kind::note, steps == 0 ? tr("The studio was ended before this design was saved. All of it is here again.")
-                                                        : tr("The studio was ended before this design was saved. All of it is here again, with its last %n step(s); undo takes them back.", nullptr, steps));
+    const QString design = steps == 0 ? tr("The studio was ended before this design was saved. The design is here again.")
+                                      : tr("The studio was ended before this design was saved. The design is here again, with its last %n step(s); undo takes them back.", nullptr, steps);
+    m_messages->tell(MessageBar::Kind::note, tr("%1 Relaxed yarns are not kept: Run makes them anew.").arg(design));
 }
 
 void MainWindow::tell_set_aside(const QStringList& folders) {
@@ -531,6 +534,17 @@ void MainWindow::tell(const QString& words) {
 
 void MainWindow::warn(const QString& reason) {
     m_messages->tell(MessageBar::Kind::error, reason);
+}
+
+/// An edit that was not made: said until one is.
+void MainWindow::tell_refusal(const QString& reason) {
+    m_refusal = reason;
+    warn(reason);
+}
+
+void MainWindow::forget_refusal() {
+    if (!m_refusal.isEmpty() && m_messages->words() == m_refusal) m_messages->clear();
+    m_refusal.clear();
 }
 
 std::string MainWindow::chosen_block() const {

@@ -54,6 +54,8 @@ class MainWindow : public QMainWindow {
     void recover(std::unique_ptr<Document> left);
     /// Says something in passing.
     void tell(const QString& words);
+    /// Says what went wrong, until it is closed or something else is said.
+    void warn(const QString& reason);
     /// Tells where unsaved work lies that could not be read.
     void tell_set_aside(const QStringList& folders);
     void open_file(const QString& path);
@@ -61,6 +63,10 @@ class MainWindow : public QMainWindow {
     void show_sample(const QString& name);
     /// Asks whether to save what would be lost; false: the person wants to stay.
     bool may_close();
+
+  Q_SIGNALS:
+    /// A file that was asked for is none that can be opened; the window says so too.
+    void not_opened(const QString& reason);
 
   protected:
     void closeEvent(QCloseEvent* event) override;
@@ -89,7 +95,8 @@ class MainWindow : public QMainWindow {
     void follow_document();
     void show_title();
     void show_undo();
-    void warn(const QString& reason);
+    void tell_refusal(const QString& reason);
+    void forget_refusal();
     void flip(const CardPlace& place);
     void show_yarns(std::optional<std::size_t> pick, std::optional<std::size_t> end);
     void flip_at_once(const CardPlace& place);
@@ -129,6 +136,7 @@ class MainWindow : public QMainWindow {
     QDockWidget* m_simulation_dock = nullptr;
     HelpWindow* m_help = nullptr;  ///< once it was asked for
     bool m_is_learning = false;
+    QString m_refusal;  ///< of an edit, while it may be told
     MessageBar* m_messages;
     QLabel* m_status;
     QAction* m_undo = nullptr;

@@ -50,7 +50,7 @@ bool wants_stencil(const ColouredPicture& picture, const QString& path, QWidget*
     QMessageBox box(QMessageBox::Question, Words::tr("Use it as a stencil?"),
                     Words::tr("%1 is no card: a card is black and white only, and this picture has %n colour(s).", nullptr, static_cast<int>(picture.colours.size())).arg(path), QMessageBox::NoButton, window);
     box.setTextFormat(Qt::PlainText);
-    box.setInformativeText(Words::tr("It can be a stencil: each of its pixels is one crossing, each of its colours a weave."));
+    box.setInformativeText(Words::tr("It can be a stencil: each of its pixels is one stack, each of its colours a weave."));
     auto* use = box.addButton(Words::tr("Use it as a stencil"), QMessageBox::AcceptRole);
     box.addButton(QMessageBox::Cancel);
     box.setDefaultButton(use);

@@ -1,6 +1,7 @@
 #include <studio/window/simulation_desk.hpp>
 
 #include <studio/commands/set_scene.hpp>
+#include <studio/jobs/leaving_threads.hpp>
 #include <utility>
 
 namespace weave::studio {
@@ -71,11 +72,7 @@ void SimulationDesk::show_document(Document* document) {
     if (m_document != nullptr) m_document->disconnect(this);
     m_document = document;
     m_panel.clear_design();  // a flip under way would end in the new document
-    m_layout.reset();
-    m_yarns.reset();
-    m_shown_layout = 0;
-    m_viewer.set_relaxed(nullptr);
-    m_viewer.set_mode(ViewerPanel::Mode::planned);
+    forget_yarns();
     m_panel.setEnabled(document != nullptr);
     if (document == nullptr) return;
     const auto tell_design = [this] { m_panel.set_design(m_document->design()); };
@@ -87,23 +84,32 @@ void SimulationDesk::show_document(Document* document) {
 
 /// A run begins; where the cloth of its design is still being made, that is the next one to come.
 void SimulationDesk::note_cloth() {
-    m_is_outgrown = false;
     m_relaxed_cloth.reset();
     if (m_document == nullptr || m_document->whole().revision != m_document->revision()) return;
     if (const BlockPtr& cloth = m_document->whole().block) m_relaxed_cloth = cloth->grid();
 }
 
-/// Yarns of another size would be taken for the cloth as it is; whoever wants to see them all the same chooses Relaxed.
+/// Yarns of another size would be taken for the cloth as it is, and those of a large cloth are gigabytes: they go.
 void SimulationDesk::follow_size() {
     const BlockPtr& cloth = m_document->whole().block;
     if (!cloth) return;
     m_panel.set_cloth(cloth->grid());
+    if (m_document->whole().revision != m_document->revision()) return;  // a newer one is being made
     if (!m_relaxed_cloth) m_relaxed_cloth = cloth->grid();
-    const bool was_outgrown = std::exchange(m_is_outgrown, !(*m_relaxed_cloth == cloth->grid()));
-    const bool has_yarns = m_yarns != nullptr || m_shown_layout != 0;
-    if (!m_is_outgrown || was_outgrown || !has_yarns || m_viewer.mode() != ViewerPanel::Mode::relaxed) return;
+    if (*m_relaxed_cloth == cloth->grid()) return;
+    const bool had_yarns = m_yarns != nullptr || m_shown_layout != 0;
+    forget_yarns();
+    m_panel.let_go();
+    run_apart(return_freed_memory);
+    if (had_yarns) Q_EMIT outgrown(tr("The cloth has another size than when it was relaxed: its relaxed yarns are gone, and the 3D view shows its plan again."));
+}
+
+void SimulationDesk::forget_yarns() {
+    m_layout.reset();
+    m_yarns.reset();
+    m_shown_layout = 0;
+    m_viewer.set_relaxed(nullptr);
     m_viewer.set_mode(ViewerPanel::Mode::planned);
-    Q_EMIT outgrown(tr("The cloth has another size than when it was relaxed, so the 3D view shows its plan again."));
 }
 
 void SimulationDesk::take_layout(const std::shared_ptr<const YarnLayout>& layout) {
@@ -122,15 +128,14 @@ void SimulationDesk::take_frame(const std::shared_ptr<const Frame>& frame) {
     if (!yarns) return;
     const bool is_first = std::exchange(m_shown_layout, m_layout->layout) == 0;
     m_viewer.set_relaxed(std::move(yarns));
-    if (is_first && !m_is_outgrown) m_viewer.set_mode(ViewerPanel::Mode::relaxed);
+    if (is_first) m_viewer.set_mode(ViewerPanel::Mode::relaxed);
 }
 
 void SimulationDesk::take_yarns(const std::shared_ptr<const Yarns>& yarns) {
     m_yarns = yarns;
     m_shown_layout = 0;  // these have other points where a smallest repeat was copied back
     m_viewer.set_relaxed(yarns);
-    const bool is_from_file = yarns != m_panel.state().yarns;
-    if (!m_is_outgrown || is_from_file) m_viewer.set_mode(ViewerPanel::Mode::relaxed);
+    m_viewer.set_mode(ViewerPanel::Mode::relaxed);
     Q_EMIT relaxed();
 }
 

@@ -30,7 +30,7 @@ class SimulationDesk : public QObject {
     void failed(const QString& reason);
     void told(const QString& words);
     void place_wanted(const weave::CardPlace& place);
-    /// The cloth was relaxed at another size than it has now, so that its plan is shown again.
+    /// The cloth was relaxed at another size than it has now, so that its plan is shown again, and the relaxed yarns are gone.
     void outgrown(const QString& words);
     /// Cloth came to rest, or was paused.
     void relaxed();
@@ -38,6 +38,7 @@ class SimulationDesk : public QObject {
   private:
     void note_cloth();
     void follow_size();
+    void forget_yarns();
     void take_layout(const std::shared_ptr<const YarnLayout>& layout);
     void take_frame(const std::shared_ptr<const Frame>& frame);
     void take_yarns(const std::shared_ptr<const Yarns>& yarns);
@@ -50,7 +51,6 @@ class SimulationDesk : public QObject {
     std::uint64_t m_shown_layout = 0;  ///< that the viewer's yarns are of; 0: none
     std::shared_ptr<const Yarns> m_yarns;
     std::optional<BlockGrid> m_relaxed_cloth;  ///< that the run, if any, is of; none: the one that is being made
-    bool m_is_outgrown = false;                ///< the cloth has another size by now
 };
 
 }  // namespace weave::studio

@@ -10,7 +10,7 @@
 #include <QListWidget>
 #include <QMenu>
 #include <QPainter>
-#include <QScrollBar>
+#include <QScrollArea>
 #include <QTextDocument>
 #include <QVBoxLayout>
 
@@ -58,16 +58,39 @@ QIcon no_picture(int side) {
     return QIcon(empty);
 }
 
+/// Text that takes the lines it needs in the width that there is.
+QSizePolicy as_high_as_its_text() {
+    QSizePolicy policy(QSizePolicy::Preferred, QSizePolicy::Fixed);
+    policy.setHeightForWidth(true);
+    return policy;
+}
+
+/// A column that a small window does not press together.
+QScrollArea* scrolling(QWidget* column) {
+    auto* area = new QScrollArea;
+    area->setFrameShape(QFrame::NoFrame);
+    area->setFocusPolicy(Qt::NoFocus);
+    area->setHorizontalScrollBarPolicy(Qt::ScrollBarAlwaysOff);
+    area->setWidgetResizable(true);
+    area->setMinimumWidth(column->fontMetrics().averageCharWidth() * 40);
+    area->setWidget(column);
+    area->viewport()->setAutoFillBackground(false);
+    column->setAutoFillBackground(false);
+    return area;
+}
+
 }  // namespace
 
 StartPage::StartPage(QWidget* parent) : QWidget(parent), m_recent(new QListWidget), m_samples(new QListWidget) {
     auto* columns = new QHBoxLayout(this);
     columns->setContentsMargins(32, 28, 32, 20);
     columns->setSpacing(36);
-    auto* left = new QVBoxLayout;
+    auto* beginnings = new QWidget;
+    auto* left = new QVBoxLayout(beginnings);
     auto* right = new QVBoxLayout;
     for (QVBoxLayout* column : {left, right}) column->setSpacing(8);  // else that between the columns
-    columns->addLayout(left, 2);
+    left->setContentsMargins(0, 0, 0, 0);
+    columns->addWidget(scrolling(beginnings), 2);
     columns->addLayout(right, 5);
     add_beginnings(*left);
     add_samples(*right);
@@ -77,17 +100,14 @@ void StartPage::add_beginnings(QVBoxLayout& column) {
     column.addWidget(heading(tr("Weave"), 2));
     auto* what = new QLabel(tr("Draw multilayer cloth, see it relax, and send it to the loom."));
     what->setWordWrap(true);
-    what->setSizePolicy(QSizePolicy::Preferred, QSizePolicy::Maximum);  // the room is for the designs of late
+    what->setSizePolicy(as_high_as_its_text());  // the other room is for the designs of late
     column.addWidget(what);
     column.addSpacing(8);
     const auto way = [&](const QString& name, const QString& text, const QString& about, void (StartPage::*wanted)()) {
         auto* button = new QCommandLinkButton(text, about);
         button->setObjectName(name);
         connect(button, &QCommandLinkButton::clicked, this, wanted);
-        const int em = fontMetrics().height();
-        button->setSizePolicy(QSizePolicy::Preferred, QSizePolicy::Maximum);
-        button->setMinimumHeight(3 * em);  // its own hint is that of a column of one word
-        button->setMaximumHeight(5 * em);
+        button->setSizePolicy(as_high_as_its_text());
         column.addWidget(button);
     };
     way("begin-tutorial", tr("Learn it in five steps"), tr("A small pocket: pattern, relax, flip, attach, seal"), &StartPage::tutorial_wanted);
@@ -106,6 +126,8 @@ void StartPage::add_recent(QVBoxLayout& column) {
     m_recent->viewport()->setAutoFillBackground(false);
     m_recent->setIconSize({small_side, small_side});
     m_recent->setTextElideMode(Qt::ElideMiddle);
+    m_recent->setMinimumHeight(2 * small_side);
+    m_recent->setHorizontalScrollBarPolicy(Qt::ScrollBarAlwaysOff);
     m_recent->setContextMenuPolicy(Qt::CustomContextMenu);
     const auto open = [this](const QListWidgetItem* item) {
         if (item->data(missing_role).toBool()) return ask_about(item, m_recent->viewport()->mapToGlobal(m_recent->visualItemRect(item).center()));

@@ -81,11 +81,15 @@ void ViewerDesk::show_document(Document* document) {
     static_cast<void>(m_panel.set_state(whole_and_free()));  // cut, repeats and lock were of the other design
     ++m_wanted;
     m_panel.viewport()->let_go();
+    m_panel.viewport()->set_attach_mode(false);
     m_panel.set_caption(ViewerPanel::Mode::planned, {});
     m_panel.set_no_plan();
     if (document == nullptr) return;
     connect(document, &Document::shown_made, this, &ViewerDesk::plan);
-    connect(&document->focus(), &Focus::block_changed, m_panel.viewport(), &Viewport::let_go);  // its yarns have other numbers
+    connect(&document->focus(), &Focus::block_changed, m_panel.viewport(), [viewport = m_panel.viewport()] {
+        viewport->let_go();  // its yarns have other numbers
+        viewport->set_attach_mode(false);  // which was asked for at the block before
+    });
     connect(&document->focus(), &Focus::place_changed, this, [this] {
         const auto& place = m_document->focus().place();
         const BlockPtr& block = m_document->shown().block;

@@ -1,5 +1,6 @@
 #include <studio/window/windows.hpp>
 
+#include <algorithm>
 #include <studio/jobs/background.hpp>
 #include <utility>
 
@@ -8,7 +9,27 @@ namespace weave::studio {
 void Windows::open(const QStringList& paths) {
     m_has_start_page = paths.isEmpty();
     if (paths.isEmpty()) add();
-    for (const QString& path : paths) add().open_file(path);
+    for (const QString& path : paths) open_in_new(path);
+}
+
+void Windows::open_in_new(const QString& path) {
+    MainWindow& window = add();
+    connect(&window, &MainWindow::not_opened, this, [this, &window](const QString& reason) { gather(window, reason); }, Qt::SingleShotConnection);
+    window.open_file(path);
+}
+
+/// Four files that cannot be opened are no reason for four start pages.
+void Windows::gather(MainWindow& empty, const QString& reason) {
+    if (empty.document() != nullptr) return;  // the person has begun something else in it
+    m_reasons.push_back(reason);
+    if (m_failed == nullptr) m_failed = &empty;
+    if (m_failed == &empty) return;
+    m_failed->warn(m_reasons.join('\n'));
+    const auto found = std::ranges::find(m_windows, &empty, [](const auto& window) { return window.get(); });
+    MainWindow* spare = found->release();
+    m_windows.erase(found);
+    spare->close();
+    spare->deleteLater();  // it is telling of its file just now
 }
 
 void Windows::recover(const std::filesystem::path& recoveries) {

@@ -61,6 +61,7 @@ TEST_CASE("another certificate than the pinned one is refused") {
     const auto answered = greet(wrong);
     REQUIRE_FALSE(answered);
     REQUIRE(answered.error().code == ErrorCode::refused);
+    CHECK(answered.error().message.find("its fingerprint is " + secured.pinned().tls->fingerprint + ", not " + wrong.tls->fingerprint) != std::string::npos);
     wrong.tls->fingerprint = "00";
     REQUIRE(greet(wrong).error().code == ErrorCode::refused);
 }

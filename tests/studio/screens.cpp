@@ -68,7 +68,7 @@ TEST_CASE("screens of the start page with designs of late, and of cloth that was
         window.show();
         keep(window, name);
         window.show_sample("twill-2-2");
-        window.findChild<MessageBar*>("messages")->tell(MessageBar::Kind::note, SimulationDesk::tr("The cloth has another size than when it was relaxed, so the 3D view shows its plan again."),
+        window.findChild<MessageBar*>("messages")->tell(MessageBar::Kind::note, SimulationDesk::tr("The cloth has another size than when it was relaxed: its relaxed yarns are gone, and the 3D view shows its plan again."),
                                                         window.findChild<SimulationPanel*>()->run_action());
         keep(window, name == std::string("recent") ? "offer" : "offer-dark");
     }

@@ -57,6 +57,11 @@ class SubmitWindow {
         QTest::keyClick(&line, Qt::Key_Delete);
         QTest::keyClicks(&line, QString::fromStdString(words));
     }
+    /// How far below the top of the panel it stands, once all has found its place.
+    int place_of(const char* field) {
+        (void)wait([settled = 0]() mutable { return ++settled > 5; });  // one layout asks for another
+        return find<QWidget>(field).mapTo(&panel, QPoint()).y();
+    }
     void write_note(const std::string& words) {
         auto& note = find<QPlainTextEdit>("note");
         note.setFocus();

@@ -1,6 +1,7 @@
 #include "submit_case.hpp"
 
 #include <studio/panels/scaled_picture.hpp>
+#include <studio/panels/trouble_label.hpp>
 
 using namespace weave;
 using namespace weave::studio;
@@ -13,8 +14,13 @@ TEST_CASE("submit: a wrong password and a wrong fingerprint are refused, the rig
     REQUIRE(window.wait([&] { return window.find<QPushButton>("sign_in").isVisible(); }));
     CHECK_FALSE(window.find<QPlainTextEdit>("note").isEnabled());
 
+    const int person_was = window.place_of("person");
+    const auto& greeting = window.find<QLabel>("greeting");
     window.sign_in(mill, "not the password");
     window.wait_for("sign_in_words", "name or password is wrong");
+    CHECK(window.place_of("person") == person_was);
+    CHECK(greeting.height() >= greeting.heightForWidth(greeting.width()));  // all of it is to be read
+    CHECK(window.panel.focusWidget() == &window.find<QLineEdit>("password"));
     CHECK_FALSE(window.panel.desk().access().signed_in);
     CHECK(window.find<QLineEdit>("password").text().isEmpty());
 
@@ -22,11 +28,36 @@ TEST_CASE("submit: a wrong password and a wrong fingerprint are refused, the rig
     window.type("password", Mill::password);
     window.click("sign_in");
     window.wait_for("sign_in_words", "shows another certificate");
+    CHECK(window.place_of("person") == person_was);
+    CHECK(greeting.height() >= greeting.heightForWidth(greeting.width()));
+    const QString told = TroubleLabel::as_typed(window.text("sign_in_words"));
+    CHECK(told.contains(QString::fromStdString(mill.fingerprint())));
+    CHECK(told.contains(QString(64, 'a')));
     CHECK_FALSE(window.panel.desk().access().signed_in);
     CHECK_FALSE(std::filesystem::exists(file));
 
-    window.sign_in(mill);
+    CHECK(window.place_of("person") == person_was);
+
+    window.type("mill", "localhost:1");
+    window.type("password", Mill::password);
+    window.click("sign_in");
+    window.wait_for("sign_in_words", "localhost:1: cannot talk to the server");
+    CHECK(window.text("gone").isEmpty());  // it is said once, where it is asked for
+    CHECK(window.place_of("person") == person_was);
+
+    window.type("mill", mill.origin());
+    window.type("password", Mill::password);
+    window.click("sign_in");
+    window.wait_for("sign_in_words", "shows another certificate");
+    const QString origin = QString::fromStdString(mill.origin());
+    REQUIRE(origin.startsWith("https://"));
+    window.type("mill", origin.mid(8).toStdString());  // as people say it
+    const QString words = window.text("sign_in_words");
+    window.find<QLineEdit>("fingerprint").setText(words.mid(words.indexOf("fingerprint is ") + 15, 67));  // copied, with the places where it may break
+    window.type("password", Mill::password);
+    window.click("sign_in");
     window.wait_signed_in();
+    CHECK(window.find<QLineEdit>("mill").text() == origin);
     CHECK(window.text("who").startsWith("The dora"));
     CHECK_FALSE(window.find<QPushButton>("sign_in").isVisible());
     CHECK(read_file(file).value().find(Mill::password) == std::string::npos);
@@ -110,6 +141,14 @@ TEST_CASE("submit: a wrong signing password keeps what was saved, and the mill's
     window.wait_for("state", "Revision 1 is saved, not submitted");
     REQUIRE(window.wait([&] { return window.find<QPushButton>("submit").text() == "Submit revision 1"; }));
     CHECK(window.panel.desk().access().signed_in);
+    auto& password = window.find<QLineEdit>("signing_password");
+    window.type("signing_password", "nor this");
+    const int password_was = window.place_of("signing_password");
+    QTest::keyClick(&password, Qt::Key_Return);
+    REQUIRE(window.wait([&] { return window.text("trouble").isEmpty(); }));
+    window.wait_for("trouble", "the password is wrong");
+    CHECK(window.place_of("signing_password") == password_was);  // what is typed again lands where it did before
+    CHECK(window.panel.focusWidget() == &password);
     window.submit("Now with the right one");
     window.wait_for("state", "Revision 1 is submitted");
     CHECK(window.text("trouble").isEmpty());
@@ -260,24 +299,20 @@ TEST_CASE("submit: another design of the same edition takes the place of the one
 TEST_CASE("submit: findings, evidence and a cloth that cannot be made are told") {
     const Mill mill;
     SubmitWindow window(mill);
-    window.panel.set_findings(2, 1, "A float of 40 picks on the back");
-    CHECK(window.text("findings_summary").contains("2 errors, 1 warning"));
+    window.panel.set_findings(2, 1, "2 errors, 1 warning; 19 rules held");
+    CHECK(window.text("findings_summary") == "Findings: 2 errors, 1 warning; 19 rules held");
     CHECK(window.text("submit_warning").contains("nobody can approve it"));
     CHECK(window.find<QLabel>("submit_warning").isVisible());
     window.panel.set_findings(0, 0, {});
     CHECK(window.text("submit_warning").isEmpty());
 
     CHECK(window.text("evidence").contains("none yet"));
-    const auto place = [&] {
-        (void)window.wait([settled = 0]() mutable { return ++settled > 5; });  // one layout asks for another
-        return window.find<QLineEdit>("signing_password").mapTo(&window.panel, QPoint()).y();
-    };
-    const int before = place();
+    const int before = window.place_of("signing_password");
     window.panel.evidence().set_found(SimulationFound{"this computer", "standard",
                                                       QDateTime::currentDateTime(), true, true, window.edition});
     CHECK(window.text("evidence").contains("relaxed on this computer at standard, at rest"));
     CHECK_FALSE(window.find<QPushButton>("simulate").isVisible());
-    CHECK(place() == before);  // whoever is about to click there hits it
+    CHECK(window.place_of("signing_password") == before);  // whoever is about to click there hits it
     CHECK(window.text("signed_evidence").contains("Nothing is signed"));
     window.open_sample("twill-2-2");
     CHECK(window.text("evidence").contains("has changed since"));

@@ -17,11 +17,17 @@ TEST_CASE("submit screens", "[.screens]") {
         stranger.sign_in(mill, "wrong");
         stranger.wait_for("sign_in_words", "wrong");
         keep(stranger.panel, "submit-2-wrong");
+        stranger.panel.resize(300, 1150);
+        stranger.type("fingerprint", std::string(64, 'a'));
+        stranger.type("password", Mill::password);
+        stranger.click("sign_in");
+        stranger.wait_for("sign_in_words", "another certificate");
+        keep(stranger.panel, "submit-2-other-certificate");
     }
     SubmitWindow window(mill.session_of("dora"));
     window.wait_signed_in();
     window.open_sample("tl013-wrong");
-    window.panel.set_findings(1, 2, "The longest float on the back is 14 picks, the loom allows 12");
+    window.panel.set_findings(1, 2, "1 error, 2 warnings; 19 rules held");
     window.type("new_design", "pocket");
     keep(window.panel, "submit-3-new");
     window.submit("The first pocket");
@@ -29,7 +35,7 @@ TEST_CASE("submit screens", "[.screens]") {
     keep(window.panel, "submit-4-submitted");
     mill.signs("abel", {"request-changes", "pocket", "1"}, "The seam opens at pick 12");
     window.wait_for("state", "asks for changes");
-    window.panel.set_findings(0, 0, {});
+    window.panel.set_findings(0, 0, "Nothing stands in the way of weaving this (22 rules held)");
     window.open_sample("tl013-corrected");
     keep(window.panel, "submit-5-rejected");
 }

@@ -1,5 +1,6 @@
 #include <studio/support/offscreen_gl.hpp>
 #include <studio/support/viewport_samples.hpp>
+#include <studio/viewport/overlay.hpp>
 #include <studio/viewport/viewer_panel.hpp>
 
 #include <weave/picture/tube_render.hpp>
@@ -7,6 +8,7 @@
 #include <QApplication>
 #include <QLabel>
 #include <QOpenGLFramebufferObject>
+#include <QPainter>
 #include <QSignalSpy>
 #include <QTemporaryDir>
 #include <QToolBar>
@@ -385,6 +387,36 @@ TEST_CASE("the panel makes models aside, keeps its state as JSON and takes pictu
     CHECK_FALSE(panel.set_points(control));
     panel.set_relaxed(nullptr);
     CHECK(QTest::qWaitFor([&] { return panel.viewport()->model() == nullptr; }));
+}
+
+TEST_CASE("a hint goes on in the next line where the cube leaves too little room") {
+    QImage image(400, 300, QImage::Format_RGB32);
+    image.fill(Qt::black);
+    constexpr int right = 200;
+    {
+        QPainter painter(&image);
+        Overlay overlay(painter, image.rect(), QApplication::palette());
+        overlay.hint("these two do not cross; click a yarn that crosses this one; Esc to let go", right);
+    }
+    int furthest = 0, lowest = 0;
+    for (int y = 0; y < image.height(); ++y)
+        for (int x = 0; x < image.width(); ++x)
+            if (image.pixelColor(x, y) != Qt::black) furthest = std::max(furthest, x), lowest = std::max(lowest, y);
+    CHECK(furthest > right / 2);
+    CHECK(furthest <= right);
+    CHECK(lowest > 3 * QFontMetrics(QApplication::font()).height());
+}
+
+TEST_CASE("cloth that cannot be shown is not said to be still to come") {
+    ViewerPanel panel;
+    panel.set_mode(ViewerPanel::Mode::relaxed);
+    CHECK(panel.viewport()->empty_words().startsWith("Nothing to show yet"));
+    auto yarns = std::make_shared<Yarns>(*sample_yarns());
+    yarns->yarns.front().strain.pop_back();
+    panel.set_relaxed(yarns);
+    CHECK(QTest::qWaitFor([&] { return panel.viewport()->empty_words().startsWith("This cloth cannot be shown: A yarn has not"); }));
+    panel.set_relaxed(nullptr);
+    CHECK(panel.viewport()->empty_words().startsWith("Nothing to show yet"));
 }
 
 TEST_CASE("every tool of the panel has a name and a tip") {

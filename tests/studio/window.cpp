@@ -19,12 +19,17 @@
 #include <studio/panels/simulation_panel.hpp>
 #include <studio/panels/yarns_panel.hpp>
 #include <studio/viewport/viewer_panel.hpp>
+#include <studio/window/block_actions.hpp>
 #include <studio/window/help_window.hpp>
 #include <studio/window/main_window.hpp>
 #include <studio/window/tutorial.hpp>
 #include <studio/window/viewer_desk.hpp>
 #include <studio/window/windows.hpp>
 
+#include <QCommandLinkButton>
+#include <QDialog>
+#include <QSpinBox>
+#include <QTreeWidgetItemIterator>
 #include <QtTest>
 
 #include <catch2/catch.hpp>
@@ -53,6 +58,17 @@ TEST_CASE("a window comes up with a start page: ways to begin, and samples with 
     REQUIRE(until([&] { return shown.window.document() != nullptr; }));
     CHECK(shown.document().design() == samples()[1].make());
     CHECK_FALSE(shown.document().is_modified());
+}
+
+TEST_CASE("in the smallest window every way to begin is to be read whole") {
+    Desk shown;
+    shown.window.resize(10, 10);
+    REQUIRE(until([&] { return shown.window.width() < 900; }));
+    for (const char* name : {"begin-tutorial", "begin-weave", "begin-drawing", "begin-open"}) {
+        INFO(name);
+        auto& way = shown.find<QCommandLinkButton>(name);
+        CHECK(until([&] { return way.height() >= way.heightForWidth(way.width()); }));
+    }
 }
 
 TEST_CASE("a picture in colours is no card, but may become a stencil with a weave for each colour") {

@@ -68,8 +68,10 @@ Status check_pinned(SSL* tls, const ClientOptions& options) {
     std::string pinned = options.tls->fingerprint;
     std::transform(pinned.begin(), pinned.end(), pinned.begin(),
                    [](char c) { return c >= 'A' && c <= 'F' ? static_cast<char>(c - 'A' + 'a') : c; });
-    if (!certificate || fingerprint_of(certificate.get()) != pinned)
-        return not_the_one(options, "the server shows another certificate than the one that was pinned");
+    const std::string shown = certificate ? fingerprint_of(certificate.get()) : "none";
+    if (shown != pinned)
+        return not_the_one(options, "the server shows another certificate than the one that was asked for: its fingerprint is " + shown +
+                                        ", not " + pinned + "; ask whoever runs it which is right");
     const std::string& host = options.host;
     const bool fits = is_address(host)
                           ? X509_check_ip_asc(certificate.get(), host.c_str(), 0) == 1
