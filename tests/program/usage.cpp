@@ -14,7 +14,7 @@ const std::map<std::string, std::vector<std::string>> commands{
     {"samples", {"NAME", "--out"}},
     {"preset", {"FAMILY", "--out", "twill", "up=2", "satin", "move=0", "angle-interlock", "stuffers=0"}},
     {"tile", {"FILE", "--x", "--y", "--z", "--out"}},
-    {"attach", {"A", "B", "--face", "+x,-x,+y,-y,+z,-z", "--out"}},
+    {"attach", {"A", "B", "--face", "+x, -x, +y, -y, +z or -z", "--out"}},
     {"stencil", {"IMAGE", "--map", "--out"}},
     {"renumber", {"FILE", "--row", "--column", "--order", "--out"}},
     {"import", {"IN", "--out", "--t", "--p", "--infer", "--grouping", "--pick-1", "--end-1", "--lifted", "--loom", "--ends", "JC5"}},
