@@ -84,7 +84,7 @@ class Job final : public Task {
     wire::JobPhase m_phase = wire::JobPhase::waiting;
     std::optional<Crew::Id> m_worker;
     std::size_t m_points = 0, m_faults = 0;
-    std::uint64_t m_bytes = 0;
+    std::uint64_t m_bytes = 0;  ///< that it is expected to take; 0: not known yet, or Slurm's business
     std::uint64_t m_step = 0, m_furthest = 0;
     double m_residual = 0;
     std::optional<std::uint64_t> m_lost;  ///< crossings out of order, once they were looked up

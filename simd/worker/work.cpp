@@ -111,7 +111,7 @@ Status Work::wait_for_admission() {
           {"points", sim::points_of(plan)},
           {"repeats", repeats},
           {"bytes", sim::expected_bytes(plan)},
-          {"unfolded_bytes", repeats == 1 ? sim::expected_bytes(plan) : sim::expected_bytes(repeats * sim::points_of(plan))},
+          {"unfolded_bytes", sim::expected_bytes(repeats * sim::points_of(plan))},
           {"step", m_run->steps()},
           {"changes", m_changes_made}});
     while (!m_inbox.admitted()) {
@@ -338,7 +338,8 @@ void Work::tell_layout() {
     if (sha256 == m_layout_sha256) return;
     m_layout_sha256 = std::move(sha256);
     layout.layout = ++m_layout;
-    tell_event(layout, {{"layout", m_layout}, {"layout_sha256", m_layout_sha256}, {"points", sim::points_of(m_run->now().plan())}, {"bytes", sim::expected_bytes(m_run->now().plan())}});
+    const sim::Plan& plan = m_run->now().plan();
+    tell_event(layout, {{"layout", m_layout}, {"layout_sha256", m_layout_sha256}, {"points", sim::points_of(plan)}, {"bytes", sim::expected_bytes(plan)}});
 }
 
 void Work::tell_phase(wire::Phase phase) {

@@ -25,6 +25,12 @@ fs::path site_of_kept(const CommandMill& mill, const fs::path& site, const std::
     return folder;
 }
 
+Ended restored(CommandMill& mill, const fs::path& site, const std::vector<std::string>& more) {
+    std::vector<std::string> words{"restore", mill.at("backup"), site};
+    words.insert(words.end(), more.begin(), more.end());
+    return mill.run(words);
+}
+
 }  // namespace
 
 TEST_CASE("a backup does not replace work that it has not, unless it is told to, and then that work is kept", "[commands][restore]") {
@@ -34,10 +40,7 @@ TEST_CASE("a backup does not replace work that it has not, unless it is told to,
     mill.save("twill-2-2");
     mill.done("emil", {"audit", "head", "-o", mill.at("head.json")});
     mill.stop();
-    const auto restore = [&](std::vector<std::string> more = {}) {
-        more.insert(more.begin(), {"restore", mill.at("backup"), mill.site_folder});
-        return mill.run(more);
-    };
+    const auto restore = [&](const std::vector<std::string>& more = {}) { return restored(mill, mill.site_folder, more); };
     const Ended refused = restore();
     CHECK(refused.code == 4);
     CHECK_THAT(refused.err, Catch::Contains("records that the backup has not, the newest of 2") && Catch::Contains("by dora") &&
@@ -67,10 +70,7 @@ TEST_CASE("a backup of one site does not replace another, unless it is told to, 
     REQUIRE(mill.run({"backup", mill.site_folder, mill.at("backup")}).code == 0);
     mill.stop();
     other.stop();
-    const auto restore = [&](std::vector<std::string> more = {}) {
-        more.insert(more.begin(), {"restore", mill.at("backup"), other.site_folder});
-        return mill.run(more);
-    };
+    const auto restore = [&](const std::vector<std::string>& more = {}) { return restored(mill, other.site_folder, more); };
     const Ended refused = restore();
     CHECK(refused.code == 4);
     CHECK_THAT(refused.err, Catch::Contains("holds another site than the backup") && Catch::Contains("trust.published, by mary"));

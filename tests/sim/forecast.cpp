@@ -55,4 +55,9 @@ TEST_CASE("a cloth of many repeats is expected to take what its copies and their
     CHECK(copied_bytes(one) >= in_memory);
     CHECK(copied_bytes(one) <= in_memory + file);
     CHECK(2 * copied_bytes(one) > in_memory + file);  // the file's header is not counted
+
+    const auto no_file = plan_of(tiled(1500));  // 2,250,000 repeats of 32 points
+    REQUIRE_FALSE(no_file);
+    CHECK(no_file.error().code == ErrorCode::refused);
+    CHECK_THAT(no_file.error().message, Catch::Contains("72000000 control points, and a .yarns file has at most 67108864"));
 }
