@@ -142,6 +142,17 @@ TEST_CASE("a cut shows flat discs in a lighter colour, and nothing in front of t
     CHECK(oblique.scene.size.y() == Approx(8));
 }
 
+TEST_CASE("a cut that passes the cloth by is known to cut nothing") {
+    const auto is_cut = [](const char* side, const char* cut) {
+        return Shot(cross(), view_of({.side = side, .cut = cut})).scene.is_cut_through;
+    };
+    CHECK(is_cut("top", "z=1.499"));  // the warp, on top, lies 1 mm high and has a radius of half a millimetre
+    CHECK_FALSE(is_cut("top", "z=1.501"));
+    CHECK(is_cut("front", "x=0.001"));  // it begins, flat, at 0
+    CHECK_FALSE(is_cut("front", "x=-0.001"));
+    CHECK_FALSE(is_cut("top", ""));
+}
+
 TEST_CASE("yarns end flat at the rim of the piece, whatever lies in their last pieces") {
     Yarns yarns = plain_weave();
     const Shot shot(yarns, view_of({.side = "top"}), 600);

@@ -38,6 +38,7 @@ TEST_CASE("a broken or foreign file opens with a message and changes nothing") {
     refuse(file_of(folder, "c.wif", "[WIF]\nVersion=9\n"), "c.wif");
     refuse(file_of(folder, "d.png", std::string("\x89PNG\r\n\x1a\n", 8)), "d.png");
     refuse("/nowhere/e.weave", "e.weave");
+    refuse(file_of(folder, "f.ep", "a mill's old card"), "f.ep: is a file of a loom's controller, which is read as its loom's profile says: weave import FILE --loom");
 }
 
 TEST_CASE("a design is saved under its name, and comes back as it was") {

@@ -16,7 +16,8 @@ struct OpenedDesign {
 };
 
 /// Reads a `.weave` document, a WIF file or a picture of a card (PNG, TIFF, BMP), known by what is in it. A picture's picks and
-/// ends are taken to lie side by side (t = p = 1), black as lifted, pick 1 at the bottom. Errors name the file.
+/// ends are taken to lie side by side (t = p = 1), black as lifted, pick 1 at the bottom. Errors name the file; of a loom
+/// controller's file they say how it is read.
 Result<OpenedDesign> open_design(const std::filesystem::path& path);
 
 /// A card as a design of one block, its picks and ends side by side.

@@ -87,7 +87,9 @@ std::vector<std::string> notes_of(const Yarns& yarns, const ClothView& view, con
         parts.push_back("columns " + std::to_string(region.first_column + 1) + " to " +
                         std::to_string(region.last_column + 1) + " of " +
                         std::to_string(yarns.cloth_columns));
-    if (view.cut) parts.push_back("cut at " + view.cut->words + ", where flat discs are yarns cut through");
+    if (view.cut)
+        parts.push_back(scene.is_cut_through ? "cut at " + view.cut->words + ", where flat discs are yarns cut through"
+                                             : "nothing of it lies before the cut at " + view.cut->words);
     return parts;
 }
 

@@ -102,7 +102,7 @@ class SceneMaker {
         const double near = 1.5 * m_yarns.yarns[number].radius_mm;
         for (std::size_t k = 0; k + 1 < knots.size(); ++k) {
             TubePiece piece = piece_between(number, knots[k], knots[k + 1], move);
-            if (m_scene.cut && !trim(piece)) continue;
+            if (m_scene.cut && !keep(piece)) continue;
             if (knots[k].along < near) piece.plane_from = start;
             if (knots.back().along - knots[k + 1].along < near) piece.plane_to = end;
             m_scene.pieces.push_back(piece);
@@ -123,13 +123,21 @@ class SceneMaker {
         return piece;
     }
 
+    /// How far a disc across the yarn reaches towards what is cut away.
+    [[nodiscard]] double reach(const Vec3& place, const Eigen::Vector3f& tangent, double radius) const {
+        const double along = m_scene.cut->normal.dot(tangent.cast<double>());
+        return m_scene.cut->normal.dot(place) + radius * std::sqrt(std::max(0.0, 1 - along * along));
+    }
+
     /// Takes off the ends of a piece that lie more than a radius beyond the cut, so that it is not framed by
     /// what nobody sees; false where nothing is left.
-    [[nodiscard]] bool trim(TubePiece& piece) const {
+    [[nodiscard]] bool keep(TubePiece& piece) {
         const auto beyond = [&](const Vec3& place) {
             return m_scene.cut->normal.dot(place) - m_scene.cut->height - piece.radius;
         };
         const double from = beyond(piece.from), to = beyond(piece.to);
+        m_scene.is_cut_through |= reach(piece.from, piece.tangent_from, piece.radius) > m_scene.cut->height ||
+                                  reach(piece.to, piece.tangent_to, piece.radius) > m_scene.cut->height;
         if (from >= 0 && to >= 0) return false;
         if (from <= 0 && to <= 0) return true;
         const double share = from / (from - to);

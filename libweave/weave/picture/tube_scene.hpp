@@ -13,6 +13,7 @@ struct TubeScene {
     std::vector<TubePiece> pieces;  ///< of one yarn after another, in their order along it
     std::vector<Plane> planes;      ///< where yarns end
     std::optional<Plane> cut;
+    bool is_cut_through = false;  ///< whether the cut takes any of the cloth away
     std::vector<Colour> colours;  ///< of each yarn; empty where values colour the pieces
     double low = 0, high = 1;     ///< the values at both ends of the colour map
     Vec3 size{0, 0, 0};           ///< of what is shown, along the cloth's axes, mm
