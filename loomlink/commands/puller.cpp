@@ -49,7 +49,8 @@ class Pull {
         WEAVE_TRY(TerminalState state, known_state());
         WEAVE_TRY(CheckedIndex checked, fetch_index(std::move(state)));
         WEAVE_CHECK_OK(save_state(m_wish->state_file, checked.state));
-        RecallReport recall = remove_ended(checked.state, m_wish->to, ReleaseState::withdrawn);
+        const TerminalState before = checked.state;
+        RecallReport recall = remove_ended(checked.state, ReleaseState::withdrawn);
         checked.state = std::move(recall.state);
         WEAVE_CHECK_OK(save_state(m_wish->state_file, checked.state));
         PullReport report{{}, std::move(recall.removed), {}, std::move(recall.kept), {}, checked.index.expires};
@@ -60,7 +61,9 @@ class Pull {
             else
                 report.refused.push_back({number, std::move(held).error()});
         }
+        const auto foreign = foreign_releases(before, checked.state, m_wish->to);
         WEAVE_CHECK_OK(remove_superseded(checked.state, report));
+        report.kept.insert(report.kept.end(), foreign.begin(), foreign.end());
         return report;
     }
 
@@ -80,7 +83,7 @@ class Pull {
 
     /// Last, once what is in force lies there: a loom that loses its server in between still has something.
     Status remove_superseded(const TerminalState& state, PullReport& report) {
-        RecallReport gone = remove_ended(state, m_wish->to, ReleaseState::superseded);
+        RecallReport gone = remove_ended(state, ReleaseState::superseded);
         report.superseded = std::move(gone.removed);
         report.kept.insert(report.kept.end(), gone.kept.begin(), gone.kept.end());
         return save_state(m_wish->state_file, gone.state);
@@ -185,7 +188,7 @@ class Pull {
         if (entry == nullptr || entry->state != ReleaseState::released) return {};
         for (const PlacedRelease& placed : checked.state.placed) {
             const fs::path folder = m_wish->to / placed.folder;
-            if (placed.number != number) continue;
+            if (placed.number != number || !lies_in(placed, m_wish->to)) continue;
             const auto manifest = read_file(folder / manifest_name, most_manifest_bytes);
             if (!manifest || sha256_hex(*manifest) != entry->manifest_sha256) continue;
             const auto report = verify_files(folder, checked.state.trust);
@@ -268,7 +271,7 @@ std::string in_words(const PullReport& report, const std::string& loom) {
         words += "superseded, removed: " + on_one_line(file) + "\n";
     for (const FileFinding& finding : report.kept)
         words +=
-            "MUST NOT BE WOVEN, still there: " + on_one_line(finding.path) + " " + on_one_line(finding.message) + "\n";
+            "MUST NOT BE WOVEN: " + on_one_line(finding.path) + " " + on_one_line(finding.message) + "\n";
     return words;
 }
 

@@ -37,7 +37,7 @@ struct PullReport {
     std::vector<HeldRelease> releases;
     std::vector<std::string> removed;     ///< files of recalled releases
     std::vector<std::string> superseded;  ///< files of superseded ones, that were removed as well
-    std::vector<FileFinding> kept;        ///< of all those that were left; a person has to look
+    std::vector<FileFinding> kept;        ///< of all those that were left, and what else looks like a release; a person has to look
     std::vector<RefusedRelease> refused;
     Instant expires;                   ///< until when the index holds
 

@@ -8,6 +8,7 @@
 #include <cerrno>
 #include <cstring>
 #include <fcntl.h>
+#include <set>
 #include <unistd.h>
 
 namespace weave::loomlink {
@@ -79,13 +80,23 @@ Error refused(const fs::path& path, std::string why) {
     return {ErrorCode::refused, std::move(why), path.string()};
 }
 
-void remember(TerminalState& state, const CheckedRelease& release) {
+/// The folder as it is found from anywhere. Errors: one that cannot be noted in a state, which is JSON.
+Result<fs::path> whole_path(const fs::path& folder) {
+    std::error_code code;
+    fs::path whole = fs::absolute(folder, code);
+    if (!code) whole = fs::weakly_canonical(whole, code);
+    if (code) return system_fault("cannot be found: " + code.message(), folder.string());
+    if (!is_utf8(whole.native())) return Error{ErrorCode::usage, "its name is not UTF-8", shown(folder)};
+    return whole.has_filename() ? whole : whole.parent_path();
+}
+
+void remember(TerminalState& state, const CheckedRelease& release, const fs::path& within) {
     for (SeenRelease& seen : state.releases)
         if (seen.number == release.manifest.release)
             seen.body_sha256 = body_sha256(release.manifest.document);
-    PlacedRelease placed{release.manifest.release, release.folder, {}};
+    PlacedRelease placed{release.manifest.release, within, release.folder, {}};
     for (const PulledFile& file : release.files) placed.files.push_back({file.path, sha256_hex(file.bytes)});
-    std::erase_if(state.placed, [&](const PlacedRelease& old) { return old.folder == release.folder; });
+    std::erase_if(state.placed, [&](const PlacedRelease& old) { return old.path() == placed.path(); });
     state.placed.push_back(std::move(placed));
 }
 
@@ -123,21 +134,24 @@ const char* word_of(ReleaseState end) {
     return end == ReleaseState::withdrawn ? "withdrawn" : "superseded";
 }
 
-void remove_release(const PlacedRelease& placed, const fs::path& releases, const std::string& how,
-                    RecallReport& report) {
-    PlacedRelease rest{placed.number, placed.folder, {}};
-    const fs::path folder = releases / placed.folder;
-    std::error_code code;
-    fs::remove_all(incoming_folder(releases, placed.folder), code);
-    if (fs::is_symlink(fs::symlink_status(folder, code))) {
-        report.kept.push_back(
-            {FileTrouble::not_a_file, placed.folder, "is a link now; nothing behind it was touched"});
+void remove_release(const PlacedRelease& placed, const std::string& how, RecallReport& report) {
+    PlacedRelease rest{placed.number, placed.within, placed.folder, {}};
+    const fs::path folder = placed.path();
+    const auto keep_all = [&](FileTrouble trouble, const std::string& why) {
+        report.kept.push_back({trouble, shown(folder), why});
         report.state.placed.push_back(placed);
-        return;
-    }
+    };
+    std::error_code code;
+    if (!fs::is_directory(placed.within, code))  // a stick that was pulled out comes back with what is on it
+        return keep_all(FileTrouble::unreadable, "belongs to the " + how + " release " + std::to_string(placed.number) +
+                                                     " but cannot be looked at: there is no folder " + shown(placed.within) +
+                                                     ". Bring it back, or make it anew if it is gone for good, and pull again");
+    fs::remove_all(incoming_folder(placed.within, placed.folder), code);
+    if (fs::is_symlink(fs::symlink_status(folder, code)))
+        return keep_all(FileTrouble::not_a_file, "is a link now; nothing behind it was touched");
     for (const PlacedFile& file : placed.files) {
         const fs::path path = folder / file.path;
-        const std::string name = placed.folder + "/" + file.path;
+        const std::string name = shown(path);
         const auto size = fs::file_size(path, code);
         auto finding = look_at(path, code ? 0 : size, file.sha256);
         if (finding && finding->trouble == FileTrouble::missing) continue;
@@ -158,7 +172,7 @@ void remove_release(const PlacedRelease& placed, const fs::path& releases, const
                                       [&](const PlacedFile& file) { return file.path == name; });
         if (!told)
             report.kept.push_back(
-                {FileTrouble::too_many, placed.folder + "/" + shown(name),
+                {FileTrouble::too_many, shown(entry->path()),
                  "lies in the folder of a " + how + " release but was not put there by this terminal"});
     }
     if (!rest.files.empty()) report.state.placed.push_back(std::move(rest));
@@ -168,7 +182,8 @@ void remove_release(const PlacedRelease& placed, const fs::path& releases, const
 
 Result<fs::path> place_release(TerminalState& state, const CheckedRelease& release,
                                const fs::path& state_file, const fs::path& releases) {
-    remember(state, release);
+    WEAVE_TRY(const fs::path within, whole_path(releases));
+    remember(state, release, within);
     WEAVE_CHECK_OK(save_state(state_file, state));
     fs::path folder = releases / release.folder;
     std::error_code code;
@@ -225,7 +240,7 @@ Status check_recall(const TerminalState& state, const ReleaseManifest& manifest)
     return {};
 }
 
-RecallReport remove_ended(const TerminalState& state, const fs::path& releases, ReleaseState end) {
+RecallReport remove_ended(const TerminalState& state, ReleaseState end) {
     RecallReport report{{}, {}, state};
     report.state.placed.clear();
     for (const PlacedRelease& placed : state.placed) {
@@ -234,11 +249,33 @@ RecallReport remove_ended(const TerminalState& state, const fs::path& releases, 
                 return seen.number == placed.number && seen.state == end;
             });
         if (has_ended)
-            remove_release(placed, releases, word_of(end), report);
+            remove_release(placed, word_of(end), report);
         else
             report.state.placed.push_back(placed);
     }
     return report;
+}
+
+bool lies_in(const PlacedRelease& placed, const fs::path& releases) {
+    const auto whole = whole_path(releases);
+    return whole && placed.within == *whole;
+}
+
+std::vector<FileFinding> foreign_releases(const TerminalState& before, const TerminalState& after, const fs::path& releases) {
+    std::set<std::string> known;
+    for (const auto* state : {&before, &after})
+        for (const PlacedRelease& placed : state->placed)
+            if (lies_in(placed, releases)) known.insert(placed.folder);
+    std::vector<FileFinding> found;
+    std::error_code code;
+    for (fs::directory_iterator entry(releases, code), end; !code && entry != end && found.size() < most_folder_findings; entry.increment(code)) {
+        const std::string name = entry->path().filename().string();
+        if (name.starts_with("release-") && entry->is_directory(code) && !known.contains(name))
+            found.push_back({FileTrouble::too_many, shown(entry->path()),
+                             "was not put there by this terminal for the loom '" + after.loom +
+                                 "': a copy, or another loom's, which has a folder of its own. Take it away"});
+    }
+    return found;
 }
 
 }  // namespace weave::loomlink

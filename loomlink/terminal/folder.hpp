@@ -47,15 +47,22 @@ Status check_recall(const TerminalState& state, const ReleaseManifest& manifest)
 
 /// What became of the files of recalled releases.
 struct RecallReport {
-    std::vector<std::string> removed;  ///< as `FOLDER/FILE`
+    std::vector<std::string> removed;  ///< whole paths
     std::vector<FileFinding> kept;     ///< still there, each with the reason: a person has to look
     TerminalState state;               ///< without what is gone; to be saved
 };
 
 /// Removes the files of releases that came to `end`, withdrawn or superseded: those that this terminal wrote
 /// itself and that nobody has changed since. A changed file stays and is told, as is whatever else lies in the
-/// folder; an empty folder goes.
-RecallReport remove_ended(const TerminalState& state, const std::filesystem::path& releases,
-                          ReleaseState end);
+/// folder; an empty folder goes. They are looked for where they were put, whatever folder is pulled to now; where that
+/// cannot be reached, they are told, and remembered.
+RecallReport remove_ended(const TerminalState& state, ReleaseState end);
+
+/// Whether a release was put into this folder of releases.
+bool lies_in(const PlacedRelease& placed, const std::filesystem::path& releases);
+
+/// What looks like a release in this folder and was put there neither `before` a pull nor by it (`after`).
+std::vector<FileFinding> foreign_releases(const TerminalState& before, const TerminalState& after,
+                                          const std::filesystem::path& releases);
 
 }  // namespace weave::loomlink

@@ -44,7 +44,7 @@ Json placed_json(const TerminalState& state) {
         Json files = Json::array();
         for (const PlacedFile& file : placed.files)
             files.push_back({{"path", file.path}, {"sha256", file.sha256}});
-        list.push_back({{"number", placed.number}, {"folder", placed.folder}, {"files", std::move(files)}});
+        list.push_back({{"number", placed.number}, {"within", placed.within.string()}, {"folder", placed.folder}, {"files", std::move(files)}});
     }
     return list;
 }
@@ -83,10 +83,18 @@ std::string safe_name(JsonReader& reader, const std::string& key) {
     return name;
 }
 
+/// The whole path of a folder. It may be any: files are removed there by name and hash alone.
+std::filesystem::path whole_path(JsonReader& reader, const std::string& key) {
+    const std::filesystem::path path = reader.text(key, {}, 4096);
+    const bool is_whole = path.is_absolute() && path.native() == path.lexically_normal().native() && path.native().find('\0') == std::string::npos;
+    if (!reader.failed() && !is_whole) reader.fail("is not the whole path of a folder", key);
+    return path;
+}
+
 void read_placed(JsonReader& reader, TerminalState& state) {
-    std::set<std::string> folders;
+    std::set<std::filesystem::path> folders;
     for (auto& entry : reader.objects("placed")) {
-        PlacedRelease placed{count_member(entry, "number", 1), safe_name(entry, "folder"), {}};
+        PlacedRelease placed{count_member(entry, "number", 1), whole_path(entry, "within"), safe_name(entry, "folder"), {}};
         auto files = entry.objects("files");
         if (files.size() > most_released_files + 1) entry.fail("are more than a release has", "files");
         for (auto& file : files) {
@@ -95,7 +103,7 @@ void read_placed(JsonReader& reader, TerminalState& state) {
             if (reader.failed()) return;
         }
         entry.no_others();
-        if (!folders.insert(placed.folder).second) entry.fail("is the folder of another release", "folder");
+        if (!folders.insert(placed.path()).second) entry.fail("is the folder of another release", "folder");
         if (reader.failed()) return;
         state.placed.push_back(std::move(placed));
     }

@@ -38,8 +38,10 @@ struct PlacedFile {
 /// A release whose files the terminal put, or was about to put, into a folder of its own.
 struct PlacedRelease {
     std::uint64_t number = 0;
-    std::string folder;  ///< name below the folder of all releases
+    std::filesystem::path within;  ///< the folder of releases, whole from the root, without links: a recall finds it from anywhere
+    std::string folder;            ///< name in it
     std::vector<PlacedFile> files;
+    [[nodiscard]] std::filesystem::path path() const { return within / folder; }
     friend bool operator==(const PlacedRelease&, const PlacedRelease&) = default;
 };
 

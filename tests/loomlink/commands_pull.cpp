@@ -198,6 +198,37 @@ TEST_CASE("what was superseded leaves the loom once its successor lies there; tw
     CHECK_THAT(folders[0].filename().string(), Catch::StartsWith("release-2"));
 }
 
+TEST_CASE("a recall takes what was pulled into another folder, from wherever it is called", "[commands]") {
+    CommandMill mill;
+    mill.set_up();
+    mill.save("twill-2-2");
+    mill.approve("1");
+    mill.release("1");
+    const auto pull_to = [&](const fs::path& to, const std::vector<std::string>& more = {}) {
+        std::vector<std::string> words = mill.pull_words(more);
+        *std::next(std::find(words.begin(), words.end(), "--to")) = to.string();
+        return mill.run(words);
+    };
+    const Ended first = pull_to(fs::relative(mill.at("here")), {"--trust", mill.trust_fingerprint()});
+    INFO(first.out << first.err);
+    REQUIRE(first.code == 0);
+    REQUIRE(pull_to(mill.at("there")).json().at("releases").at(0).at("new") == true);
+    const fs::path here = release_folders(mill.at("here")).at(0), there = release_folders(mill.at("there")).at(0);
+    fs::copy(there, mill.at("copy") / there.filename(), fs::copy_options::recursive);
+    mill.signs("abel", {"withdraw", "seven", "1"});
+    const Ended recalled = pull_to(mill.at("third"));
+    CHECK(recalled.code == 0);
+    CHECK(recalled.json().at("removed").size() == 2 * std::size_t(std::distance(fs::directory_iterator(mill.at("copy") / there.filename()), {})));
+    CHECK_FALSE(fs::exists(here));
+    CHECK_FALSE(fs::exists(there));
+    // Copied back in, it is no release of this terminal any more; each pull says so.
+    fs::copy(mill.at("copy") / there.filename(), there, fs::copy_options::recursive);
+    const Ended copied = pull_to(mill.at("there"));
+    CHECK(copied.code == 1);
+    CHECK(copied.json().at("kept").at(0).at("file") == there.string());
+    CHECK_THAT(copied.json().at("kept").at(0).at("message").get<std::string>(), Catch::Contains("not put there by this terminal"));
+}
+
 TEST_CASE("a recalled file that somebody changed stays, is told, and the pull ends with 1", "[commands]") {
     CommandMill mill;
     mill.set_up();

@@ -65,6 +65,7 @@ TEST_CASE("a release is put into a folder of its own, and noted before") {
     const TerminalState kept = load_state(placed.state_file).value();
     REQUIRE(kept.placed.size() == 1);
     CHECK(kept.placed[0].folder == placed.release.folder);
+    CHECK(kept.placed[0].path() == placed.folder);
     CHECK(kept.placed[0].files.size() == 3);
     CHECK(kept.releases[1].body_sha256 == body_sha256(placed.release.manifest.document));
     CHECK(placed.findings().empty());
@@ -171,24 +172,24 @@ TEST_CASE("what this terminal saw of a release is held against its folder") {
 
 TEST_CASE("what is not recalled stays") {
     Placed placed;
-    CHECK(remove_ended(placed.state, placed.releases, ReleaseState::withdrawn).removed.empty());
+    CHECK(remove_ended(placed.state, ReleaseState::withdrawn).removed.empty());
     CHECK(fs::exists(placed.folder / "shoe.jc5"));
     placed.recall(1);  // which this terminal never pulled
-    CHECK(remove_ended(placed.state, placed.releases, ReleaseState::withdrawn).removed.empty());
+    CHECK(remove_ended(placed.state, ReleaseState::withdrawn).removed.empty());
     CHECK(placed.findings().empty());
 }
 
 TEST_CASE("a recalled release goes with its folder") {
     Placed placed;
     placed.recall(2);
-    const RecallReport report = remove_ended(placed.state, placed.releases, ReleaseState::withdrawn);
+    const RecallReport report = remove_ended(placed.state, ReleaseState::withdrawn);
     CHECK(report.removed.size() == 3);
-    CHECK(report.removed.front() == placed.release.folder + "/shoe.jc5");
+    CHECK(report.removed.front() == (placed.folder / "shoe.jc5").string());
     CHECK(report.kept.empty());
     CHECK(report.state.placed.empty());
     CHECK_FALSE(fs::exists(placed.folder));
-    CHECK(remove_ended(report.state, placed.releases, ReleaseState::withdrawn).removed.empty());
-    CHECK(remove_ended(placed.state, placed.releases, ReleaseState::withdrawn).kept.empty());  // had the state not been saved
+    CHECK(remove_ended(report.state, ReleaseState::withdrawn).removed.empty());
+    CHECK(remove_ended(placed.state, ReleaseState::withdrawn).kept.empty());  // had the state not been saved
 }
 
 TEST_CASE("what was changed, or is not of this terminal, stays and is told") {
@@ -196,17 +197,17 @@ TEST_CASE("what was changed, or is not of this terminal, stays and is told") {
     placed.recall(2);
     REQUIRE(write_file(placed.folder / "shoe.jc5", "changed by hand"));
     REQUIRE(write_file(placed.folder / "notes.txt", "mine"));
-    const RecallReport report = remove_ended(placed.state, placed.releases, ReleaseState::withdrawn);
+    const RecallReport report = remove_ended(placed.state, ReleaseState::withdrawn);
     CHECK(report.removed.size() == 2);
     REQUIRE(report.kept.size() == 2);
-    CHECK(report.kept[0].path == placed.release.folder + "/shoe.jc5");
+    CHECK(report.kept[0].path == (placed.folder / "shoe.jc5").string());
     CHECK_THAT(report.kept[0].message, Catch::Contains("withdrawn release 2") && Catch::Contains("differs"));
     CHECK_THAT(report.kept[1].message, Catch::Contains("was not put there by this terminal"));
     CHECK(read_file(placed.folder / "shoe.jc5").value() == "changed by hand");
     CHECK(read_file(placed.folder / "notes.txt").value() == "mine");
     REQUIRE(report.state.placed.size() == 1);
     CHECK(report.state.placed[0].files.size() == 1);  // told again until a person has looked
-    CHECK(remove_ended(report.state, placed.releases, ReleaseState::withdrawn).kept.size() == 2);
+    CHECK(remove_ended(report.state, ReleaseState::withdrawn).kept.size() == 2);
 }
 
 TEST_CASE("nothing behind a link is removed") {
@@ -214,10 +215,50 @@ TEST_CASE("nothing behind a link is removed") {
     placed.recall(2);
     fs::rename(placed.folder, placed.home.path / "elsewhere");
     fs::create_symlink(placed.home.path / "elsewhere", placed.folder);
-    const RecallReport report = remove_ended(placed.state, placed.releases, ReleaseState::withdrawn);
+    const RecallReport report = remove_ended(placed.state, ReleaseState::withdrawn);
     CHECK(report.removed.empty());
     REQUIRE(report.kept.size() == 1);
     CHECK_THAT(report.kept[0].message, Catch::Contains("is a link now"));
     CHECK(fs::exists(placed.home.path / "elsewhere" / "shoe.jc5"));
     CHECK(report.state.placed.size() == 1);
+}
+
+TEST_CASE("a recall finds what lies elsewhere, and does not forget what it cannot reach") {
+    Placed placed;
+    const fs::path other = placed.home.path / "other";
+    const fs::path second = place_release(placed.state, placed.release, placed.state_file, other).value();
+    CHECK(load_state(placed.state_file).value().placed.size() == 2);
+    placed.recall(2);
+    fs::rename(placed.releases, placed.home.path / "pulled out");
+    const RecallReport report = remove_ended(placed.state, ReleaseState::withdrawn);
+    CHECK(report.removed.size() == 3);
+    CHECK_FALSE(fs::exists(second));
+    REQUIRE(report.kept.size() == 1);
+    CHECK(report.kept[0].path == placed.folder.string());
+    CHECK_THAT(report.kept[0].message, Catch::Contains("cannot be looked at: there is no folder " + placed.releases.string()));
+    REQUIRE(report.state.placed.size() == 1);
+    fs::rename(placed.home.path / "pulled out", placed.releases);
+    const RecallReport later = remove_ended(report.state, ReleaseState::withdrawn);
+    CHECK(later.removed.size() == 3);
+    CHECK(later.kept.empty());
+    CHECK(later.state.placed.empty());
+    CHECK_FALSE(fs::exists(placed.folder));
+}
+
+TEST_CASE("what this terminal did not put there is told") {
+    const Placed placed;
+    const auto told = [&](const TerminalState& before, const TerminalState& after) {
+        return foreign_releases(before, after, placed.releases);
+    };
+    const TerminalState nothing = placed.site.terminal();
+    CHECK(told(nothing, placed.state).empty());
+    CHECK(told(placed.state, nothing).empty());  // it goes with this pull, or is told by that
+    fs::create_directory(placed.releases / "notes");
+    fs::create_directory(placed.releases / "release-9-abc");
+    REQUIRE(told(placed.state, placed.state).size() == 1);
+    CHECK(told(placed.state, placed.state)[0].path == (placed.releases / "release-9-abc").string());
+    TerminalState elsewhere = placed.state;
+    elsewhere.placed[0].within = placed.home.path / "elsewhere";
+    CHECK(told(nothing, elsewhere).size() == 2);
+    CHECK(foreign_releases(nothing, nothing, placed.home.path / "nowhere").empty());
 }

@@ -23,7 +23,7 @@ TerminalState full_state(const Site& site) {
         check_index(site.terminal(), site.index(10, 2, 0), Site::at(1), Site::consistent).value().state;
     state.releases[1].body_sha256 = sha256_hex("body");
     state.placed = {
-        {2, "release-2-0123456789ab", {{"shoe.jc5", sha256_hex("a")}, {"manifest.json", sha256_hex("b")}}}};
+        {2, "/loom/at the wall", "release-2-0123456789ab", {{"shoe.jc5", sha256_hex("a")}, {"manifest.json", sha256_hex("b")}}}};
     return state;
 }
 
@@ -66,6 +66,8 @@ TEST_CASE("a state that could lead astray is refused with its place") {
     check_refused(changed([](Json& j) { j["placed"][0]["folder"] = ".."; }),
                   "placed[0].folder: the file name '..'");
     check_refused(changed([](Json& j) { j["placed"][0]["folder"] = "../../home"; }), "leads into a folder");
+    for (const char* path : {"loom", "", "/loom/../home", "/loom//x", "./loom"})
+        check_refused(changed([&](Json& j) { j["placed"][0]["within"] = path; }), "placed[0].within: is not the whole path");
     check_refused(changed([](Json& j) { j["placed"][0]["files"][0]["path"] = "/etc/passwd"; }),
                   "placed[0].files[0].path");
     check_refused(changed([](Json& j) { j["placed"].push_back(j["placed"][0]); }),
