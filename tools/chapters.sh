@@ -227,7 +227,7 @@ removed or put in another order. By the head that she kept an older copy of the 
     from=$(at_desk edda "$loomlink" log | sed -nE 's/^([0-9]+) .* design\.added .*/\1/p')
     tell edda 0 loomlink log --from "$from"
     tell edda 0 loomlink audit bundle -o log.json
-    tell edda 0 loomlink audit verify log.json --trust trust.json --retained head.json
+    tell edda 0 loomlink audit verify log.json --trust trust.json --fingerprint "$mill_trust" --retained head.json
     say "   $(head -n 1 "$scratch/said")"
     ! grep 'does not name' "$scratch/said" >&2 || { echo "== FAILED: the trust document does not name the simulation machine" >&2; return 5; }
     stop_mill

@@ -1,6 +1,7 @@
 #pragma once
 
 #include <weave/wire/mill_client.hpp>
+#include <filesystem>
 #include <loomlink/keys/trust.hpp>
 #include <string>
 #include <vector>
@@ -13,5 +14,10 @@ Result<std::vector<std::string>> trust_papers(wire::MillClient& client);
 /// The newest one, sound in itself. Whether it is the right one is for the caller to know. Error (refused):
 /// there is none yet.
 Result<TrustDocument> newest_trust_of(wire::MillClient& client);
+
+/// The document of a file, as `trust show -o` wrote it, held to the fingerprint that an administrator told another way:
+/// anybody can write one that is sound in itself. Errors: `invalid` for one that its people have not signed so, or with
+/// another fingerprint.
+Result<TrustDocument> trust_from_file(const std::filesystem::path& file, const std::string& fingerprint);
 
 }  // namespace weave::loomlink

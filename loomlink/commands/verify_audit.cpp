@@ -7,6 +7,7 @@
 #include <loomlink/audit/told_keys.hpp>
 #include <loomlink/commands/finding_words.hpp>
 #include <loomlink/commands/head_keeper.hpp>
+#include <loomlink/commands/trust_papers.hpp>
 #include <loomlink/terminal/state.hpp>
 #include <memory>
 #include <set>
@@ -16,7 +17,7 @@ namespace weave::loomlink {
 namespace {
 
 struct VerifyWords {
-    std::string bundle, key, trust_file, state_file, retained_file;
+    std::string bundle, key, trust_file, fingerprint, state_file, retained_file;
 };
 
 bool is_good(const PublicKey& key, Purpose purpose, std::string_view bytes,
@@ -99,10 +100,7 @@ Result<BundleTrust> wished_trust(const VerifyWords& words, std::string_view bund
             return is_good(key, Purpose::tree_head, bytes, signature);
         };
     } else if (!words.trust_file.empty()) {
-        WEAVE_TRY(const std::string bytes, read_file(words.trust_file, most_trust_bytes));
-        auto read = read_trust(bytes);
-        if (!read) return std::move(read).error().in(words.trust_file);
-        document = *std::move(read);
+        WEAVE_TRY(document, trust_from_file(words.trust_file, words.fingerprint));
     } else {
         WEAVE_TRY(const TerminalState state, load_state(words.state_file));
         document = state.trust;
@@ -154,8 +152,8 @@ std::string report_words(const BundleReport& report, const JudgedSignatures& jud
 Status check_words(const VerifyWords& words) {
     const int given =
         int(!words.key.empty()) + int(!words.trust_file.empty()) + int(!words.state_file.empty());
-    if (given == 1) return {};
-    return Error{ErrorCode::usage, "say whose key to believe: one of --key, --trust and --state", ""};
+    if (given == 1 && words.trust_file.empty() == words.fingerprint.empty()) return {};
+    return Error{ErrorCode::usage, "say whose key to believe: --key, --state, or --trust with --fingerprint", ""};
 }
 
 Status verify_audit(const VerifyWords& words, CommandOutcome& outcome) {
@@ -181,7 +179,7 @@ void add_audit_verify(CLI::App& audit, CommandOutcome& outcome) {
                     "Prove offline that a bundle of the log was not changed; exit status 1 where it was, "
                     "with the record's "
                     "number",
-                    "loomlink audit verify log.json --trust trust.json --retained head.json");
+                    "loomlink audit verify log.json --trust trust.json --fingerprint TRUST --retained head.json");
     const auto words = std::make_shared<VerifyWords>();
     add_text(command, "BUNDLE", words->bundle, "the file that audit bundle wrote")->required();
     add_text(command, "--key", words->key, "the public key of the log, as key list --json tells it")
@@ -190,6 +188,8 @@ void add_audit_verify(CLI::App& audit, CommandOutcome& outcome) {
              "a trust document, as trust show -o wrote it: each key in it must have the holder that the log tells; machines "
              "that signed evidence and are not in it are told")
         ->type_name("FILE");
+    add_text(command, "--fingerprint", words->fingerprint, "of that document, as an administrator told it another way")
+        ->type_name("HEX");
     add_text(command, "--state", words->state_file,
              "what a loom's terminal trusts and has seen (pull --state)")
         ->type_name("FILE");

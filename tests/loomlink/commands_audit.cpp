@@ -59,13 +59,15 @@ struct EvidenceLog {
 struct Auditor {
     weave::testing::TemporaryFolder folder;
 
-    [[nodiscard]] Ended verify(const std::string& bundle, const std::string& option, const std::string& word) const {
+    [[nodiscard]] Ended verify(const std::string& bundle, const std::vector<std::string>& by) const {
         REQUIRE(write_file(folder.path / "log.json", bundle));
-        return Running({"audit", "verify", folder.path / "log.json", option, word, "--json"}, folder.path).wait();
+        std::vector<std::string> words{"audit", "verify", folder.path / "log.json", "--json"};
+        words.insert(words.end(), by.begin(), by.end());
+        return Running(words, folder.path).wait();
     }
     [[nodiscard]] Ended verify_by(const std::string& bundle, const std::string& trust) const {
         REQUIRE(write_file(folder.path / "trust.json", trust));
-        return verify(bundle, "--trust", folder.path / "trust.json");
+        return verify(bundle, {"--trust", folder.path / "trust.json", "--fingerprint", read_trust(trust).value().fingerprint()});
     }
 };
 
@@ -75,7 +77,7 @@ TEST_CASE("evidence that the machine it names has not signed is found in the log
     const Auditor auditor;
     const EvidenceLog honest;
     const std::string key = to_hex(honest.log.public_key());
-    CHECK(auditor.verify(honest.bundle(), "--key", key).code == 0);
+    CHECK(auditor.verify(honest.bundle(), {"--key", key}).code == 0);
     const std::vector<std::pair<std::string, std::function<void(EvidenceLog&)>>> lies{
         {"another result", [](EvidenceLog& told) { told.evidence.data["statement"]["residual"] = 1e-5; }},
         {"another machine", [](EvidenceLog& told) { told.evidence.actor = "gpu"; }},
@@ -86,7 +88,7 @@ TEST_CASE("evidence that the machine it names has not signed is found in the log
     for (const auto& [name, lie] : lies) {
         EvidenceLog told;
         lie(told);
-        const Ended ended = auditor.verify(told.bundle(), "--key", to_hex(told.log.public_key()));
+        const Ended ended = auditor.verify(told.bundle(), {"--key", to_hex(told.log.public_key())});
         INFO(name << ": " << ended.out << ended.err);
         CHECK(ended.code == 1);
         const Json found = ended.json().at("findings");

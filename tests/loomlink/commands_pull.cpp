@@ -64,7 +64,8 @@ TEST_CASE("a loom pulls what was released, finds what was altered, and gives up 
                Catch::Contains("--trust: must be 64") && Catch::Contains("loomlink trust show"));
     CHECK(release_folders(mill.at("loom")).empty());
 
-    const Ended pulled = mill.run(mill.pull_words({"--trust", mill.trust_fingerprint()}));
+    const std::string held_trust = mill.trust_fingerprint();
+    const Ended pulled = mill.run(mill.pull_words({"--trust", held_trust}));
     INFO(pulled.err);
     REQUIRE(pulled.code == 0);
     const Json held = pulled.json().at("releases").at(0);
@@ -77,10 +78,16 @@ TEST_CASE("a loom pulls what was released, finds what was altered, and gives up 
 
     CHECK(verify(mill, folder).code == 0);
     mill.done("mary", {"trust", "show", "-o", mill.at("trust.json")});
-    const auto by_paper = [&] {
-        return mill.run({"verify-files", folder, "--trust", mill.at("trust.json"), "--json"});
+    const auto by_paper = [&](const std::string& loom = "seven") {
+        return mill.run({"verify-files", folder, "--trust", mill.at("trust.json"), "--fingerprint", held_trust, "--loom", loom, "--json"});
     };
     CHECK(by_paper().code == 0);
+    const Ended elsewhere = by_paper("eight");
+    CHECK(elsewhere.code == 4);
+    CHECK_THAT(elsewhere.json().at("may_not_be_woven").get<std::string>(), Catch::Contains("is for the loom 'seven', not for 'eight'"));
+    const Ended unheard = mill.run({"verify-files", folder, "--trust", mill.at("trust.json"), "--fingerprint", std::string(64, 'a')});
+    CHECK(unheard.code == 1);
+    CHECK_THAT(unheard.err, Catch::Contains("trust.json: has the fingerprint " + held_trust));
     std::string paper = read_file(mill.at("trust.json")).value();
     char& digit = paper[paper.find("\"value\":\"") + 9];
     digit = digit == '0' ? '1' : '0';
@@ -214,6 +221,7 @@ TEST_CASE("a recall takes what was pulled into another folder, from wherever it 
     REQUIRE(first.code == 0);
     REQUIRE(pull_to(mill.at("there")).json().at("releases").at(0).at("new") == true);
     const fs::path here = release_folders(mill.at("here")).at(0), there = release_folders(mill.at("there")).at(0);
+    fs::create_directory(mill.at("copy"));
     fs::copy(there, mill.at("copy") / there.filename(), fs::copy_options::recursive);
     mill.signs("abel", {"withdraw", "seven", "1"});
     const Ended recalled = pull_to(mill.at("third"));

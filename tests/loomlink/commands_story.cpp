@@ -228,7 +228,7 @@ TEST_CASE("what a simulation found is signed by the machine that was enrolled, a
     const auto audit = [&](const std::vector<std::string>& more) {
         mill.done("mary", {"trust", "show", "-o", mill.at("trust.json")});
         mill.done("emil", {"audit", "bundle", "-o", mill.at("log.json")});
-        std::vector<std::string> words{"audit", "verify", mill.at("log.json"), "--trust", mill.at("trust.json")};
+        std::vector<std::string> words{"audit", "verify", mill.at("log.json"), "--trust", mill.at("trust.json"), "--fingerprint", mill.trust_fingerprint()};
         words.insert(words.end(), more.begin(), more.end());
         const Ended ended = mill.run(words);
         INFO(ended.out << ended.err);

@@ -38,6 +38,7 @@ TEST_CASE("the log as a bundle is verified offline; one flipped bit is found and
     mill.done("emil", {"audit", "head", "-o", mill.at("head.json")});
     mill.done("emil", {"audit", "bundle", "-o", mill.at("log.json")});
     mill.done("otto", {"trust", "show", "-o", mill.at("trust.json")});
+    const std::string fingerprint = mill.trust_fingerprint();
     const std::string key = log_key_of(mill);
     mill.done("mary", {"policy", "--approvals", "2"});
     CHECK(mill.run(mill.pull_words({"--trust", mill.trust_fingerprint()})).code == 0);
@@ -53,8 +54,9 @@ TEST_CASE("the log as a bundle is verified offline; one flipped bit is found and
     CHECK(by_key.code == 0);
     CHECK(by_key.json().at("retained") == true);
     CHECK(by_key.json().at("signatures_by_listed_keys") == 0);
-    const Json by_trust = verify({"--trust", mill.at("trust.json")}).json();
+    const Json by_trust = verify({"--trust", mill.at("trust.json"), "--fingerprint", fingerprint}).json();
     CHECK(by_trust.at("clean") == true);
+    CHECK(verify({"--trust", mill.at("trust.json"), "--fingerprint", std::string(64, 'a')}).code == 1);
     CHECK(by_trust.at("signatures_by_listed_keys") > 0);
     CHECK(by_trust.at("signatures_by_listed_keys").get<int>() +
               by_trust.at("signatures_by_keys_of_the_log").get<int>() ==

@@ -57,8 +57,8 @@ export async function show({ search, go }) {
             h('button', { type: 'button', class: 'main', onclick: check }, 'Verify what is shown'),
             h('a', { class: 'button', href: '/api/v1/audit/bundle', download: 'audit-bundle.json' }, 'Download the bundle'))),
         h('section', { class: 'card' }, facts([['Records', grouped(head.size)], ['Root', hash(head.root)], ['Signed', when(head.at, true)]]), verdict,
-            h('p', { class: 'hint' }, 'To verify offline what you download here: ', h('code', {}, 'loomlink audit verify audit-bundle.json --trust trust.json'),
-                '. The list of keys, trust.json, is best taken once and kept: ', h('code', {}, 'loomlink trust show -o trust.json'), '.')),
+            h('p', { class: 'hint' }, 'To verify offline what you download here: ', h('code', {}, 'loomlink audit verify audit-bundle.json --trust trust.json --fingerprint TRUST'),
+                '. The list of keys, trust.json, is best taken once and kept: ', h('code', {}, 'loomlink trust show -o trust.json'), '. It tells the fingerprint, which an administrator confirms another way.')),
         h('form', { class: 'row', onsubmit: event => { event.preventDefault(); go(`/log?from=0&design=${encodeURIComponent(filter.value)}`); } }, field('Only this design', filter), h('button', {}, 'Show')),
         events.length === 0 ? h('p', { class: 'empty' }, design ? `There is no record about a design '${design}'.` : 'No record yet.')
             : table('Records', ['No.', 'When', 'Who', 'What', 'About', 'Why', 'Signed'], events.toReversed().map(event => [grouped(event.seq), when(event.at, true), event.actor, h('span', { title: event.kind }, what(event)), about(event), event.reason ?? '', event.signed ? h('span', { class: 'good' }, '✓ ' + event.signed) : '']), { class: 'records' }),

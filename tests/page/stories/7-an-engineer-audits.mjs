@@ -31,7 +31,7 @@ async function compare(engineer) {
 
 async function verify(engineer) {
     await engineer.to('Log');
-    await engineer.sees('Release withdrawn', 'File pulled', 'Last pick remembered', 'loomlink audit verify audit-bundle.json --trust trust.json');
+    await engineer.sees('Release withdrawn', 'File pulled', 'Last pick remembered', 'loomlink audit verify audit-bundle.json --trust trust.json --fingerprint TRUST');
     for (const round of ['first', 'second']) {
         await engineer.button('Verify what is shown').click();
         await engineer.page.getByText(/^The log holds: \d+ records/).waitFor();
