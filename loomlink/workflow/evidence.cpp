@@ -2,6 +2,7 @@
 
 #include <weave/keys/codes.hpp>
 #include <weave/keys/hex.hpp>
+#include <weave/keys/signed_document.hpp>
 
 #include <algorithm>
 #include <iomanip>
@@ -211,7 +212,7 @@ Result<std::string> check_signer(const Reader& reader, const std::string& site, 
     WEAVE_TRY(const auto key, reader.key(signature.key));
     if (!key || key->purpose != signer_purpose || key->revoked)
         return deny(Denial::rights, "the signer is not enrolled, or was revoked");
-    if (!verify(key->public_key, Purpose::evidence, canonical_json(body), signature))
+    if (!verify_body(key->public_key, Purpose::evidence, body, signature))
         return deny(Denial::rights, "the signature does not fit the statement");
     if (statement.site != site) return deny(Denial::conflict, "the statement is for another site");
     if (statement.design_sha256 != revision.design_sha256 || statement.scene_sha256 != revision.scene_sha256)

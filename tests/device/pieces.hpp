@@ -7,6 +7,7 @@
 #include <weave/sim/device/pieces_apply.hpp>
 #include <weave/sim/multigrid.hpp>
 
+#include <sim/conjugate_gradients.hpp>
 #include <sim/scenes.hpp>
 
 #include <algorithm>

@@ -1,3 +1,4 @@
+#include "conjugate_gradients.hpp"
 #include "scenes.hpp"
 
 #include <weave/sim/block_matrix.hpp>

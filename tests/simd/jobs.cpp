@@ -6,6 +6,7 @@
 
 #include <weave/core/sha256.hpp>
 #include <weave/keys/server_key.hpp>
+#include <weave/keys/signed_document.hpp>
 #include <weave/keys/signer.hpp>
 #include <weave/sim/run.hpp>
 #include <weave/wire/evidence.hpp>
@@ -176,7 +177,7 @@ TEST_CASE("a machine with a key signs what a job found, of the very design, scen
     const auto evidence = wire::read_evidence(*document);
     INFO((evidence ? "" : evidence.error().text()));
     REQUIRE(evidence);
-    CHECK(wire::verify_evidence(key.public_key(), *evidence));
+    CHECK(verify_body(key.public_key(), Purpose::evidence, evidence->statement, evidence->signature));
     const wire::SimulationStatement statement = wire::read_simulation(evidence->statement).value();
     CHECK(statement.site == "the mill");
     CHECK(hash_hex(statement.design_sha256) == design_sha256(design));

@@ -2,6 +2,7 @@
 
 #include <weave/core/sha256.hpp>
 #include <weave/design/evaluate.hpp>
+#include <weave/keys/signed_document.hpp>
 #include <weave/samples/samples.hpp>
 #include <weave/sim/simulate.hpp>
 #include <weave/sim/yarns_file.hpp>
@@ -147,8 +148,8 @@ TEST_CASE("signed evidence is read as it was written, and shows who signed it") 
     CHECK(write_evidence(*read) == bytes);
     CHECK(read->report == report_of_a_part().dump(1));
     CHECK(read_simulation(read->statement).value().site == "mill");
-    CHECK(verify_evidence(key.public_key(), *read));
-    CHECK_FALSE(verify_evidence(other.public_key(), *read));
+    CHECK(verify_body(key.public_key(), Purpose::evidence, read->statement, read->signature));
+    CHECK_FALSE(verify_body(other.public_key(), Purpose::evidence, read->statement, read->signature));
     CHECK(is_evidence(parse_json(bytes).value()));
     CHECK_FALSE(is_evidence(report_of_a_part()));
     CHECK_FALSE(is_evidence(Json::array()));
@@ -208,6 +209,6 @@ TEST_CASE("a flipped bit anywhere in signed evidence is found") {
         bytes[k] = static_cast<char>(bytes[k] ^ 1);
         const auto read = read_evidence(bytes);
         INFO("byte " << k);
-        CHECK_FALSE((read && verify_evidence(key.public_key(), *read)));
+        CHECK_FALSE((read && verify_body(key.public_key(), Purpose::evidence, read->statement, read->signature)));
     }
 }

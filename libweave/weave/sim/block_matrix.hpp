@@ -53,18 +53,4 @@ class Preconditioner {
     virtual void apply(const std::vector<double>& residual, std::vector<double>& step) = 0;
 };
 
-/// How a run of conjugate gradients ended.
-struct CgResult {
-    std::size_t iterations = 0;
-    bool negative = false;   ///< met a direction in which A does not curve upwards
-    double relative = 0;     ///< |b - A·x| / |b|
-    std::vector<double> negative_direction;  ///< of that curvature
-};
-
-/// Conjugate gradients for A·x = b from x = 0, until the residual has fallen to `tolerance` of |b|. Where a direction
-/// of negative curvature comes up the run ends with the best x so far (b itself, preconditioned, if it is the first).
-CgResult conjugate_gradients(const Executor& executor, const BlockMatrix& matrix, Preconditioner& preconditioner,
-                             const std::vector<double>& b, double tolerance, std::size_t most_iterations,
-                             std::vector<double>& x);
-
 }  // namespace weave::sim

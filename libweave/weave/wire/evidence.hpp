@@ -70,9 +70,6 @@ struct SignedEvidence {
 /// Signs what a report says for a site. Errors as of statement_of_result().
 Result<SignedEvidence> sign_evidence(const KeyPair& key, const std::string& site, std::string report, Instant at);
 
-/// Whether the signature is of this key over the statement.
-[[nodiscard]] bool verify_evidence(const PublicKey& key, const SignedEvidence& evidence);
-
 /// `{"format":"weave-signed-evidence","report":…,"signature":{"key":…,"value":…},"statement":…,"version":1}` in
 /// canonical form, so that a document has one sequence of bytes.
 std::string write_evidence(const SignedEvidence& evidence);

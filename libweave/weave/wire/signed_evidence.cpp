@@ -29,10 +29,6 @@ Result<SignedEvidence> sign_evidence(const KeyPair& key, const std::string& site
     return SignedEvidence{std::move(body), std::move(signature), std::move(report)};
 }
 
-bool verify_evidence(const PublicKey& key, const SignedEvidence& evidence) {
-    return verify_body(key, Purpose::evidence, evidence.statement, evidence.signature);
-}
-
 std::string write_evidence(const SignedEvidence& evidence) {
     const Signature& signature = evidence.signature;
     return canonical_json({{"format", format},
