@@ -151,6 +151,12 @@ takes a part. Dora has the part round the mended place relaxed there once more, 
     tell abel 4 loomlink approve ginkgo 1 --reason "Looks good" --password-file mill-password
     tell dora 0 loomlink evidence add ginkgo 1 proof.evidence
     tell dora 4 loomlink approve ginkgo 1 --reason "I know it is good" --password-file mill-password
+    look abel 'Abel Reed' /designs/ginkgo/1 'Still missing' approver-sees --whole
+    look abel 'Abel Reed' /designs/ginkgo/1 'You approve exactly this revision' approver-signs --press 'Approve …'
+    pictures
+    seen approver-sees "What Abel has before him on the mill’s page: the card, who submitted it, what is still missing, and at the bottom the evidence, with the machine that signed it" wide
+    seen approver-signs "By its button he would sign there what he signs here by a command" wide
+    pictures_end
     tell abel 0 loomlink approve ginkgo 1 --reason "Looked at, face and back" --password-file mill-password
     tell abel 0 loomlink design show ginkgo 1
 }
@@ -170,8 +176,10 @@ release() {
     tell otto 0 loomlink verify-files "$for_ep" --loom 'EP 1'
     cp -r "$made/$for_ep" "$made/kept-by-otto"
     cp "$made/$for_ep"/*-card.png "$made/released-card.png"
+    look otto 'Otto Shed' /looms/TC2/1 'Files for the controller' at-the-loom --tablet --whole
     pictures two
     figure released-card.png "The card as it was released, one pixel a crossing: pick 1 at the bottom, end 1 at the left, black lifts" "true"
+    seen at-the-loom "On the tablet at the TC2: the files with their hashes, the pick to go to, the card and the order of the wefts"
     pictures_end
     text "The files: <a href=\"$for_tc2/\">for the TC2</a> a TIFF, a WIF and the table of picks, and for the EP loom its controller’s file, a WIF, the table and a picture, \
 <a href=\"kept-by-otto/\">kept here</a> in a copy. Layout-compatible with observed files, not certified by the maker."
@@ -184,16 +192,23 @@ bit by bit, and compares it with the card of Dora’s design and the order of he
     tell edda 0 weave card mended.weave -o card.png
     local folder reading=(--trust trust.json --fingerprint "$mill_trust" --card card.png --design mended.weave)
     for folder in "$for_tc2 tc2.json" "$for_ep ep-2688.json"; do
-        tell edda 0 read_release "${folder% *}" "${reading[@]}" --loom "${folder##* }"
+        tell edda 0 read_release "${folder% *}" "${reading[@]}" --loom "${folder##* }" --picture "read-$(basename "${folder##* }" .json).png"
         say "   $(tail -n 1 "$scratch/said")"
     done
+    pictures
+    figure read-tc2.png "Drawn by <code>read_release</code>: first the card of Dora’s design, then what it made of the TC2’s TIFF and WIF" "true wide"
+    figure read-ep-2688.png "The card of the design again, and what it made of the EP loom’s controller file, and below of its picture and its WIF. Nothing is ringed: all are the same" "true wide"
+    pictures_end
     local file
     cp -r "$made/$for_ep" "$made/damaged"
     file=$(basename "$made"/damaged/*.ep)
     flip_one_bit "$made/damaged/$file"
     text "And if one bit of one byte is another? In a copy, one bit of <code>$file</code> is turned over."
-    tell edda 1 read_release damaged "${reading[@]}"
+    tell edda 1 read_release damaged "${reading[@]}" --picture read-damaged.png
     say "   one bit turned over: $(grep -m 1 'pick' "$scratch/said")"
+    pictures
+    figure read-damaged.png "Of the damaged copy: the crossing that its controller file has otherwise is in the red ring" "true wide"
+    pictures_end
     tell otto 1 loomlink verify-files damaged --loom 'EP 1'
     rm -rf "$made/damaged"
 }
@@ -210,11 +225,17 @@ recall() {
     chapter "A recall"
     text "First Edda takes the log’s signed head along, to hold the log to it later."
     tell edda 0 loomlink audit head -o head.json
+    look otto 'Otto Shed' /looms/EP%201/1 'Files for the controller' before-the-recall --tablet
     text "The EP loom was set up with the wrong gold. Abel withdraws its release; the TC2’s stays in force. When Otto’s terminal asks the next time, the files go, and \
 a copy that somebody kept is refused."
     tell abel 0 loomlink withdraw 'EP 1' 1 --reason "The wrong gold yarn on feeder 1" --password-file mill-password
     tell otto 0 loomlink pull 'EP 1' --to at-the-ep
-    say "   $(head -n 2 "$scratch/said" | paste -sd ';' | sed 's/;/; /')"
+    say "   $(head -n 2 "$scratch/said" | sed "s|$made/||g" | paste -sd ';' | sed 's/;/; /')"
+    look otto 'Otto Shed' /looms/EP%201/1 'Recalled: do not weave it' after-the-recall --tablet
+    pictures two
+    seen before-the-recall "The release on the tablet at the EP loom, before"
+    seen after-the-recall "The same page after: it says who recalled it, and why, and gives no file any more"
+    pictures_end
     tell otto 4 loomlink verify-files kept-by-otto --loom 'EP 1'
     tell otto 0 loomlink loom show TC2
 }
@@ -230,6 +251,10 @@ removed or put in another order. By the head that she kept an older copy of the 
     tell edda 0 loomlink audit verify log.json --trust trust.json --fingerprint "$mill_trust" --retained head.json
     say "   $(head -n 1 "$scratch/said")"
     ! grep 'does not name' "$scratch/said" >&2 || { echo "== FAILED: the trust document does not name the simulation machine" >&2; return 5; }
+    look edda 'Edda Proof' /log 'The log holds:' the-log-holds --press 'Verify what is shown'
+    pictures
+    seen the-log-holds "The log on the mill’s page, the newest record first. By the button Edda’s browser proved itself that each record shown is in the signed tree" wide
+    pictures_end
     stop_mill
 }
 
@@ -238,7 +263,7 @@ epilogue() {
     text "The designs <a href=\"ginkgo.weave\">ginkgo.weave</a> and <a href=\"mended.weave\">mended.weave</a>, the weaves <a href=\"ground.weave\">ground</a>, \
 <a href=\"leaf.weave\">leaf</a> and <a href=\"shade.weave\">shade</a>, relaxed yarns <a href=\"part.yarns\">before</a> and <a href=\"mended.yarns\">after</a> the flip, \
 <a href=\"proof.evidence\">the signed evidence</a>, <a href=\"at-the-tc2/\">the TC2’s files</a>, <a href=\"log.json\">the log</a> and <a href=\"trust.json\">whose keys count</a>."
-    text "The mill itself: <code>build/release/bin/loomlink serve ${folder#"$PWD"/}/mill</code>, then <a href=\"https://localhost:8443/\">https://localhost:8443/</a> as mary, dora, abel, \
+    text "The mill itself: <code>$(typed build/release/bin/loomlink serve "${folder#"$PWD"/}/mill" | in_html)</code>, then <a href=\"https://localhost:8443/\">https://localhost:8443/</a> as mary, dora, abel, \
 otto or edda; the password of all is in <a href=\"mill-password\">mill-password</a>, for this is a story. The certificate is of the mill’s own making, so the browser asks first. \
 <code>tools/paper</code> shows relaxed 3D structures, pockets and shoes."
     chapters_took

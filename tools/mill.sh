@@ -14,6 +14,7 @@ serve_mill() {
         sleep 0.1
     done
     mill_fingerprint=$(answered certificate_sha256)
+    mill_port=$(answered url | sed -nE 's|.*:([0-9]+)/?$|\1|p')
 }
 stop_mill() {
     [ -n "${mill_server:-}" ] || return 0

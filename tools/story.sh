@@ -13,7 +13,7 @@ pre{font:13px/1.5 "DejaVu Sans Mono",monospace;white-space:pre-wrap;overflow-wra
 .run{margin:1.1rem 0;border:1px solid var(--line);border-radius:6px;overflow:hidden;background:#fff}.run .command{background:var(--blue);color:#fff}.run .command i{color:#f0c66b;font-style:normal}
 .run.refused{border-color:var(--bad)}.run .status{color:var(--soft);padding-top:0}.run.refused .status{color:var(--bad)}details{border-top:1px solid var(--line)}summary{cursor:pointer;padding:.4rem 1rem;font-size:.85rem;color:var(--soft)}
 section{display:grid;grid-template-columns:repeat(auto-fill,minmax(300px,1fr));gap:1.1rem;margin:1.4rem 0}figure{margin:0;background:#fff;border:1px solid var(--line);border-radius:6px;padding:.8rem;min-width:0}
-figure.wide{grid-column:1/-1}img{display:block;width:100%;height:270px;object-fit:contain}figure.big img{height:430px}figure.true img{width:auto;max-width:100%;height:auto;margin:auto}section.two{grid-template-columns:repeat(auto-fit,minmax(420px,1fr))}
+figure.wide{grid-column:1/-1}img{display:block;width:100%;height:270px;object-fit:contain}figure.big img{height:430px}figure.page img{height:auto;border:1px solid var(--line)}figure.true img{width:auto;max-width:100%;height:auto;margin:auto}section.two{grid-template-columns:repeat(auto-fit,minmax(420px,1fr))}
 figure.drawn img{image-rendering:pixelated}figcaption{font-size:.88rem;line-height:1.45;color:var(--soft);margin-top:.6rem}
 table{border-collapse:collapse;font-size:.95rem;margin:1rem 0}td,th{text-align:left;padding:.3rem 1.6rem .3rem 0;border-bottom:1px solid var(--line)}td:nth-child(2){text-align:right}
 @media(max-width:520px){body{padding:1.5rem 1rem}section,section.two{grid-template-columns:1fr}h1{font-size:1.6rem}}

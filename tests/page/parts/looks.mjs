@@ -16,12 +16,15 @@ export async function clear_pictures() {
     for (const name of await readdir(pictures)) if (/\.png$/.test(name)) await rm(path.join(pictures, name));
 }
 
-/** Keeps a picture of what the person sees; `whole`: of the page to its end; `calm`: when nothing is told in passing any more. */
-export async function picture(page, name, { whole = false, calm = false } = {}) {
+/** Keeps a picture of what the person sees in a file; `whole`: of the page to its end; `calm`: when nothing is told in passing any more. */
+export async function picture_in(page, file, { whole = false, calm = false } = {}) {
     if (calm) await page.waitForFunction(() => !document.querySelector('#said.shown'));
     await page.evaluate(() => document.fonts.ready);
-    await page.screenshot({ path: path.join(pictures, `${String(++taken).padStart(2, '0')}-${name}.png`), fullPage: whole, animations: 'disabled' });
+    await page.screenshot({ path: file, fullPage: whole, animations: 'disabled' });
 }
+
+/** The same among the pictures of this run. */
+export const picture = (page, name, how) => picture_in(page, path.join(pictures, `${String(++taken).padStart(2, '0')}-${name}.png`), how);
 
 /** Fails where the page, as it is now, breaks a rule of axe-core, or can be moved sideways. */
 export async function accessible(page, where) {

@@ -49,7 +49,7 @@ async function simulate(folder, code, access, { url, certificate_sha256 }, desig
 }
 
 /** What a browser has to know of a key to take its self-made certificate, and no other. */
-async function pin_of(certificate) {
+export async function pin_of(certificate) {
     const { publicKey } = new X509Certificate(await readFile(certificate));
     return createHash('sha256').update(publicKey.export({ type: 'spki', format: 'der' })).digest('base64');
 }

@@ -16,9 +16,9 @@ export const open_browser = mill => chromium.launch({
 
 export class Person {
     /** `device` is `desk` or `tablet`. */
-    static async enter(browser, mill, { name, full_name, device = desk }) {
+    static async enter(browser, mill, { name, full_name, device = desk, password = password_of(name) }) {
         const person = new Person();
-        Object.assign(person, { mill, name, full_name, password: password_of(name), troubles: [], refusals: 0, is_refused: false, in_flight: new Map() });
+        Object.assign(person, { mill, name, full_name, password, troubles: [], refusals: 0, is_refused: false, in_flight: new Map() });
         person.context = await browser.newContext({ ...device, locale: 'en-GB', timezoneId: 'UTC', acceptDownloads: true });
         await person.context.grantPermissions(['clipboard-write', 'clipboard-read'], { origin: mill.origin });
         person.page = await person.context.newPage();
