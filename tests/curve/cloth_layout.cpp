@@ -9,6 +9,8 @@
 
 #include <catch2/catch.hpp>
 
+#include <algorithm>
+
 using namespace weave;
 using namespace weave::testing;
 
@@ -59,6 +61,23 @@ TEST_CASE("Any stretch of a yarn has the key points of the whole") {
                 REQUIRE(keys.size() == last - first);
                 check_same(keys, whole.yarns[yarn].keys, first);
             }
+        },
+        property_cases() / 5);
+}
+
+TEST_CASE("Key points are foreseen as they are laid, but for those of yarns that are loose all along") {
+    for_all(
+        [](Random& random) {
+            const Block block = random_block(random, {}, {}, 7);
+            const Design design = random_plan(random);
+            const CurveOptions options{some_region(random, block), WeftMode::periodic};  // turns may be led further aside later
+            const auto curves = cloth_curves(design, block, options);
+            const auto foreseen = ClothLayout::foreseen(design, block, options);
+            REQUIRE(bool(foreseen) == bool(curves));
+            if (!curves) return;
+            std::size_t laid = 0;
+            for (const YarnCurve& yarn : curves->yarns) laid += std::ranges::all_of(yarn.keys, &KeyPoint::loose) ? 0 : yarn.keys.size();
+            REQUIRE(foreseen->segments + foreseen->open_yarns == laid);
         },
         property_cases() / 5);
 }

@@ -250,8 +250,7 @@ TEST_CASE("a cloth with no room at all is refused before it is laid out, with wh
     const Evaluation evaluation = evaluate(shoe).value();
     const auto need = sim::foreseen_need(shoe, *evaluation.block, request_at(sim::Fidelity::draft).plan);
     REQUIRE(need);
-    CHECK(need->points > 7'000'000);  // 14 million, as its plan has them
-    CHECK(need->points < 20'000'000);
+    CHECK(need->points == Approx(14'366'216).epsilon(0.01));  // as its plan has them
     LocalRelaxation run(LocalMeans{.threads = 1, .memory_bytes = std::uint64_t{2} << 30});
     FollowedRun told(run);
     run.start(shoe, request_at(sim::Fidelity::draft));
@@ -310,8 +309,7 @@ TEST_CASE("memory is foreseen about as the plan has it, of a part as well") {
         const auto plan = sim::make_plan(design, *evaluation.block, request);
         if (!plan) return false;  // too small to be held at its rims
         const sim::MemoryNeed foreseen = sim::foreseen_need(design, *evaluation.block, request).value(), planned = sim::need_of(*plan);
-        CHECK(foreseen.points >= planned.points / 2);
-        CHECK(foreseen.points <= 2 * planned.points);
+        CHECK(static_cast<double>(foreseen.points) == Approx(static_cast<double>(planned.points)).epsilon(0.05));
         CHECK(foreseen.points_in_a_stack >= planned.points_in_a_stack / 1.5);
         CHECK(foreseen.picks_in_a_row == Approx(planned.picks_in_a_row));
         CHECK(foreseen.ends_in_a_column == Approx(planned.ends_in_a_column));

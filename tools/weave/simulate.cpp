@@ -184,8 +184,8 @@ std::optional<sim::MemoryRoom> room_for(const std::optional<wire::Follower>& ser
     return room ? std::optional(std::move(*room)) : std::nullopt;
 }
 
-/// Amounts are right within a factor of two (sim/forecast.hpp), so that what is not expected to have room is refused rather than tried: the
-/// system ends a program that takes too much without a word.
+/// The memory of a point is known within a factor of two (sim/forecast.hpp). What is not expected to have room is refused rather than tried:
+/// the system ends a program that takes too much without a word.
 Status check_memory(const sim::MemoryNeed& need, const std::optional<sim::MemoryRoom>& room, const std::string& file) {
     if (!room) return {};
     Status enough = sim::check_room(need, *room);
@@ -193,13 +193,11 @@ Status check_memory(const sim::MemoryNeed& need, const std::optional<sim::Memory
     return {};
 }
 
-/// What has no room even if its plan has as few points as may be: to lay it out takes a minute and gigabytes.
+/// What has no room is refused before it is laid out, which takes a minute and gigabytes.
 Status foresee_memory(const SimulateTask& task, const Block& block, const std::optional<sim::MemoryRoom>& room, const std::string& file) {
+    if (!room) return {};
     const std::optional<sim::MemoryNeed> need = sim::foreseen_need(task.design, block, task.request);
-    if (!need || !room) return {};
-    sim::MemoryNeed least = *need;
-    least.points /= 2;
-    return sim::check_room(least, *room) ? Status() : check_memory(*need, room, file);
+    return need ? check_memory(*need, room, file) : Status();
 }
 
 Status explain(CommandOutcome& outcome, const sim::Plan& plan) {

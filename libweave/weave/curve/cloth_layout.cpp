@@ -63,15 +63,31 @@ class ClothLayout::Lines {
     Lines(const Design& design, const Block& block, const CurveOptions& options, std::size_t most_keys_at_once)
         : m_design(design), m_block(block), m_most_keys_at_once(most_keys_at_once), m_lines(design, block, options), m_bare(m_lines.frame()) {}
 
-    Status lay() {
+    Status find_yarns() {
         count_keys_of_parts();
         if (m_lines.wraps()) make_turn_shapes();
         find_wefts();
         find_warps();
         count_keys_of_wefts();
-        if (m_lines.wraps()) WEAVE_CHECK_OK(clear_turns());
         if (m_bare.yarns.empty()) return invalid("no yarn lies in this part of the cloth");
         return {};
+    }
+
+    Status lay() {
+        WEAVE_CHECK_OK(find_yarns());
+        if (m_lines.wraps()) WEAVE_CHECK_OK(clear_turns());
+        return {};
+    }
+
+    Extent of_bound_yarns() const {
+        Extent all;
+        for (std::size_t yarn = 0; yarn < m_bare.yarns.size(); ++yarn) {
+            if (is_loose(yarn)) continue;
+            const std::size_t open = m_bare.yarns[yarn].is_periodic ? 0 : 1;
+            all.open_yarns += open;
+            all.segments += keys(yarn) - open;
+        }
+        return all;
     }
 
     const ClothCurves& bare() const { return m_bare; }
@@ -170,6 +186,23 @@ class ClothLayout::Lines {
     std::size_t turn_after(std::size_t part) const {
         const WeftPart& p = m_lines.wefts().parts[part];
         return p.turn[p.is_leftwards ? 0 : 1];
+    }
+
+    /// All along.
+    bool is_loose(std::size_t yarn) const {
+        if (yarn < m_wefts.size()) return std::ranges::all_of(m_wefts[yarn].parts, [&](std::size_t part) { return is_loose_part(m_lines.wefts().parts[part]); });
+        const std::size_t end = m_bare.yarns[yarn].number, column = m_block.column_of_end(end);
+        for (std::size_t row = region().first_row; row <= region().last_row; ++row) {
+            if (!m_lines.is_loose_end(end, row, column)) return false;
+        }
+        return true;
+    }
+
+    bool is_loose_part(const WeftPart& part) const {
+        for (std::size_t column = part.first_column; column <= part.last_column; ++column) {
+            if (!m_lines.is_loose_pick(part.pick, part.row, column)) return false;
+        }
+        return true;
     }
 
     std::size_t keys_of_part(std::size_t part) const {
@@ -544,6 +577,13 @@ Result<ClothLayout> ClothLayout::make(const Design& design, const Block& block, 
     auto lines = std::make_unique<Lines>(design, block, options, most_keys_at_once);
     WEAVE_CHECK_OK(lines->lay());
     return ClothLayout(std::move(lines));
+}
+
+Result<ClothLayout::Extent> ClothLayout::foreseen(const Design& design, const Block& block, const CurveOptions& options) {
+    WEAVE_CHECK_OK(check(block, options));
+    Lines lines(design, block, options, usual_keys_at_once);
+    WEAVE_CHECK_OK(lines.find_yarns());
+    return lines.of_bound_yarns();
 }
 
 const ClothCurves& ClothLayout::bare() const {

@@ -20,6 +20,14 @@ class ClothLayout {
                                     std::size_t most_keys_at_once = usual_keys_at_once);
     /// Key points that are looked over at once for yarns that come too near: some 200 MB.
     static constexpr std::size_t usual_keys_at_once = 400'000;
+    /// Of yarns that are not loose all along.
+    struct Extent {
+        std::size_t segments = 0;    ///< from key point to key point
+        std::size_t open_yarns = 0;  ///< those with two ends, which have a key point more than segments
+    };
+    /// What they will be before turns are cleared of other yarns, which may add some: two seconds for a shoe of 7 million, where make()
+    /// takes twenty. Errors as make().
+    static Result<Extent> foreseen(const Design& design, const Block& block, const CurveOptions& options = {});
     ClothLayout(ClothLayout&&) noexcept;
     ClothLayout& operator=(ClothLayout&&) noexcept;
     ~ClothLayout();

@@ -1,6 +1,7 @@
 #include <weave/sim/memory_room.hpp>
 
 #include <weave/core/text.hpp>
+#include <weave/curve/cloth_layout.hpp>
 #include <weave/sim/forecast.hpp>
 #include <weave/sim/resolution.hpp>
 
@@ -18,8 +19,8 @@ namespace {
 
 /// A part with fewer rows or columns of stacks has nothing that can move.
 constexpr std::size_t fewest_lines = 3;
-/// How much denser than on average the points of a plan may lie somewhere, and how many more a plan may have than was foreseen.
-constexpr double densest = 1.5, more_than_foreseen = 2;
+/// How much denser than on average the points of a plan may lie somewhere, and how many more key points a stack may have than yarns.
+constexpr double densest = 1.5, keys_of_a_yarn = 2;
 
 /// Rows, and as many columns, of stacks that the room does for wherever they are taken; 0 where a part of so few is none.
 std::size_t lines_within(const MemoryNeed& need, const MemoryRoom& room) {
@@ -91,10 +92,12 @@ std::optional<MemoryNeed> foreseen_need(const Design& design, const Block& block
     const std::size_t picks = block.first_pick(part.last_row + 1) - block.first_pick(part.first_row),
                       ends = block.first_end(part.last_column + 1) - block.first_end(part.first_column);
     const std::span<const std::uint32_t> t(block.t()), p(block.p());
-    const std::uint32_t keys_in_a_stack = std::ranges::max(t.subspan(part.first_row, rows)) + std::ranges::max(p.subspan(part.first_column, columns));
+    const Result<ClothLayout::Extent> extent = ClothLayout::foreseen(design, block, {request.region, request.weft_mode});
+    if (!extent) return {};  // the plan says why
+    const std::uint32_t yarns_in_a_stack = std::ranges::max(t.subspan(part.first_row, rows)) + std::ranges::max(p.subspan(part.first_column, columns));
     MemoryNeed need{0, request.fidelity, request.points_per_key.value_or(resolution_of(request.fidelity).points_per_key)};
-    need.points = static_cast<std::size_t>(need.points_per_key * static_cast<double>(picks * columns + ends * rows));
-    need.points_in_a_stack = more_than_foreseen * need.points_per_key * keys_in_a_stack;
+    need.points = static_cast<std::size_t>(need.points_per_key * static_cast<double>(extent->segments)) + extent->open_yarns;
+    need.points_in_a_stack = keys_of_a_yarn * need.points_per_key * yarns_in_a_stack;
     need.picks_in_a_row = static_cast<double>(picks) / static_cast<double>(rows);
     need.ends_in_a_column = static_cast<double>(ends) / static_cast<double>(columns);
     return need;
