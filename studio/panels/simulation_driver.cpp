@@ -1,6 +1,7 @@
 #include <studio/panels/simulation_driver.hpp>
 
 #include <weave/block/changes.hpp>
+#include <weave/design/document.hpp>
 #include <weave/design/edit.hpp>
 #include <weave/design/evaluate.hpp>
 #include <weave/design/tree.hpp>
@@ -110,8 +111,8 @@ void SimulationDriver::connect_run() {
     connect(run, &Relaxation::frame_came, this, &SimulationDriver::frame_came);
     connect(run, &Relaxation::progressed, this, &SimulationDriver::take);
     connect(run, &Relaxation::ended, this, [this](const auto& yarns) {
-        m_state.yarns = yarns;
-        Q_EMIT yarns_came(yarns);
+        m_state.yarns = named(yarns);
+        Q_EMIT yarns_came(m_state.yarns);
         Q_EMIT state_changed();
     });
     connect(run, &Relaxation::inspected, this, [this](const auto&, const auto& inspection) {
@@ -125,6 +126,17 @@ void SimulationDriver::connect_run() {
         m_state.error = error;
         Q_EMIT state_changed();
     });
+}
+
+/// A run names its yarns by the flips that it made itself. The design has come to the same cloth in its own way, by undo or by one flip
+/// of a block that lies in it many times: once all flips are made, these are yarns of that design.
+std::shared_ptr<const Yarns> SimulationDriver::named(const std::shared_ptr<const Yarns>& yarns) const {
+    const bool shows_started = m_asked.empty() && m_led.empty() && m_refused.empty();
+    const std::string name = design_sha256(m_started);
+    if (!shows_started || yarns->design_sha256 == name) return yarns;
+    auto renamed = std::make_shared<Yarns>(*yarns);
+    renamed->design_sha256 = name;
+    return renamed;
 }
 
 void SimulationDriver::enter(RunPhase phase) {

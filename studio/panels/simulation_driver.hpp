@@ -64,6 +64,7 @@ class SimulationDriver : public QObject {
 
   private:
     void connect_run();
+    [[nodiscard]] std::shared_ptr<const Yarns> named(const std::shared_ptr<const Yarns>& yarns) const;
     void enter(RunPhase phase);
     void take(const Progress& progress);
     void take_flip(const Flip& flip, bool done, const QString& reason);

@@ -21,6 +21,13 @@ QString name_of(const Document& document) {
     return has_name ? document.name() : QString();
 }
 
+/// Nothing where the yarns are of another design or scene, or no loom should be set up by them, such as those of a part or not at rest.
+std::optional<RelaxedCloth> found_of(const Design& design, const Block& block, const Yarns& yarns) {
+    if (yarns.scene_sha256 != scene_sha256(design)) return {};
+    auto relaxed = relaxed_cloth(yarns, design, block);
+    return relaxed ? std::optional(std::move(*relaxed)) : std::nullopt;
+}
+
 bool is_true(const Json& report, const char* name) {
     const auto found = report.find(name);
     return found != report.end() && found->is_boolean() && found->get<bool>();
@@ -71,25 +78,23 @@ void SubmitDesk::take_yarns(const std::shared_ptr<const Yarns>& yarns) {
     found.order_kept = is_true(yarns->report, "order_kept");
     found.edition = is_current ? m_document->revision() : m_begun;
     m_panel.evidence().set_found(found);
-    m_relaxed = is_current ? yarns : nullptr;
     judge_take_up();
 }
 
-/// Yarns that no loom should be set up by, such as those of a part or not at rest, leave the rules unjudged.
+/// Each time that the cloth is made or comes to rest: undo may have brought back the design that the yarns are of.
 void SubmitDesk::judge_take_up() {
     const Cloth& whole = m_document->whole();
-    if (!m_relaxed || !whole.block || whole.revision != m_document->revision()) return;
+    const std::shared_ptr<const Yarns>& yarns = m_simulation.state().yarns;
+    if (!yarns || !whole.block || whole.revision != m_document->revision()) return;
     in_background(
-        this, [yarns = std::move(m_relaxed), design = m_document->design(), block = whole.block] { return relaxed_cloth(*yarns, design, *block); },
-        [this, wanted = ++m_wanted](const Result<RelaxedCloth>& relaxed) {
-            if (wanted == m_wanted && relaxed) m_findings.set_relaxed(*relaxed);
+        this, [yarns, design = m_document->design(), block = whole.block] { return found_of(design, *block, *yarns); },
+        [this, wanted = ++m_wanted](const std::optional<RelaxedCloth>& relaxed) {
+            if (wanted == m_wanted && relaxed) m_findings.set_relaxed(relaxed);
         });
-    m_relaxed.reset();
 }
 
 /// What was found of the design before is nothing to judge it by.
 void SubmitDesk::forget_take_up() {
-    m_relaxed.reset();
     ++m_wanted;
 }
 

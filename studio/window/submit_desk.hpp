@@ -27,9 +27,8 @@ class SubmitDesk : public QObject {
     FindingsPanel& m_findings;
     SimulationPanel& m_simulation;
     Document* m_document = nullptr;
-    std::uint64_t m_begun = 0;  ///< revision of the document when the run began
-    std::shared_ptr<const Yarns> m_relaxed;  ///< of the design as it stands, until its take-up is judged
-    std::uint64_t m_wanted = 0;              ///< counts what would be judged, so that only the latest is
+    std::uint64_t m_begun = 0;   ///< revision of the document when the run began
+    std::uint64_t m_wanted = 0;  ///< counts what would be judged, so that only the latest is
 };
 
 }  // namespace weave::studio

@@ -1,5 +1,6 @@
 // The simulation beside a document in the window: what is simulated is the design that is shown, and no other.
 
+#include <weave/design/document.hpp>
 #include <weave/design/edit.hpp>
 
 #include <set>
@@ -244,6 +245,53 @@ TEST_CASE("rules on the take-up are judged once the cloth is at rest, and not af
     scene.gravity = !scene.gravity;
     REQUIRE(loom.document().perform({"gravity", {SetScene{scene}}}));
     REQUIRE(loom.until([&] { return unjudged() == before; }));
+}
+
+TEST_CASE("rules on the take-up are judged again where undo has brought back the cloth that rests") {
+    Loom loom("plain");
+    const auto unjudged = [&] {
+        const auto& report = loom.find<FindingsPanel>().report();
+        return report ? report->not_evaluated.size() : 1000;
+    };
+    REQUIRE(loom.until([&] { return unjudged() < 1000; }));
+    const std::size_t before = unjudged();
+    loom.relax();
+    REQUIRE(loom.until([&] { return unjudged() < before; }));
+    const std::size_t judged = unjudged();
+
+    SECTION("a flip") {
+        REQUIRE(loom.document().perform(loom.flipping(loom.flip_at(1, 1))));
+        REQUIRE(loom.until([&] { return loom.follows(1) && unjudged() == judged; }));
+        loom.document().undo();
+        REQUIRE(loom.until([&] { return loom.follows(2); }));
+        CHECK(loom.until([&] { return unjudged() == judged; }));
+        CHECK(loom.evidence().contains("at rest"));
+        CHECK_FALSE(loom.evidence().contains("has changed since"));
+        loom.document().redo();
+        REQUIRE(loom.until([&] { return loom.follows(3); }));
+        CHECK(loom.until([&] { return unjudged() == judged; }));
+    }
+    SECTION("another scene, which the run does not follow") {
+        Scene scene = loom.document().design().scene;
+        scene.gravity = !scene.gravity;
+        REQUIRE(loom.document().perform({"gravity", {SetScene{scene}}}));
+        REQUIRE(loom.until([&] { return unjudged() == before; }));
+        loom.document().undo();
+        CHECK(loom.until([&] { return unjudged() == judged; }));
+    }
+}
+
+TEST_CASE("yarns at rest bear the name of the design that they were led to, whatever flips led there") {
+    Loom loom("plain");
+    loom.open(repeated(sample("twill-2-2"), 2, 2));
+    loom.relax();
+    const auto name = [&] { return loom.simulation().state().yarns->design_sha256; };
+    REQUIRE(loom.document().perform({"flip", {PutFlip{"of", loom.flip_at(1, 1)}}}));
+    REQUIRE(loom.until([&] { return loom.follows(4); }));  // the run made four, the design has one
+    CHECK(name() == design_sha256(loom.document().design()));
+    loom.document().undo();
+    REQUIRE(loom.until([&] { return loom.follows(8); }));
+    CHECK(name() == design_sha256(loom.document().design()));
 }
 
 TEST_CASE("findings are of the document that is shown, and none where there is no cloth") {
