@@ -51,7 +51,7 @@ void StencilCanvas::show_map(std::shared_ptr<const StencilMap> map, const std::v
 void StencilCanvas::set_tool(StencilTool tool) {
     give_up_stroke();
     m_tool = tool;
-    setCursor(tool == StencilTool::pick ? Qt::PointingHandCursor : Qt::CrossCursor);
+    setCursor(tool == StencilTool::choose ? Qt::PointingHandCursor : Qt::CrossCursor);
 }
 
 /// Takes over the rows that differ, which after an undo are few.
@@ -211,9 +211,9 @@ void StencilCanvas::tell(QPoint stack) {
         tr("row %1, column %2: %3").arg(stack.y() + 1).arg(stack.x() + 1).arg(name_of(at(*m_map, stack))));
 }
 
-/// The pointer goes beyond the picture too, where there is nothing to pick.
-void StencilCanvas::pick(QPoint stack) {
-    if (holds(*m_map, stack)) Q_EMIT block_picked(at(*m_map, stack));
+/// The pointer goes beyond the picture too, where there is nothing to choose.
+void StencilCanvas::choose(QPoint stack) {
+    if (holds(*m_map, stack)) Q_EMIT block_chosen(at(*m_map, stack));
 }
 
 void StencilCanvas::begin_stroke(QPoint stack) {
@@ -269,12 +269,12 @@ void StencilCanvas::mousePressEvent(QMouseEvent* event) {
     const QPoint stack = stack_at(event->position());
     if (event->button() == Qt::MiddleButton) {
         m_panning = event->position();
-    } else if (event->button() == Qt::LeftButton && m_tool == StencilTool::pick) {
-        pick(stack);
+    } else if (event->button() == Qt::LeftButton && m_tool == StencilTool::choose) {
+        choose(stack);
     } else if (event->button() == Qt::LeftButton && !m_image.isNull()) {
         begin_stroke(stack);
     } else if (event->button() == Qt::RightButton) {
-        pick(stack);
+        choose(stack);
     }
 }
 
@@ -333,7 +333,7 @@ void StencilCanvas::keyPressEvent(QKeyEvent* event) {
         case Qt::Key_Space:
         case Qt::Key_Return:
         case Qt::Key_Enter: {
-            if (m_tool == StencilTool::pick) return pick(cursor);
+            if (m_tool == StencilTool::choose) return choose(cursor);
             const bool two = m_tool == StencilTool::line || m_tool == StencilTool::rectangle;
             if (!m_begin)
                 begin_stroke(cursor);

@@ -14,7 +14,7 @@
 
 namespace weave::studio {
 
-enum class StencilTool { pencil, line, rectangle, flood, pick };
+enum class StencilTool { pencil, line, rectangle, flood, choose };
 
 /// The picture of a stencil, painted stack by stack. A stroke changes the picture at once and is told when
 /// the button is released. Wheel: zoom; middle button, or Shift+wheel: move.
@@ -44,7 +44,7 @@ class StencilCanvas : public QWidget {
   Q_SIGNALS:
     /// A stroke is done.
     void painted(std::shared_ptr<const weave::StencilMap> map, const QString& what);
-    void block_picked(std::uint16_t block);
+    void block_chosen(std::uint16_t block);
     void status(const QString& words);
 
   protected:
@@ -71,7 +71,7 @@ class StencilCanvas : public QWidget {
     void draw_picture(QPainter& painter, const QRect& part) const;
     void draw_grid(QPainter& painter) const;
     void draw_wish(QPainter& painter) const;
-    void pick(QPoint stack);
+    void choose(QPoint stack);
     void tell(QPoint stack);
     [[nodiscard]] QString name_of(std::uint16_t block) const;
 

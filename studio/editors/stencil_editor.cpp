@@ -48,7 +48,7 @@ StencilEditor::StencilEditor(QWidget* parent)
     rows->addWidget(split, 1);
     setFocusProxy(m_canvas);
     connect(m_canvas, &StencilCanvas::status, this, &StencilEditor::status);
-    connect(m_canvas, &StencilCanvas::block_picked, this,
+    connect(m_canvas, &StencilCanvas::block_chosen, this,
             [this](std::uint16_t block) { m_palette->choose(block); });
     connect(m_canvas, &StencilCanvas::painted, this,
             [this](const std::shared_ptr<const StencilMap>& map, const QString& what) {
@@ -83,7 +83,7 @@ QWidget* StencilEditor::make_tool_row() {
     make_tool(brushes, StencilTool::line, "line", tr("Line"), Qt::Key_L);
     make_tool(brushes, StencilTool::rectangle, "rectangle", tr("Rectangle"), Qt::Key_R);
     make_tool(brushes, StencilTool::flood, "flood", tr("Fill"), Qt::Key_G);
-    make_tool(brushes, StencilTool::pick, "pick", tr("Pick block"), Qt::Key_I);
+    make_tool(brushes, StencilTool::choose, "choose", tr("Choose block"), Qt::Key_I);
     static_cast<QHBoxLayout*>(brushes->layout())->addStretch(1);
     make_button(row, "size", tr("Size …"), tr("Change the size of the picture, in stacks"),
                 [this] { ask_size(); });

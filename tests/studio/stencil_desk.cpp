@@ -100,11 +100,11 @@ TEST_CASE("stencil: Space paints where the focus is, and runs no simulation") {
     REQUIRE(until([&] { return run->isEnabled(); }));
     shown.canvas().setFocus();
     REQUIRE(shown.canvas().hasFocus());
-    shown.canvas().set_tool(StencilTool::pick);
-    QSignalSpy picked(&shown.canvas(), &StencilCanvas::block_picked);
+    shown.canvas().set_tool(StencilTool::choose);
+    QSignalSpy chosen(&shown.canvas(), &StencilCanvas::block_chosen);
     QTest::keyClick(&shown.canvas(), Qt::Key_Space);
     CHECK(runs.isEmpty());
-    CHECK(picked.size() == 1);
+    CHECK(chosen.size() == 1);
 }
 
 TEST_CASE("stencil: keys of the view act on the editor that is in sight") {

@@ -120,7 +120,7 @@ TEST_CASE(
     REQUIRE(colour({1, 0}) == StencilPalette::colour_of(0));
 }
 
-TEST_CASE("stencil: lines, rectangles, fills and picking") {
+TEST_CASE("stencil: lines, rectangles, fills and choosing") {
     OpenStencil open(operation_of(5, 6));
     open.choose(1);
     open.tool("line");
@@ -133,7 +133,8 @@ TEST_CASE("stencil: lines, rectangles, fills and picking") {
     open.drag({{2, 4}});
     REQUIRE(open.rows() == Rows{"111110", "111100", "111000", "110011", "100011"});
     REQUIRE(open.names.back() == "Fill with twill");
-    open.tool("pick");
+    open.tool("choose");
+    REQUIRE(open.editor.findChild<QAction*>("choose")->text() == "Choose block");  // a pick is a yarn (docs/glossary.md)
     open.drag({{5, 4}});
     REQUIRE(open.editor.palette_list().chosen() == 0);
     REQUIRE(open.edits.size() == 3);
@@ -284,20 +285,20 @@ TEST_CASE("stencil: a large map is painted in part") {
     REQUIRE(open.canvas().map() == *open.edits[0].map);
 }
 
-TEST_CASE("stencil: beyond the picture there is nothing to pick") {
+TEST_CASE("stencil: beyond the picture there is nothing to choose") {
     OpenStencil open(operation_of(3, 3));
-    open.tool("pick");
+    open.tool("choose");
     open.canvas().setFocus();
-    QSignalSpy picked(&open.canvas(), &StencilCanvas::block_picked);
+    QSignalSpy chosen(&open.canvas(), &StencilCanvas::block_chosen);
     for (const QPoint stack : {QPoint(-2, 1), QPoint(1, -2), QPoint(4, 1), QPoint(1, 4)}) {
         open.hover(stack);
         QTest::keyClick(&open.canvas(), Qt::Key_Return);
         QTest::mouseClick(&open.canvas(), Qt::RightButton, Qt::NoModifier, open.canvas().place_of(stack));
     }
-    REQUIRE(picked.isEmpty());
+    REQUIRE(chosen.isEmpty());
     open.hover({1, 1});
     QTest::keyClick(&open.canvas(), Qt::Key_Return);
-    REQUIRE(picked.size() == 1);
+    REQUIRE(chosen.size() == 1);
 }
 
 TEST_CASE("stencil: after a stroke the status says what lies under the pointer now") {
