@@ -248,6 +248,7 @@ void FindingsPanel::add_not_evaluated() {
         auto* item = new QTreeWidgetItem(group);
         item->setText(0, tr("%1: %2").arg(words(rule.rule), words(rule.reason)));
         item->setToolTip(0, plain_tip(item->text(0)));
+        item->setFirstColumnSpanned(true);  // nothing mends it but what the reason says
     }
 }
 

@@ -27,10 +27,10 @@ SignInForm::SignInForm(QWidget* parent)
     greeting->setTextInteractionFlags(Qt::TextSelectableByMouse);
     m_origin->setPlaceholderText(tr("https://mill:8443"));
     m_origin->setToolTip(tr("The address of the mill's loomlink"));
-    m_fingerprint->setPlaceholderText(tr("64 digits; empty: the system's authorities vouch for it"));
+    m_fingerprint->setPlaceholderText(tr("64 digits, or empty"));
     m_fingerprint->setToolTip(
         tr("SHA-256 of the mill's certificate, as loomlink told it when it started. No other server is "
-           "talked to then"));
+           "talked to then. Empty: the system's authorities vouch for it"));
     m_name->setToolTip(tr("Your name at the mill"));
     m_password->setEchoMode(QLineEdit::Password);
     m_password->setInputMethodHints(Qt::ImhHiddenText | Qt::ImhNoPredictiveText);

@@ -125,6 +125,12 @@ void ResidualPlot::paintEvent(QPaintEvent*) {
     painter.drawRect(QRectF(rect()).adjusted(0.5, 0.5, -0.5, -0.5));
 }
 
+/// Below the numbers of the steps, where no curve comes: what axis and dashed line mean.
+QRectF ResidualPlot::foot(const ResidualScale& scale) const {
+    const double line = QFontMetricsF(font()).height(), left = line / 2, right = scale.area().right();
+    return {left, scale.area().bottom() + 1.1 * line, right - left, 1.2 * line};
+}
+
 void ResidualPlot::draw_grid(QPainter& painter, const ResidualScale& scale) const {
     const QFontMetricsF font(this->font());
     const QRectF& area = scale.area();
@@ -148,9 +154,7 @@ void ResidualPlot::draw_grid(QPainter& painter, const ResidualScale& scale) cons
                          Qt::AlignHCenter | Qt::AlignTop, QString::number(step));
     }
     painter.setPen(text);
-    painter.drawText(
-        QRectF(area.left(), area.bottom() + 1.1 * font.height(), area.width(), font.height() * 1.2),
-        Qt::AlignHCenter | Qt::AlignVCenter, tr("steps"));
+    painter.drawText(foot(scale), Qt::AlignRight | Qt::AlignVCenter, tr("steps"));
 }
 
 void ResidualPlot::draw_goal(QPainter& painter, const ResidualScale& scale) const {
@@ -161,13 +165,12 @@ void ResidualPlot::draw_goal(QPainter& painter, const ResidualScale& scale) cons
     const QColor colour = goal_colour(is_dark());
     painter.setPen(QPen(colour, std::max(1.0, font.height() / 10), Qt::DashLine));
     painter.drawLine(QPointF(area.left(), y), QPointF(area.right(), y));
+    const QRectF foot = this->foot(scale);
+    const double sample = 1.5 * font.height();
+    painter.drawLine(QPointF(foot.left(), foot.center().y()), QPointF(foot.left() + sample, foot.center().y()));
     painter.setPen(colour);
-    const QString words = tr("at rest below %1").arg(QString::number(m_goal, 'g', 2));
-    const double top =
-        y - font.height() * 1.1 > area.top() ? y - font.height() * 1.1 : y + font.height() * 0.1;
-    painter.drawText(
-        QRectF(area.left() + font.height() / 3, top, area.width() - font.height() / 3, font.height()),
-        Qt::AlignLeft | Qt::AlignVCenter, words);
+    painter.drawText(foot.adjusted(sample + font.height() / 3, 0, 0, 0), Qt::AlignLeft | Qt::AlignVCenter,
+                     tr("at rest below %1").arg(QString::number(m_goal, 'g', 2)));
 }
 
 void ResidualPlot::draw_curve(QPainter& painter, const ResidualScale& scale) const {

@@ -38,6 +38,7 @@ class ResidualPlot : public QWidget {
     void mark_at(double x);
     void mark(std::optional<std::size_t> point);
     void thin_out();
+    [[nodiscard]] QRectF foot(const ResidualScale& scale) const;
     void draw_grid(QPainter& painter, const ResidualScale& scale) const;
     void draw_goal(QPainter& painter, const ResidualScale& scale) const;
     void draw_curve(QPainter& painter, const ResidualScale& scale) const;

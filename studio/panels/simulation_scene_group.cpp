@@ -49,8 +49,9 @@ SceneGroup::SceneGroup(QWidget* parent)
                         "0.2 to 0.5, which was measured here (docs/simulation.md, Friction). Range 0 to 1."));
     m_gravity->setToolTip(
         tr("Whether the yarns' own weight pulls them down. It is off as a rule: tension is far greater."));
-    for (QWidget* box : {m_boundary_x, m_boundary_y, m_weft_mode})
-        static_cast<QComboBox*>(box)->setSizeAdjustPolicy(QComboBox::AdjustToMinimumContentsLengthWithIcon);
+    // That of the weft keeps room for its words, below its name where the panel is narrow.
+    for (QComboBox* box : {m_boundary_x, m_boundary_y})
+        box->setSizeAdjustPolicy(QComboBox::AdjustToMinimumContentsLengthWithIcon);
     auto* form = new QFormLayout(this);
     form->setRowWrapPolicy(QFormLayout::WrapLongRows);
     form->addRow(tr("Friction"), m_friction);

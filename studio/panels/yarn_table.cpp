@@ -3,6 +3,7 @@
 #include <QColorDialog>
 #include <QHeaderView>
 #include <QScopedValueRollback>
+#include <QScrollBar>
 
 #include <algorithm>
 #include <array>
@@ -27,7 +28,11 @@ YarnTable::YarnTable(QWidget* parent) : QTableWidget(parent) {
                            tr("How it resists being bent (EI)"), tr("How it resists being pressed flat: force per length of yarn and depth")};
     for (int column = 0; column < tips.size(); ++column) horizontalHeaderItem(column)->setToolTip(tips[column]);
     horizontalHeader()->setSectionResizeMode(QHeaderView::ResizeToContents);
-    horizontalHeader()->setSectionResizeMode(name_column, QHeaderView::Stretch);
+    horizontalHeader()->setSectionResizeMode(name_column, QHeaderView::Interactive);
+    const auto follow = [this](int column) {
+        if (column != name_column) fit_names();
+    };
+    connect(horizontalHeader(), &QHeaderView::sectionResized, this, follow, Qt::QueuedConnection);  // while the header resizes, its widths are half old
     verticalHeader()->setSectionResizeMode(QHeaderView::Fixed);
     setSelectionBehavior(QAbstractItemView::SelectRows);
     connect(this, &QTableWidget::itemChanged, this, [this] {
@@ -38,12 +43,23 @@ YarnTable::YarnTable(QWidget* parent) : QTableWidget(parent) {
     });
 }
 
+/// Names have the width that the numbers leave. Where they leave too little, the numbers are scrolled, and name and colour are in sight.
+void YarnTable::fit_names() {
+    const int line = fontMetrics().height(), left = viewport()->width() - (horizontalHeader()->length() - columnWidth(name_column));
+    setColumnWidth(name_column, left >= 2 * line ? left : 7 * line);
+}
+
+void YarnTable::resizeEvent(QResizeEvent* event) {
+    QTableWidget::resizeEvent(event);
+    fit_names();
+}
+
 void YarnTable::show_yarns(const Json& yarns) {
     const QScopedValueRollback quiet(m_is_filling, true);
     setRowCount(static_cast<int>(yarns.size()));
     for (int row = 0; row < rowCount(); ++row) fill_row(row, yarns[static_cast<std::size_t>(row)]);
     const int line = verticalHeader()->defaultSectionSize();
-    setFixedHeight(horizontalHeader()->sizeHint().height() + line * std::clamp(rowCount(), 1, 4) + 6);
+    setFixedHeight(horizontalHeader()->sizeHint().height() + line * std::clamp(rowCount(), 1, 4) + horizontalScrollBar()->sizeHint().height() + 6);
 }
 
 void YarnTable::fill_row(int row, const Json& yarn) {

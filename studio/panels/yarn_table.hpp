@@ -21,7 +21,11 @@ class YarnTable : public QTableWidget {
   Q_SIGNALS:
     void edited();
 
+  protected:
+    void resizeEvent(QResizeEvent* event) override;
+
   private:
+    void fit_names();
     void fill_row(int row, const Json& yarn);
     void show_colour(QTableWidgetItem& patch, const QString& colour);
     static Json number_in(const QTableWidgetItem& cell);

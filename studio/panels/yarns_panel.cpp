@@ -13,6 +13,7 @@
 #include <QPushButton>
 #include <QScopedValueRollback>
 #include <QScrollArea>
+#include <QScrollBar>
 #include <QTimer>
 #include <QVBoxLayout>
 
@@ -65,12 +66,13 @@ YarnsPanel::YarnsPanel(QWidget* parent) : QWidget(parent), m_pause(new QTimer(th
     column->addLayout(form);
     column->addWidget(make_side(m_warp, true));
     column->addWidget(make_side(m_weft, false));
-    column->addStretch();
+    column->addStretch(1);  // what is left over stays below
     auto* scroll = new QScrollArea;
     scroll->setWidget(inside);
     scroll->setWidgetResizable(true);
     scroll->setFrameShape(QFrame::NoFrame);
     scroll->setHorizontalScrollBarPolicy(Qt::ScrollBarAlwaysOff);
+    scroll->setMinimumWidth(inside->minimumSizeHint().width() + scroll->verticalScrollBar()->sizeHint().width());  // else its right rim is cut
     auto* all = new QVBoxLayout(this);
     all->setContentsMargins(0, 0, 0, 0);
     all->addWidget(scroll);
@@ -91,7 +93,6 @@ YarnsPanel::YarnsPanel(QWidget* parent) : QWidget(parent), m_pause(new QTimer(th
 
 QWidget* YarnsPanel::make_side(Side& side, bool is_warp) {
     auto* box = new QGroupBox(is_warp ? tr("Warp (ends)") : tr("Weft (picks)"));
-    box->setSizePolicy(QSizePolicy::Preferred, QSizePolicy::Maximum);  // what is left over stays below
     auto* column = new QVBoxLayout(box);
     side.yarns = new YarnTable;
     side.yarns->setObjectName(is_warp ? "warp-yarns" : "weft-yarns");
@@ -105,6 +106,7 @@ QWidget* YarnsPanel::make_side(Side& side, bool is_warp) {
     buttons->addStretch();
     column->addLayout(buttons);
     auto* form = new QFormLayout;
+    form->setRowWrapPolicy(QFormLayout::WrapLongRows);
     const auto take = is_warp ? &YarnsPanel::take_warp : &YarnsPanel::take_weft;
     if (!is_warp) {
         side.feeders = new QLineEdit;

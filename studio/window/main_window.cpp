@@ -528,6 +528,19 @@ void MainWindow::show_undo() {
     m_redo->setText(m_redo->isEnabled() ? tr("Redo: %1").arg(stack->redoText()) : tr("Redo"));
 }
 
+/// What is told of the step itself holds no longer.
+void MainWindow::undo() {
+    const QString step = m_document->undo_stack().undoText();
+    m_document->undo();
+    tell(tr("Undone: %1").arg(step));
+}
+
+void MainWindow::redo() {
+    const QString step = m_document->undo_stack().redoText();
+    m_document->redo();
+    tell(tr("Done again: %1").arg(step));
+}
+
 void MainWindow::tell(const QString& words) {
     m_status->setText(words);
 }

@@ -95,6 +95,8 @@ class MainWindow : public QMainWindow {
     void follow_document();
     void show_title();
     void show_undo();
+    void undo();
+    void redo();
     void tell_refusal(const QString& reason);
     void forget_refusal();
     void flip(const CardPlace& place);

@@ -65,8 +65,8 @@ void MainWindow::make_file_menu() {
 
 void MainWindow::make_edit_menu() {
     QMenu& menu = *menuBar()->addMenu(tr("&Edit"));
-    m_undo = add(menu, tr("Undo"), QKeySequence::Undo, [this] { m_document->undo(); }, false);
-    m_redo = add(menu, tr("Redo"), QKeySequence(tr("Ctrl+Shift+Z")), [this] { m_document->redo(); }, false);
+    m_undo = add(menu, tr("Undo"), QKeySequence::Undo, [this] { undo(); }, false);
+    m_redo = add(menu, tr("Redo"), QKeySequence(tr("Ctrl+Shift+Z")), [this] { redo(); }, false);
     menu.addSeparator();
     add(menu, tr("Copy block"), QKeySequence::Copy, [this] { m_blocks->copy(chosen_block()); });
     add(menu, tr("Cut block"), QKeySequence::Cut, [this] {

@@ -10,6 +10,7 @@
 #include <studio/window/simulation_desk.hpp>
 
 #include <QtTest>
+#include <QtWidgets>
 
 #include <catch2/catch.hpp>
 #include <filesystem>
@@ -46,6 +47,28 @@ TEST_CASE("screens of the guide", "[.screens]") {
     window.show_sample("shoe-adult");
     editors->setCurrentIndex(0);
     keep(window, "shoe");
+}
+
+TEST_CASE("screens of the docks, as wide as they come", "[.screens]") {
+    MainWindow window;
+    window.resize(1650, 1000);
+    window.show();
+    REQUIRE(QTest::qWaitForWindowExposed(&window));
+    window.show_sample("plain");
+    auto& simulation = *window.findChild<SimulationPanel*>();
+    simulation.run_action()->trigger();
+    REQUIRE(QTest::qWaitFor([&] { return simulation.state().inspection != nullptr; }, 60'000));
+    auto* findings = window.findChild<QTreeWidget*>("findings");
+    REQUIRE(until([&] { return findings->topLevelItemCount() > 0; }));
+    findings->topLevelItem(findings->topLevelItemCount() - 1)->setExpanded(true);
+    findings->scrollToBottom();
+    keep(window, "dock-result");
+    simulation.tabs()->setCurrentIndex(2);
+    keep(window, "dock-cloth");
+    for (const char* dock : {"yarns", "submit"}) {
+        window.findChild<QDockWidget*>(QString("%1-dock").arg(dock))->raise();
+        keep(window, (std::string("dock-") + dock).c_str());
+    }
 }
 
 TEST_CASE("screens of the start page with designs of late, and of cloth that was outgrown", "[.screens]") {

@@ -78,3 +78,28 @@ TEST_CASE("the plot keeps no more points than can be seen") {
     CHECK(plot.points().front().step == 1);
     CHECK(plot.points().back().step == 40'000);
 }
+
+TEST_CASE("what the dashed line means stands where no curve comes") {
+    ResidualPlot plot;
+    plot.resize(260, 180);
+    plot.set_goal(1e-2);
+    plot.add({{1, 1}, {100, 1e-3}});
+    plot.show();
+    REQUIRE(QTest::qWaitForWindowExposed(&plot));
+    const QImage seen = plot.grab().toImage();
+    const ResidualScale scale = plot.scale();
+    const auto is_goal = [&](int x, int y) {
+        const QColor colour = seen.pixelColor(x, y);
+        return colour.red() > 150 && colour.blue() < 120;
+    };
+    const int line = static_cast<int>(scale.y_of(1e-2));
+    int on_area = 0, below = 0;
+    for (int y = 0; y < seen.height(); ++y) {
+        for (int x = static_cast<int>(scale.area().left()); x < seen.width(); ++x) {
+            if (!is_goal(x, y) || std::abs(y - line) < 4) continue;
+            ++(y < scale.area().bottom() ? on_area : below);
+        }
+    }
+    CHECK(on_area == 0);
+    CHECK(below > 0);
+}

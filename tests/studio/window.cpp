@@ -193,10 +193,44 @@ TEST_CASE("undo and redo are in the menu, by name, and on their keys") {
     REQUIRE(shown.document().perform({"the title", {SetTitle{"changed", ""}}}));
     QTest::keyClick(&shown.window, Qt::Key_Z, Qt::ControlModifier);
     CHECK(shown.document().design().title != "changed");
+    const auto* status = shown.window.statusBar()->findChild<QLabel*>();
+    CHECK(status->text() == "Undone: the title");  // no longer what the step itself said
     QTest::keyClick(&shown.window, Qt::Key_Z, Qt::ControlModifier | Qt::ShiftModifier);
     CHECK(shown.document().design().title == "changed");
+    CHECK(status->text() == "Done again: the title");
     choose(shown.window, {"Edit", "Undo: the title"});
     CHECK(shown.document().design().title != "changed");
+}
+
+TEST_CASE("no words are cut in docks as wide as they come") {
+    Desk shown("pocket");
+    shown.window.resize(1650, 1000);
+    const auto raise = [&](const char* dock) {
+        shown.find<QDockWidget>(dock).raise();
+        QCoreApplication::processEvents();
+    };
+    const auto room_for = [](const QWidget& field, const QString& words) { return field.width() - field.fontMetrics().horizontalAdvance(words); };
+    shown.find<SimulationPanel>().tabs()->setCurrentIndex(2);
+    raise("simulation-dock");
+    const auto& weft = shown.find<QComboBox>("weft_mode");
+    REQUIRE(weft.isVisible());
+    CHECK(room_for(weft, weft.currentText()) > weft.height());  // beside its arrow
+    raise("submit-dock");
+    const auto& fingerprint = shown.find<QLineEdit>("fingerprint");
+    REQUIRE(fingerprint.isVisible());
+    CHECK(room_for(fingerprint, fingerprint.placeholderText()) > 8);
+    raise("yarns-dock");
+    auto& yarns = shown.find<YarnsPanel>();
+    REQUIRE(yarns.isVisible());
+    const auto* scroll = yarns.findChild<QScrollArea*>();
+    CHECK(scroll->widget()->width() <= scroll->viewport()->width());
+    CHECK(yarns.width() <= yarns.parentWidget()->width());
+    auto& findings = shown.find<FindingsPanel>();
+    REQUIRE(until([&] { return findings.report().has_value(); }));
+    auto& list = shown.find<QTreeWidget>("findings");
+    const QTreeWidgetItem* unjudged = list.topLevelItem(list.topLevelItemCount() - 1);
+    REQUIRE(unjudged->childCount() > 0);
+    CHECK(unjudged->child(0)->isFirstColumnSpanned());
 }
 
 TEST_CASE("blocks are copied, pasted, duplicated, renamed and removed") {

@@ -74,8 +74,16 @@ TEST_CASE("a double-click on a yarn's colour asks for it once, and nothing has t
     QCoreApplication::processEvents();
     CHECK(asked == 1);
     CHECK(shown.document.design() == with_odd_figures());
-    CHECK(table.horizontalHeader()->length() <= table.viewport()->width());
+    INFO(table.columnWidth(0) << " of " << table.horizontalHeader()->length() << ", a line " << table.fontMetrics().height());
+    CHECK(QTest::qWaitFor([&] { return table.horizontalHeader()->length() <= table.viewport()->width(); }));
     CHECK(shown.panel.findChild<QScrollArea*>()->horizontalScrollBar()->maximum() == 0);
+    shown.panel.resize(290, 900);
+    REQUIRE(QTest::qWaitFor([&] { return table.viewport()->width() < 280; }));
+    CHECK(table.visualItemRect(table.item(0, 1)).right() < table.viewport()->width());  // the colour stays in sight
+    CHECK(table.visualItemRect(table.item(0, 1)).bottom() < table.viewport()->height());
+    const auto* density = shown.panel.findChild<QDoubleSpinBox*>("weft-density");
+    CHECK(QTest::qWaitFor([&] { return density->height() >= density->minimumSizeHint().height(); }));
+    CHECK(shown.panel.width() >= shown.panel.minimumSizeHint().width());
     const int gap = shown.panel.findChild<QWidget*>("notes")->geometry().top() - shown.panel.findChild<QWidget*>("title")->geometry().bottom();
     CHECK(gap < 2 * shown.panel.fontMetrics().height());
 }
