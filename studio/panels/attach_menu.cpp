@@ -32,7 +32,8 @@ void add_reason(QMenu& menu, const QString& reason) {
     auto* label = new QLabel(Words::tr("cannot: %1").arg(reason));
     label->setTextFormat(Qt::PlainText);
     label->setWordWrap(true);
-    label->setIndent(2 * label->fontMetrics().height());
+    const int indent = 2 * label->fontMetrics().height();
+    label->setContentsMargins(indent, 0, indent / 2, 0);  // clear of the menu's rim
     label->setMinimumWidth(60 * label->fontMetrics().averageCharWidth());
     auto* line = new QWidgetAction(&menu);
     line->setDefaultWidget(label);

@@ -48,6 +48,15 @@ TEST_CASE("why a block cannot be attached is said whole, below its name") {
         CHECK(label->text().contains(action->text()));
         CHECK(label->textFormat() == Qt::PlainText);
     }
+    menu.popup({0, 0});
+    for (const QAction* action : menu.actions()) {
+        const auto* shown = qobject_cast<const QWidgetAction*>(action);
+        const auto* label = shown == nullptr ? nullptr : qobject_cast<QLabel*>(shown->defaultWidget());
+        if (label == nullptr || !label->wordWrap()) continue;
+        const int right = label->mapTo(&menu, label->contentsRect().topRight()).x();
+        CHECK(right + label->fontMetrics().height() / 2 < menu.width());  // clear of the menu's rim
+    }
+    menu.close();
     CHECK(reasons > 0);
     CHECK(reasons == refused);
 }
