@@ -39,6 +39,7 @@ foreach(component COMMANDS STUDIO SERVICES DEVELOPMENT)
 endforeach()
 set(CPACK_DEBIAN_STUDIO_PACKAGE_DEPENDS libqt6svg6) # a plugin, which no program asks for by name
 set(CPACK_DEBIAN_STUDIO_PACKAGE_RECOMMENDS "weave, fonts-dejavu-core, shared-mime-info")
+set(CPACK_DEBIAN_SERVICES_PACKAGE_RECOMMENDS "python3, openssl") # of loomlink-read-release
 set(CPACK_DEBIAN_COMMANDS_PACKAGE_RECOMMENDS "fonts-dejavu-core")
 
 set(CPACK_COMPONENTS_ALL library commands services development)
@@ -56,14 +57,30 @@ install(FILES ${PROJECT_SOURCE_DIR}/docs/licences.md ${PROJECT_SOURCE_DIR}/CHANG
 set(library_docs ${CMAKE_INSTALL_DATADIR}/doc/${CPACK_DEBIAN_LIBRARY_PACKAGE_NAME})
 set(services_docs ${CMAKE_INSTALL_DATADIR}/doc/${CPACK_DEBIAN_SERVICES_PACKAGE_NAME})
 install(FILES libweave/weave/loom/PROFILE.md libweave/weave/design/FORMAT.md libweave/weave/sim/YARNS.md libweave/weave/io/CONTROLLER_FILES.md DESTINATION ${library_docs} COMPONENT library)
-install(FILES docs/operators-guide.md docs/scale.md loomlink/RUNBOOK.md libweave/weave/wire/PROTOCOL.md db/roles.sql DESTINATION ${services_docs} COMPONENT services)
+install(FILES docs/operators-guide.md loomlink/RUNBOOK.md loomlink/service/API.md libweave/weave/wire/PROTOCOL.md db/roles.sql DESTINATION ${services_docs} COMPONENT services)
 install(DIRECTORY docs/pictures/loomlink DESTINATION ${services_docs}/pictures COMPONENT services)
-foreach(service loomlink simd)
-  set_property(DIRECTORY APPEND PROPERTY CMAKE_CONFIGURE_DEPENDS ${PROJECT_SOURCE_DIR}/${service}/README.md)
-  file(READ ${PROJECT_SOURCE_DIR}/${service}/README.md text)
-  file(WRITE ${CMAKE_BINARY_DIR}/packages/${service}.md "*Of the source tree. RUNBOOK.md, scale.md, PROTOCOL.md and operators-guide.md, which it names, lie beside this file; PROFILE.md and FORMAT.md under "
-       "${CPACK_DEBIAN_LIBRARY_PACKAGE_NAME}; other files that it names are sources.*\n\n${text}")
-  install(FILES ${CMAKE_BINARY_DIR}/packages/${service}.md DESTINATION ${services_docs} COMPONENT services)
+install(FILES docs/pictures/shoe-toe.png DESTINATION ${services_docs}/pictures COMPONENT services) # of scale.md
+if(WEAVE_STUDIO)
+  set(studio_docs ${CMAKE_INSTALL_DATADIR}/doc/${CPACK_DEBIAN_STUDIO_PACKAGE_NAME})
+  install(FILES docs/designers-guide.md DESTINATION ${studio_docs} COMPONENT studio)
+  install(DIRECTORY docs/pictures/studio DESTINATION ${studio_docs}/pictures COMPONENT studio)
+endif()
+foreach(page loomlink/README.md:loomlink simd/README.md:simd docs/scale.md:scale) # they name files of the tree, which lie elsewhere here
+  string(REPLACE ":" ";" page ${page})
+  list(GET page 0 source)
+  list(GET page 1 name)
+  set_property(DIRECTORY APPEND PROPERTY CMAKE_CONFIGURE_DEPENDS ${PROJECT_SOURCE_DIR}/${source})
+  file(READ ${PROJECT_SOURCE_DIR}/${source} text)
+  file(WRITE ${CMAKE_BINARY_DIR}/packages/${name}.md "*Of the source tree. RUNBOOK.md, scale.md, API.md, PROTOCOL.md and operators-guide.md, which it names, lie beside this file, the README.md of loomlink and of simd as loomlink.md and "
+       "simd.md; PROFILE.md and FORMAT.md of a design under ${CPACK_DEBIAN_LIBRARY_PACKAGE_NAME}; tools/read_release is the program loomlink-read-release; other files that it names are sources.*\n\n${text}")
+  install(FILES ${CMAKE_BINARY_DIR}/packages/${name}.md DESTINATION ${services_docs} COMPONENT services)
 endforeach()
+# The independent reader is scripts that lie together, and a name by which it is called.
+set(reader ${CMAKE_INSTALL_DATADIR}/weave/read_release)
+install(PROGRAMS tools/read_release DESTINATION ${reader} COMPONENT services)
+install(FILES tools/release_files.py tools/release_picture.py DESTINATION ${reader} COMPONENT services)
+file(RELATIVE_PATH to_reader ${CMAKE_INSTALL_FULL_BINDIR} ${CMAKE_INSTALL_FULL_DATADIR}/weave/read_release/read_release)
+file(CREATE_LINK ${to_reader} ${CMAKE_BINARY_DIR}/packages/loomlink-read-release SYMBOLIC)
+install(FILES ${CMAKE_BINARY_DIR}/packages/loomlink-read-release DESTINATION ${CMAKE_INSTALL_BINDIR} COMPONENT services)
 
 include(CPack)
