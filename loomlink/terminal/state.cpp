@@ -84,7 +84,7 @@ std::string safe_name(JsonReader& reader, const std::string& key) {
 }
 
 /// The whole path of a folder. It may be any: files are removed there by name and hash alone.
-std::filesystem::path whole_path(JsonReader& reader, const std::string& key) {
+std::filesystem::path whole_path_member(JsonReader& reader, const std::string& key) {
     const std::filesystem::path path = reader.text(key, {}, 4096);
     const bool is_whole = path.is_absolute() && path.native() == path.lexically_normal().native() && path.native().find('\0') == std::string::npos;
     if (!reader.failed() && !is_whole) reader.fail("is not the whole path of a folder", key);
@@ -94,7 +94,7 @@ std::filesystem::path whole_path(JsonReader& reader, const std::string& key) {
 void read_placed(JsonReader& reader, TerminalState& state) {
     std::set<std::filesystem::path> folders;
     for (auto& entry : reader.objects("placed")) {
-        PlacedRelease placed{count_member(entry, "number", 1), whole_path(entry, "within"), safe_name(entry, "folder"), {}};
+        PlacedRelease placed{count_member(entry, "number", 1), whole_path_member(entry, "within"), safe_name(entry, "folder"), {}};
         auto files = entry.objects("files");
         if (files.size() > most_released_files + 1) entry.fail("are more than a release has", "files");
         for (auto& file : files) {
