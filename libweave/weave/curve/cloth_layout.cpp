@@ -8,7 +8,6 @@
 #include <array>
 #include <cmath>
 #include <optional>
-#include <ranges>
 #include <string>
 #include <utility>
 
@@ -191,13 +190,12 @@ class ClothLayout::Lines {
 
     /// All along.
     bool is_loose(std::size_t yarn) const {
-        if (yarn < m_wefts.size()) return std::ranges::all_of(m_wefts[yarn].parts, [&](std::size_t part) { return is_loose_part(m_lines.wefts().parts[part]); });
+        if (yarn < m_wefts.size()) return std::ranges::all_of(m_wefts[yarn].parts, [&](std::size_t part) { return m_lines.is_loose_part(part); });
         const std::size_t end = m_bare.yarns[yarn].number, column = m_block.column_of_end(end);
-        return std::ranges::all_of(std::views::iota(region().first_row, region().last_row + 1), [&](std::size_t row) { return m_lines.is_loose_end(end, row, column); });
-    }
-
-    bool is_loose_part(const WeftPart& part) const {
-        return std::ranges::all_of(std::views::iota(part.first_column, part.last_column + 1), [&](std::size_t column) { return m_lines.is_loose_pick(part.pick, part.row, column); });
+        for (std::size_t row = region().first_row; row <= region().last_row; ++row) {
+            if (!m_lines.is_loose_end(end, row, column)) return false;
+        }
+        return true;
     }
 
     std::size_t keys_of_part(std::size_t part) const {

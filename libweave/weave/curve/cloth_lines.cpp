@@ -151,6 +151,14 @@ bool ClothLines::is_loose_end(std::size_t end, std::size_t row, std::size_t colu
     return m_places.is_loose(m_places.of_end(end, row, column), row, column);
 }
 
+bool ClothLines::is_loose_part(std::size_t part) const {
+    const WeftPart& p = wefts().parts[part];
+    for (std::size_t column = p.first_column; column <= p.last_column; ++column) {
+        if (!is_loose_pick(p.pick, p.row, column)) return false;
+    }
+    return true;
+}
+
 bool ClothLines::is_over(std::size_t pick, std::size_t end, std::size_t row, std::size_t column) const {
     return m_places.of_pick(pick, row, column) > m_places.of_end(end, row, column);
 }

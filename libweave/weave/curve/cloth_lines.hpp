@@ -42,6 +42,8 @@ class ClothLines {
     [[nodiscard]] double level_of(const WeftPart& part, std::size_t column) const;
     [[nodiscard]] bool is_loose_pick(std::size_t pick, std::size_t row, std::size_t column) const;
     [[nodiscard]] bool is_loose_end(std::size_t end, std::size_t row, std::size_t column) const;
+    /// All along.
+    [[nodiscard]] bool is_loose_part(std::size_t part) const;
     /// Whether a pick lies above an end where they cross.
     [[nodiscard]] bool is_over(std::size_t pick, std::size_t end, std::size_t row, std::size_t column) const;
 
