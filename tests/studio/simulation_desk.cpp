@@ -418,7 +418,7 @@ TEST_CASE("cloth that was relaxed at another size makes way for its plan, and Ru
     REQUIRE(run->isVisible());
     QTest::mouseClick(run, Qt::LeftButton);
     CHECK(messages.words().isEmpty());
-    REQUIRE(loom.until([&] { return loom.simulation().state().phase == RunPhase::at_rest; }));
+    REQUIRE(loom.until([&] { return loom.simulation().state().phase == RunPhase::at_rest && loom.simulation().state().yarns; }));
     CHECK(viewer.mode() == ViewerPanel::Mode::relaxed);
     CHECK(loom.simulation().state().yarns->yarns.size() == loom.document().whole().block->picks() + loom.document().whole().block->ends());
 }

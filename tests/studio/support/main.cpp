@@ -11,6 +11,13 @@
 #include <clocale>
 #include <studio/window/language.hpp>
 
+#ifdef __SANITIZE_ADDRESS__
+/// Drivers and plugins stay loaded to the end: what they keep is then still theirs, or has a name for leaks.txt.
+extern "C" int dlclose(void*) {
+    return 0;
+}
+#endif
+
 /// Tests of the studio run in real windows: on the display that there is, or on one of their own that nobody sees.
 int main(int argc, char* argv[]) {
     const weave::studio::test::Display display;
