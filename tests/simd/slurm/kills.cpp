@@ -111,7 +111,7 @@ void kill_under(std::size_t count, std::chrono::milliseconds between, std::size_
 }  // namespace
 
 TEST_CASE("12 jobs end once with one result each while copies and nodes and the controller and the daemon are killed") {
-    kill_under(12, 1000ms, 10, 170s);
+    kill_under(12, 1000ms, 10, 600s);
 }
 
 TEST_CASE("the same with 50 jobs and 100 kills", "[.][long]") {

@@ -28,6 +28,8 @@ int main(int argc, char* argv[]) {
         QFile::setPermissions(home.filePath(kind), QFile::ReadOwner | QFile::WriteOwner | QFile::ExeOwner);
         qputenv(kind, home.filePath(kind).toUtf8());
     }
+    // No desktop's bus is asked for, nor started: to start one Qt forks beside its threads, where a sanitizer's locks may hang for ever.
+    qputenv("DBUS_SESSION_BUS_ADDRESS", "disabled:");
     int qt_arguments = 1;  // Catch's words are none of Qt's
     QApplication application(qt_arguments, argv);
     QCoreApplication::setOrganizationName("weave");
